@@ -1,0 +1,143 @@
+"""Our side of the races: the reference pair marched in lanes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference_pair import Pair, elastic, lanes, starting_state, system
+from tribodyn.dynamics import simulate_ensemble
+from tribodyn.dynamics.march import Compiled, compile_for, march
+
+__all__ = ["call", "end_displacements", "kernel", "march_once"]
+
+Array = NDArray[np.float64]
+
+
+def _variety(pair: Pair, count: int) -> tuple[Array, Array]:
+    """Mesh frequency [Hz] and extra force of every lane."""
+    own = lanes(pair, count)
+    frequency = np.array([lane.mesh_frequency for lane in own])
+    torque = np.array([lane.torque - pair.torque for lane in own])
+    extra = np.zeros((count, 6))
+    extra[:, 2], extra[:, 5] = torque, -1.5 * torque
+    return frequency, extra
+
+
+def kernel(
+    pair: Pair, count: int, cycles: int, *, steps: int = 512, threads: int = 1, settle: int = 0
+) -> Callable[[], float]:
+    """March lanes on a system that is set up beforehand; nothing but the kernel.
+
+    Parameters
+    ----------
+    pair : Pair
+    count : int
+        Lanes.
+    cycles : int
+        Mesh cycles.
+    steps : int
+        Steps per mesh cycle.
+    threads : int
+        Blocks at a time.
+    settle : int
+        Mesh cycles beforehand.
+
+    Returns
+    -------
+    callable
+        Marches and returns the number of steps of all lanes together.
+    """
+    frequency, extra = _variety(pair, count)
+    compiled = compile_for(system(pair), frequency, steps)
+    state = np.tile(np.concatenate(starting_state(pair)), (count, 1))
+    period = 1.0 / frequency
+    if settle:
+        state = march(compiled, period, state, settle, extra_force=extra)
+
+    def run() -> float:
+        march(compiled, period, state, cycles, extra_force=extra, threads=threads)
+        return float(count * cycles * steps)
+
+    return run
+
+
+def call(
+    pair: Pair, count: int, cycles: int, *, steps: int = 512, statistics: bool = False
+) -> Callable[[], float]:
+    """One whole call of ``simulate_ensemble`` on one thread, its set-up included.
+
+    Parameters
+    ----------
+    pair : Pair
+    count : int
+        Lanes.
+    cycles : int
+        Mesh cycles.
+    steps : int
+        Steps per mesh cycle.
+    statistics : bool
+        Whether statistics are gathered, in all cycles.
+
+    Returns
+    -------
+    callable
+        Marches and returns the number of steps of all lanes together.
+    """
+    frequency, extra = _variety(pair, count)
+    structure, start = system(pair), starting_state(pair)
+    averaged = cycles if statistics else 0
+
+    def run() -> float:
+        simulate_ensemble(
+            structure, frequency, cycles, start, steps=steps, extra_force=extra,
+            averaged=averaged, threads=1,
+        )  # fmt: skip
+        return float(count * cycles * steps)
+
+    return run
+
+
+def march_once(compiled: Compiled, pair: Pair, state: Array, cycles: int) -> Array:
+    """March one state by whole mesh cycles.
+
+    Parameters
+    ----------
+    compiled : Compiled
+        The pair on its grid.
+    pair : Pair
+    state : (12,) array
+        Position and velocity.
+    cycles : int
+        Mesh cycles.
+
+    Returns
+    -------
+    (12,) array
+    """
+    period = np.array([1.0 / pair.mesh_frequency])
+    return np.asarray(march(compiled, period, state[None, :], cycles)[0])
+
+
+def end_displacements(pair: Pair, cycles: int, steps: int) -> Array:
+    """Displacements after whole mesh cycles.
+
+    Parameters
+    ----------
+    pair : Pair
+    cycles : int
+        Mesh cycles.
+    steps : int
+        Steps per mesh cycle.
+
+    Returns
+    -------
+    (5,) array
+        In m.
+    """
+    end = simulate_ensemble(
+        system(pair), pair.mesh_frequency, cycles, starting_state(pair), steps=steps, averaged=0
+    )
+    return elastic(end.position[0])

@@ -1,0 +1,30 @@
+"""All benchmarks, one report."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+
+from race import arguments
+
+__all__ = ["SCRIPTS", "main"]
+
+SCRIPTS = ("ensemble_speed", "equal_accuracy", "steady_state_speed", "cold_start")
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Run every script in turn.
+
+    Parameters
+    ----------
+    words : sequence of str, optional
+        Words of the command line.
+    """
+    own = ["--quick"] if arguments(__doc__, words).quick else []
+    for script in SCRIPTS:
+        print(f"{'=' * 100}\n")
+        importlib.import_module(script).main(own)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,29 @@
+"""What each friction law makes of one tooth contact, and of less sliding.
+
+The first contact is that of an FZG type A pair at 90 N*m and 900 rpm, in the middle of the zone
+where one tooth pair carries everything.
+"""
+
+import numpy as np
+
+from tribodyn.friction import LAWS, TribologicalContact
+
+options = {"constant": {"coefficient": 0.05}}
+sliding = np.array([0.913038, 0.7, 0.5])  # m/s, pinion minus wheel
+entrainment = np.full(3, 1.407953)  # m/s, half the sum of the surface speeds
+
+contact = TribologicalContact(
+    load_per_width=np.full(3, 133022.0),  # N/m
+    hertz_pressure=np.full(3, 0.754725e9),  # Pa
+    sliding_speed=sliding,
+    entrainment_speed=entrainment,
+    slide_to_roll_ratio=sliding / entrainment,
+    equivalent_radius=np.full(3, 8.577181e-3),  # m
+    dynamic_viscosity=0.082,  # Pa*s
+    composite_roughness=0.53e-6,  # m
+)
+
+print("sliding speed [m/s]   ", *(f"{speed:9.3f}" for speed in sliding))
+for name, law in ((name, LAWS[name]) for name in LAWS):
+    coefficients = law(contact, **options.get(name, {}))
+    print(f"{name:22}", *(f"{value:9.6f}" for value in coefficients))

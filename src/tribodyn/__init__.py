@@ -1,0 +1,64 @@
+"""Gear tribo-dynamics: from gear and lubricant data to tooth contact, friction and vibration.
+
+>>> import tribodyn as td
+>>> case = td.load_case("fzg-roughness")
+>>> case.gears.wheel.teeth
+24
+
+Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
+``lubricant``, ``ehl``, ``friction``, ``stiffness``, ``mesh``, ``dynamics``, ``analysis``,
+``study``, ``cases``, ``plot`` and ``report``.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tribodyn.cases import cases, load_case, run
+    from tribodyn.errors import ComputationError, InputError, ModelWarning
+    from tribodyn.study import Case, Result
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Case",
+    "ComputationError",
+    "InputError",
+    "ModelWarning",
+    "Result",
+    "__version__",
+    "cases",
+    "load_case",
+    "run",
+]
+
+_HOMES = {
+    "Case": "study",
+    "ComputationError": "errors",
+    "InputError": "errors",
+    "ModelWarning": "errors",
+    "Result": "study",
+    "load_case": "cases",
+    "run": "cases",
+}
+
+_ROOMS = (
+    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "lubricant",
+    "mesh", "nomenclature", "plot", "progress", "report", "stiffness", "study", "units",
+)  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name or a room when it is first used."""
+    if name in _ROOMS:
+        return import_module(f"{__name__}.{name}")
+    if name in _HOMES:
+        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """Public names and rooms."""
+    return sorted({*__all__, *_ROOMS})

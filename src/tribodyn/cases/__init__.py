@@ -1,0 +1,23 @@
+"""The built-in cases. The module itself can be called: ``tribodyn.cases()`` lists them."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+
+from tribodyn.cases.catalogue import case_files, cases
+from tribodyn.cases.compute import run
+from tribodyn.cases.load import load_case
+
+__all__ = ["case_files", "cases", "load_case", "run"]
+
+
+class _Catalogue(ModuleType):
+    """A module that lists the cases when called, since both go by the same name."""
+
+    def __call__(self) -> dict[str, str]:
+        """Names and one-line descriptions of all named cases."""
+        return cases()
+
+
+sys.modules[__name__].__class__ = _Catalogue

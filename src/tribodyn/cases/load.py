@@ -1,0 +1,64 @@
+"""From a name or a path to a case."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribodyn.cases.catalogue import case_files
+from tribodyn.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from tribodyn.study.case import Case
+
+__all__ = ["load_case"]
+
+
+def load_case(name_or_path: str | os.PathLike[str]) -> Case:
+    """Load a built-in case or a case file.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        Name from :func:`tribodyn.cases`, or path of a TOML file. A file that has the name of a
+        built-in case is reached as ``./name``.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    InputError
+        If there is no such case, or listing every fault of the file.
+
+    Examples
+    --------
+    >>> load_case("fzg-roughness").operation.torque
+    90.0
+    """
+    from tribodyn.study.read import read_case, read_text
+
+    named = case_files()
+    asked = os.fspath(name_or_path)
+    path = named.get(asked, Path(asked))
+    if path.is_dir():
+        inner = path / "case.toml"
+        remedy = f"Use {inner}" if inner.is_file() else "Give the path of a TOML file"
+        raise InputError(Problem("this is a directory, not a case file", asked, "", remedy))
+    if not path.exists():
+        raise InputError(_not_found(asked, path, list(named)))
+    return read_case(read_text(path), path.name if asked in named else asked)
+
+
+def _not_found(asked: str, path: Path, names: list[str]) -> Problem:
+    """Name what is near: built-in cases, and TOML files in the same directory."""
+    folder = path.parent
+    beside = sorted(p.name for p in folder.glob("*.toml")) if folder.is_dir() else []
+    near = difflib.get_close_matches(asked, names, n=1)
+    near += [str(folder / n) for n in difflib.get_close_matches(path.name, beside, n=1)]
+    why = f"Built-in cases: {', '.join(names)}"
+    remedy = f'Did you mean "{near[0]}"?' if near else "See: tribodyn cases"
+    return Problem("no built-in case and no file is called so", asked, why, remedy)

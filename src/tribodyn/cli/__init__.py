@@ -1,0 +1,7 @@
+"""The command line: stdout is data, stderr is progress, the exit code tells how it went."""
+
+from __future__ import annotations
+
+from tribodyn.cli.entry import call, main
+
+__all__ = ["call", "main"]

@@ -1,0 +1,9 @@
+"""Let ``python -m tribodyn.cli`` be the command line too."""
+
+from __future__ import annotations
+
+from tribodyn.cli.entry import main
+
+__all__: list[str] = []
+
+main()

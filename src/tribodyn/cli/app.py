@@ -1,0 +1,70 @@
+"""The commands by name; each is loaded only when it is called."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+import tribodyn
+
+__all__ = ["COMMANDS", "WELCOME", "make_app"]
+
+WELCOME = """\
+tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
+
+  tribodyn run fzg-roughness                  compute a built-in case and write its report
+  tribodyn new my.toml --from fzg-roughness   write a commented case file to start from
+  tribodyn check my.toml                      look at the geometry before running
+
+tribodyn --help shows all commands."""
+
+#: Command, place of its function, and one line of help.
+COMMANDS = (
+    ("cases", "tribodyn.cli.cases_command:cases", "List the built-in cases."),
+    ("run", "tribodyn.cli.run_command:run", "Compute a case and write its report."),
+    ("check", "tribodyn.cli.check_command:check", "Check a case and show its geometry."),
+    ("new", "tribodyn.cli.new_command:new", "Write a commented case file to start from."),
+    ("explain", "tribodyn.cli.explain_command:explain", "Explain a symbol, key, model or warning."),
+    ("units", "tribodyn.cli.units_command:units", "List the units and their spellings."),
+    ("cite", "tribodyn.cli.cite_command:cite", "Print the papers behind a result."),
+)
+
+
+def _welcome(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+    """Show three next steps.
+
+    Parameters
+    ----------
+    json : bool
+        Write one JSON object to stdout.
+    """
+    from tribodyn.cli.screen import say, say_json
+
+    steps = [line.split("  ")[1].strip() for line in WELCOME.splitlines() if line[:2] == "  "]
+    if json:
+        say_json({"next_steps": steps})
+    else:
+        say(WELCOME)
+
+
+def make_app() -> App:
+    """Build the command line; nothing heavy is imported.
+
+    Returns
+    -------
+    App
+    """
+    app = App(
+        name="tribodyn",
+        help="Gear tribo-dynamics: tooth contact, friction, stiffness and vibration.",
+        version=tribodyn.__version__,
+        version_flags=["--version"],
+        suppress_keyboard_interrupt=False,
+        result_action="return_value",
+        help_format="plaintext",
+    )
+    app.default(_welcome)
+    for name, place, help_text in COMMANDS:
+        app.command(place, name=name, help=help_text)
+    return app

@@ -1,0 +1,163 @@
+"""Where the command line begins and ends: run a command, turn every failure into a message.
+
+Nothing heavy is imported up here, so that even an interruption of the first moment is caught.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.cli.interrupt import interruptible
+
+if TYPE_CHECKING:
+    from tribodyn.errors import Problem
+
+__all__ = ["INTERRUPTED", "call", "main"]
+
+#: Exit code of a command that was stopped by Ctrl-C.
+INTERRUPTED = 130
+
+#: Faults of the place that is written to, not of the program.
+_PLACE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM)
+
+#: What to write after a command, for those that need something.
+_EXAMPLES = {
+    "run": "fzg-roughness",
+    "check": "fzg-roughness",
+    "new": "my.toml --from fzg-roughness",
+    "explain": "epsilon_alpha",
+    "cite": "fzg-roughness",
+}
+
+_TRACEBACK = "TRIBODYN_TRACEBACK"
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and leave with its exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after the program's name; those of the process by default.
+    """
+    sys.exit(call(sys.argv[1:] if arguments is None else arguments))
+
+
+def call(arguments: Sequence[str]) -> int:
+    """Run the command line and return its exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Words after the program's name.
+
+    Returns
+    -------
+    int
+        0 done, 1 computation failed, 2 bad input, 130 interrupted.
+    """
+    try:
+        with interruptible():
+            code = _dispatch(list(arguments))
+            sys.stdout.flush()
+            return code
+    except BrokenPipeError:
+        _close_stdout()
+        return 0
+    except OSError as error:
+        if error.errno == errno.ENOSPC and error.filename is None:
+            # What is left in the buffer has nowhere to go.
+            _close_stdout()
+        return _failed(error, "--json" in arguments)
+    except (Exception, KeyboardInterrupt) as error:
+        return _failed(error, "--json" in arguments)
+
+
+def _close_stdout() -> None:
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _dispatch(arguments: list[str]) -> int:
+    from cyclopts.exceptions import CycloptsError
+
+    from tribodyn.cli.app import COMMANDS, make_app
+    from tribodyn.errors import InputError, Problem
+
+    names = [name for name, _, _ in COMMANDS]
+    if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
+        raise InputError(_no_command(arguments[0], names))
+    try:
+        result: Any = make_app()(arguments, exit_on_error=False, print_error=False)
+    except CycloptsError as error:
+        what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many words: \1", str(error).strip())
+        raise InputError(Problem(what, remedy=_remedy(arguments, what))) from None
+    return result if isinstance(result, int) else 0
+
+
+def _remedy(arguments: list[str], what: str) -> str:
+    """What to write instead of words that make no command."""
+    settings = [word for word in arguments if "=" in word and not word.startswith("-")]
+    if len(settings) > arguments.count("--set"):
+        return "Repeat --set before every KEY=VALUE"
+    if arguments[0] in _EXAMPLES and "requires an argument" in what:
+        return f"Write for example: tribodyn {arguments[0]} {_EXAMPLES[arguments[0]]}"
+    return "See: tribodyn --help"
+
+
+def _no_command(word: str, names: list[str]) -> Problem:
+    import difflib
+
+    from tribodyn.errors import Problem
+
+    near = difflib.get_close_matches(word, names, n=1)
+    remedy = f'Did you mean "{near[0]}"?' if near else "See: tribodyn --help"
+    return Problem(f'there is no command "{word}"', "", f"Commands: {', '.join(names)}", remedy)
+
+
+def _failed(error: BaseException, as_json: bool) -> int:
+    """Tell a failure on stderr and, if asked for, as one JSON object on stdout."""
+    from tribodyn.cli.screen import say_json, show_problems
+    from tribodyn.errors import Problem, TribodynError
+
+    if isinstance(error, TribodynError):
+        code, problems = error.exit_code, list(error.problems)
+    elif isinstance(error, KeyboardInterrupt):
+        code, problems = INTERRUPTED, [Problem("interrupted", remedy="No unfinished file is left")]
+    elif isinstance(error, OSError) and error.errno in _PLACE:
+        code, problems = 1, [_no_place(error)]
+    else:
+        code, problems = 1, [_unexpected(error)]
+    show_problems(problems)
+    if as_json:
+        told = [
+            {"what": p.what, "where": p.where, "why": p.why, "remedy": p.remedy} for p in problems
+        ]
+        say_json({"error": {"exit_code": code, "problems": told}})
+    return code
+
+
+def _no_place(error: OSError) -> Problem:
+    from tribodyn.errors import Problem
+
+    place = str(error.filename or "output")
+    what = f"cannot write: {(error.strerror or str(error)).lower()}"
+    return Problem(what, place, "", "Make room, or write to another place")
+
+
+def _unexpected(error: BaseException) -> Problem:
+    import traceback
+
+    from tribodyn.errors import Problem
+
+    if os.environ.get(_TRACEBACK):
+        traceback.print_exception(error)
+    return Problem(
+        f"unexpected {type(error).__name__}: {error}".rstrip(": "),
+        why="This is a fault of tribodyn, not of the input",
+        remedy=f"Set {_TRACEBACK}=1 to see where it happened, and report it",
+    )

@@ -1,0 +1,127 @@
+"""``tribodyn explain``."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from tribodyn.cli.screen import say, say_json
+from tribodyn.errors import InputError, Problem
+
+__all__ = ["explain"]
+
+
+def explain(symbol: str, /, *, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+    """Explain a symbol, quantity, key, model, law, warning code or summary figure.
+
+    Parameters
+    ----------
+    symbol : str
+        For example "epsilon_alpha", "backlash", "gears.center_distance" or "xu-2007".
+    json : bool
+        Write one JSON array to stdout.
+    """
+    symbol = symbol.strip()
+    if not symbol:
+        remedy = "Give a name, for example: tribodyn explain backlash"
+        raise InputError(Problem("there is nothing to explain", "", "", remedy))
+    found = [*_choices(symbol), *_warnings(symbol)]
+    found = found or [*_quantities(symbol), *_keys(symbol), *_figures(symbol)]
+    if not found:
+        raise InputError(_unknown(symbol))
+    if json:
+        say_json(found)
+        return
+    for entry in found:
+        say("\n".join(f"{label + ':':<10} {text}" for label, text in entry.items() if text) + "\n")
+
+
+def _quantities(symbol: str) -> list[dict[str, Any]]:
+    from tribodyn.nomenclature import find
+
+    return [
+        {
+            "quantity": quantity.name,
+            "symbol": quantity.symbol,
+            "meaning": quantity.meaning,
+            "unit": quantity.display_unit,
+            "si": quantity.unit,
+        }
+        for quantity in find(symbol)
+    ]
+
+
+def _keys(symbol: str) -> list[dict[str, Any]]:
+    from tribodyn.study.reference import case_keys
+
+    wanted = symbol.lower()
+    return [
+        {
+            "key": key,
+            "symbol": spec.symbol,
+            "meaning": spec.meaning,
+            "allowed": spec.allowed(),
+            "default": default,
+        }
+        for key, spec, default in case_keys()
+        if wanted in (key, key.rpartition(".")[2])
+    ]
+
+
+def _choices(symbol: str) -> list[dict[str, Any]]:
+    """Models, laws and methods with the papers behind them."""
+    from tribodyn.study.citations import sources_of
+    from tribodyn.study.reference import case_keys
+    from tribodyn.study.words import choice_meanings
+
+    meaning = choice_meanings().get(symbol)
+    if meaning is None:
+        return []
+    keys = [key for key, spec, _ in case_keys() if spec.names and symbol in spec.names()]
+    return [
+        {
+            "choice": symbol,
+            "of": ", ".join(keys),
+            "meaning": meaning,
+            "source": " ".join(sources_of(keys[0].partition(".")[0], symbol)),
+        }
+    ]
+
+
+def _warnings(symbol: str) -> list[dict[str, Any]]:
+    from tribodyn.study.words import warning_meanings
+
+    meaning = warning_meanings().get(symbol.strip("[]"))
+    return [] if meaning is None else [{"warning": symbol, "meaning": meaning}]
+
+
+def _figures(symbol: str) -> list[dict[str, Any]]:
+    from tribodyn.study.summary_names import SUMMARY
+
+    figure = SUMMARY.get(symbol)
+    if figure is None:
+        return []
+    return [
+        {
+            "figure": figure.name,
+            "meaning": figure.meaning,
+            "unit": figure.display_unit,
+            "si": figure.unit,
+        }
+    ]
+
+
+def _unknown(symbol: str) -> Problem:
+    from tribodyn.nomenclature import QUANTITIES
+    from tribodyn.study.reference import case_keys
+    from tribodyn.study.summary_names import SUMMARY
+    from tribodyn.study.words import choice_meanings, warning_meanings
+
+    symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
+    names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]
+    known = dict.fromkeys([*QUANTITIES, *symbols, *SUMMARY, *names])
+    near = difflib.get_close_matches(symbol, known, n=3)
+    remedy = f"Did you mean {' or '.join(near)}?" if near else "See: tribodyn units"
+    return Problem(f'nothing is known of "{symbol}"', remedy=remedy)

@@ -1,0 +1,44 @@
+"""Ctrl-C that is never lost.
+
+Python drops an exception that arises inside a destructor or a callback, and Ctrl-C can arrive
+right there; the program would go on as if nothing had happened. A dropped interruption is asked
+for again a moment later.
+"""
+
+from __future__ import annotations
+
+import _thread
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+__all__ = ["interruptible"]
+
+#: Time to get out of the callback before the interruption is repeated [s].
+_MOMENT = 0.05
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Repeat an interruption that was dropped inside the block.
+
+    Yields
+    ------
+    None
+    """
+    previous = sys.unraisablehook
+
+    def again(dropped: sys.UnraisableHookArgs) -> None:
+        if issubclass(dropped.exc_type, KeyboardInterrupt):
+            timer = threading.Timer(_MOMENT, _thread.interrupt_main)
+            timer.daemon = True
+            timer.start()
+        else:
+            previous(dropped)
+
+    sys.unraisablehook = again
+    try:
+        yield
+    finally:
+        sys.unraisablehook = previous

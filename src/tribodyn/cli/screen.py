@@ -1,0 +1,96 @@
+"""What the user sees: data on stdout, everything else on stderr."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from tribodyn.errors import Problem
+
+__all__ = ["say", "say_json", "show_problems", "show_warnings", "table", "tell"]
+
+
+def say(text: str) -> None:
+    """Write a line of data to stdout.
+
+    Parameters
+    ----------
+    text : str
+        One or more lines.
+    """
+    sys.stdout.write(text + "\n")
+
+
+def say_json(data: Any) -> None:
+    """Write one JSON value to stdout.
+
+    Parameters
+    ----------
+    data : object
+        Mapping or list without NaN.
+    """
+    say(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def tell(text: str) -> None:
+    """Write a line to stderr.
+
+    Parameters
+    ----------
+    text : str
+        One or more lines.
+    """
+    sys.stderr.write(text + "\n")
+
+
+def show_problems(problems: Sequence[Problem]) -> None:
+    """Write problems to stderr, one paragraph each.
+
+    Parameters
+    ----------
+    problems : sequence of Problem
+        What is wrong.
+    """
+    for problem in problems:
+        tell(f"error: {problem}")
+    if len(problems) > 1:
+        tell(f"{len(problems)} faults found.")
+
+
+def show_warnings(warnings: Iterable[tuple[str, str]]) -> None:
+    """Write model warnings to stderr.
+
+    Parameters
+    ----------
+    warnings : iterable of (str, str)
+        Code and message.
+    """
+    for code, message in warnings:
+        tell(f"warning [{code}]: {message}")
+
+
+def table(rows: Sequence[Sequence[str]], *, indent: str = "  ") -> str:
+    """Lay out rows in left-aligned columns.
+
+    Parameters
+    ----------
+    rows : sequence of sequence of str
+        Rows of equal length.
+    indent : str
+        Put before each row.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> print(table([["a", "1 mm"], ["long", "2 mm"]]))
+      a     1 mm
+      long  2 mm
+    """
+    widths = [max((len(row[i]) for row in rows), default=0) for i in range(len(rows[0]))]
+    lines = ("  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) for row in rows)
+    return "\n".join((indent + line).rstrip() for line in lines)

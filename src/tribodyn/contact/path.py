@@ -1,0 +1,286 @@
+"""The path of contact: where on the line of action tooth pairs are, and how they move there.
+
+Positions are called ``path``: the distance from the pinion's base tangent point, whichever gear
+drives. With the pinion driving a contact moves to larger ``path``, with the wheel driving to
+smaller ``path``. Nothing here assumes an order of the points A to E beyond the time order of A
+and E: the pitch point may lie anywhere, and above a contact ratio of two D comes before B.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.contact.kinematics import Kinematics
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.gear import SpurPair
+
+__all__ = ["PathOfContact", "path_of_contact"]
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: Distance over the base pitch, or difference of mesh phases, that counts as rounding.
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class PathOfContact:
+    """Path of contact of a spur pair; made by :func:`path_of_contact`.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The pair in mesh.
+    A : float
+        ``path`` where a tooth pair enters contact [m].
+    B : float
+        ``path`` of a pair when the one before it leaves [m].
+    C : float
+        Pitch point [m]; it may lie anywhere, even outside of the path of contact.
+    D : float
+        ``path`` of a pair when the next one enters [m].
+    E : float
+        ``path`` where a tooth pair leaves contact [m].
+    direction : int
+        Sense in which contacts move: 1 when the pinion drives, -1 when the wheel drives.
+
+    Notes
+    -----
+    Source: ISO 21771, path of contact and its points A to E.
+    """
+
+    pair: SpurPair
+    A: float
+    B: float
+    C: float
+    D: float
+    E: float
+    direction: int
+
+    @property
+    def length(self) -> float:
+        """Length of the path of contact [m]."""
+        return abs(self.E - self.A)
+
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio."""
+        return self.length / self.pair.base_pitch
+
+    @property
+    def pairs(self) -> int:
+        """Largest number of tooth pairs in contact at a time."""
+        return math.ceil(self.contact_ratio - _ROUNDING)
+
+    @cached_property
+    def roll_angles(self) -> dict[str, float]:
+        """Roll angles of the driving gear at A to E [rad]."""
+        length, base = self.pair.line_of_action_length, self.pair.driving.base_radius
+        return {
+            name: (path if self.direction > 0 else length - path) / base
+            for name, path in zip("ABCDE", (self.A, self.B, self.C, self.D, self.E), strict=True)
+        }
+
+    def event_phases(self) -> tuple[float, ...]:
+        """Mesh phases at which the tooth contact changes abruptly.
+
+        Returns
+        -------
+        tuple of float
+            Sorted phases in [0, 1): 0 where a pair enters, the fraction of the contact ratio where
+            a pair leaves, and where a pair passes the pitch point. Phases closer than 1e-12 are
+            one.
+
+        Examples
+        --------
+        >>> from tribodyn.gear import spur_pair
+        >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+        ...                  normal_pressure_angle=math.radians(20.0), pinion_face_width=50e-3)
+        >>> [round(phase, 4) for phase in path_of_contact(pair).event_phases()]
+        [0.0, 0.6052, 0.8268]
+        """
+        ratio = self.contact_ratio
+        pitch_point = self.direction * (self.C - self.A) / self.pair.base_pitch
+        found = [0.0, ratio % 1.0]
+        if 0.0 <= pitch_point < ratio:
+            found.append(pitch_point % 1.0)
+        phases = [0.0]
+        for phase in sorted(found):
+            if phase - phases[-1] > _ROUNDING and 1.0 - phase > _ROUNDING:
+                phases.append(phase)
+        return tuple(phases)
+
+    def pair_paths(self, phase: ArrayLike, side: str = "right") -> tuple[Array, Mask]:
+        """Positions of all tooth pairs at mesh phases.
+
+        Parameters
+        ----------
+        phase : array
+            Mesh phase, shape (n,); zero when a pair enters at A. Only its fraction counts.
+        side : str
+            Which limit is meant at an event: ``"right"`` (after it; the phase is brought to
+            [0, 1), a pair is in contact from A on and no more at E) or ``"left"`` (before it; the
+            phase is brought to (0, 1], a pair is not yet in contact at A and still at E).
+
+        Returns
+        -------
+        tuple of array
+            ``path`` of each pair [m] and whether it is in contact, both of shape (n, pairs). Pair
+            i entered i mesh cycles before the youngest. Positions of pairs out of contact lie
+            beyond E.
+
+        Raises
+        ------
+        InputError
+            If a phase is not finite or the side is unknown.
+        """
+        require_between("phase", phase, -math.inf, math.inf)
+        turned = np.atleast_1d(np.asarray(phase, dtype=float))
+        if side == "right":
+            turned = turned - np.floor(turned)
+        elif side == "left":
+            turned = turned - np.ceil(turned) + 1.0
+        else:
+            raise InputError(
+                Problem(
+                    what=f'side = "{side}"',
+                    where="argument side",
+                    why='an event has two sides: "left" and "right"',
+                    remedy='Write "left" or "right"',
+                )
+            )
+        travelled = turned[:, None] + np.arange(self.pairs)
+        limit = self.contact_ratio + (_ROUNDING if side == "left" else -_ROUNDING)
+        path = self.A + self.direction * travelled * self.pair.base_pitch
+        return path, travelled < limit
+
+    def sliding_direction(self, path: ArrayLike, side: str | None = None) -> Array:
+        """Sign of the sliding speed, one-sided at the pitch point if wanted.
+
+        Parameters
+        ----------
+        path : float or array
+            Positions on the line of action [m], any shape.
+        side : str, optional
+            At the pitch point: ``"left"`` gives the sign just before a contact passes it,
+            ``"right"`` just after, nothing gives zero.
+
+        Returns
+        -------
+        array
+            -1, 0 or 1, same shape: sign of the pinion's less the wheel's surface speed.
+
+        Raises
+        ------
+        InputError
+            If the side is unknown.
+        """
+        offset = np.asarray(path, dtype=float) - self.C
+        sides = {None: 0.0, "left": -1.0, "right": 1.0}
+        if side not in sides:
+            raise InputError(
+                Problem(
+                    what=f'side = "{side}"',
+                    where="argument side",
+                    why='the pitch point has two sides: "left" and "right"',
+                    remedy='Write "left", "right" or leave it out',
+                )
+            )
+        at_pitch_point = np.abs(offset) <= _ROUNDING * self.pair.base_pitch
+        return np.where(at_pitch_point, self.direction * sides[side], np.sign(offset))
+
+    def kinematics(self, path: ArrayLike, pinion_speed: ArrayLike) -> Kinematics:
+        """Curvatures and speeds of the flanks.
+
+        Parameters
+        ----------
+        path : float or array
+            Positions on the line of action [m], any shape. Beyond the base tangent points there is
+            no contact and the radii of curvature are negative: pass contacts only.
+        pinion_speed : float
+            Angular speed of the pinion in its running sense [rad/s], positive whichever drives;
+            broadcast against ``path``.
+
+        Returns
+        -------
+        Kinematics
+            Arrays of the broadcast shape.
+
+        Raises
+        ------
+        InputError
+            If the speed is not positive or a position is not finite.
+
+        Notes
+        -----
+        u_i = omega_i rho_i. The sliding speed is (omega_pinion + omega_wheel) (path - C), the
+        same difference without cancellation. Source: ISO 21771, sliding speed.
+        """
+        require_between("path", path, -math.inf, math.inf, "m")
+        require_positive("pinion_speed", pinion_speed, "rad/s")
+        pinion_radius, speed = np.broadcast_arrays(
+            np.asarray(path, dtype=float), np.asarray(pinion_speed, dtype=float)
+        )
+        length = self.pair.line_of_action_length
+        wheel_radius, wheel_speed = length - pinion_radius, speed / self.pair.ratio
+        direction = self.sliding_direction(pinion_radius)
+        distance = np.abs(pinion_radius - self.C)
+        sliding = direction * distance * (speed + wheel_speed)
+        entrainment = 0.5 * (speed * pinion_radius + wheel_speed * wheel_radius)
+        return Kinematics(
+            pinion_curvature_radius=pinion_radius,
+            wheel_curvature_radius=wheel_radius,
+            equivalent_radius=pinion_radius * wheel_radius / length,
+            pinion_surface_speed=speed * pinion_radius,
+            wheel_surface_speed=wheel_speed * wheel_radius,
+            sliding_speed=sliding,
+            entrainment_speed=entrainment,
+            slide_to_roll_ratio=sliding / entrainment,
+            sliding_direction=direction,
+        )
+
+
+def path_of_contact(pair: SpurPair) -> PathOfContact:
+    """Find the path of contact of a spur pair.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The pair; its driver decides which end of the path is A.
+
+    Returns
+    -------
+    PathOfContact
+
+    Notes
+    -----
+    Source: ISO 21771. A is where the driven gear's tip meets the line of action, E where the
+    driving gear's tip leaves it.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...                  normal_pressure_angle=math.radians(20.0), pinion_face_width=50e-3)
+    >>> contact = path_of_contact(pair)
+    >>> round(contact.roll_angles["C"], 6) == round(math.tan(math.radians(20.0)), 6)
+    True
+    """
+    low, high = pair.path_limits
+    direction = 1 if pair.driver == "pinion" else -1
+    start, end = (low, high) if direction > 0 else (high, low)
+    step = direction * pair.base_pitch
+    return PathOfContact(
+        pair=pair,
+        A=start,
+        B=end - step,
+        C=pair.line_of_action_length / (1.0 + pair.ratio),
+        D=start + step,
+        E=end,
+        direction=direction,
+    )

@@ -1,0 +1,135 @@
+"""Which coordinates a periodic orbit has: all but the free rotation of the whole drive.
+
+With friction the two torques of a gear pair do not balance, the whole drive speeds up or slows
+down, and no periodic orbit exists in the absolute angle. Nothing depends on that angle, so the
+orbit is sought in the remaining coordinates. They are taken orthogonal in the mass metric, where
+the free motion and the rest do not exchange momentum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.march import Compiled
+
+__all__ = ["OrbitCoordinates", "orbit_coordinates"]
+
+Array = NDArray[np.float64]
+
+_RANK = 1e-9
+
+
+@dataclass(frozen=True)
+class OrbitCoordinates:
+    """Change between a state and the reduced vector in which an orbit closes.
+
+    Parameters
+    ----------
+    lower : (n, n) array
+        Cholesky factor of the mass matrix.
+    elastic : (n, e) array
+        Orthonormal basis, in the mass metric, of positions that matter.
+    moving : (n, v) array
+        The same for velocities.
+    free : (n, r) array
+        Free motions: neither position nor velocity matters.
+    rate : float
+        Weight of positions against velocities [rad/s].
+    """
+
+    lower: Array
+    elastic: Array
+    moving: Array
+    free: Array
+    rate: float
+
+    def reduce(self, state: Array) -> Array:
+        """State (..., 2 n) to reduced vector (..., e + v).
+
+        Parameters
+        ----------
+        state : (..., 2 n) array
+
+        Returns
+        -------
+        (..., e + v) array
+        """
+        size = self.lower.shape[0]
+        q, v = state[..., :size] @ self.lower, state[..., size:] @ self.lower
+        return np.concatenate((self.rate * (q @ self.elastic), v @ self.moving), axis=-1)
+
+    def expand(self, reduced: Array) -> Array:
+        """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest.
+
+        Parameters
+        ----------
+        reduced : (..., e + v) array
+
+        Returns
+        -------
+        (..., 2 n) array
+        """
+        inverse = np.linalg.inv(self.lower)
+        count = self.elastic.shape[1]
+        q = reduced[..., :count] @ self.elastic.T / self.rate
+        v = reduced[..., count:] @ self.moving.T
+        return np.concatenate((q @ inverse, v @ inverse), axis=-1)
+
+    def free_velocity(self, state: Array) -> Array:
+        """Velocity of the free motions, (..., r), in the mass metric.
+
+        Parameters
+        ----------
+        state : (..., 2 n) array
+
+        Returns
+        -------
+        (..., r) array
+        """
+        size = self.lower.shape[0]
+        return np.asarray(state[..., size:] @ self.lower @ self.free)
+
+
+def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:
+    """Find the coordinates that matter.
+
+    Parameters
+    ----------
+    compiled : Compiled
+    mesh_frequency : float
+        Mesh frequency [Hz].
+
+    Returns
+    -------
+    OrbitCoordinates
+    """
+    system, nodes = compiled.system, compiled.nodes
+    lower = np.linalg.cholesky(np.asarray(system.mass))
+    inverse = np.linalg.inv(lower)
+    size = system.size
+    directions = [part.reshape(-1, size) for part in (nodes.direction, nodes.direction_slope)]
+    used = np.unique(np.vstack(directions), axis=0) @ inverse.T
+    spring = inverse @ np.asarray(system.stiffness) @ inverse.T
+    damper = inverse @ np.asarray(system.damping) @ inverse.T
+    elastic = _row_space([spring, used])
+    moving = _row_space([spring, used, damper])
+    free = _complement(moving)
+    return OrbitCoordinates(lower, elastic, moving, free, 2.0 * np.pi * mesh_frequency)
+
+
+def _complement(basis: Array) -> Array:
+    """Orthonormal basis of what is orthogonal to the columns of an orthonormal basis."""
+    full, _ = np.linalg.qr(basis, mode="complete") if basis.shape[1] else (np.eye(len(basis)), None)
+    return np.ascontiguousarray(full[:, basis.shape[1] :])
+
+
+def _row_space(matrices: list[Array]) -> Array:
+    scaled = [matrix / norm for matrix in matrices if (norm := np.linalg.norm(matrix)) > 0.0]
+    size = matrices[0].shape[1]
+    if not scaled:
+        return np.zeros((size, 0))
+    _, values, rows = np.linalg.svd(np.vstack(scaled), full_matrices=False)
+    return np.ascontiguousarray(rows[values > _RANK * values[0]].T)

@@ -1,0 +1,173 @@
+"""Splitting a step where a contact leaves its side of the dead zone.
+
+The contact force has a kink there, and with damping a jump. A Runge-Kutta step across it loses
+its order, so the lane concerned repeats the step in parts, each with one force law, from
+crossing to crossing. Rows are interpolated quadratically within the step.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.kernel import I64, INNER, compression, step
+from tribodyn.dynamics.lanes import first_lane
+
+__all__ = ["MAX_SPLITS", "find_sides", "split_step"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+#: A step is split at most this often. More means a grazing contact, whose excursions within one
+#: step are then too small to matter; the step is taken as it stands.
+MAX_SPLITS = 16
+
+
+@nb.njit(**INNER)
+def find_sides(code: Index, reads: Index, rows: Array, base: int, buffer: int, w: Array) -> None:
+    """Set the side of every contact of one lane from its compression."""
+    one = (0.0,)
+    side = 8 * code[0] + code[1]
+    at, read, row = I64(4), buffer * code[3], base
+    for j in range(code[1]):
+        w[side + j] = 1.0
+        if code[at + 2] != 0:
+            d = first_lane(compression(one, code, reads, rows, at, read, row, w))
+            gap = rows[row + 4]
+            w[side + j] = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
+        row += 5 + code[at] + code[at + 1]
+        read += code[at] + code[at + 1]
+        at += 4
+
+
+@nb.njit(**INNER)
+def _place(
+    code: Index, reads: Index, rows: Array, base: int, buffer: int, w: Array, contact: int
+) -> tuple[float, float]:
+    """Compression and gap of one contact."""
+    at, read, row = I64(4), buffer * code[3], base
+    for _ in range(contact):
+        row += 5 + code[at] + code[at + 1]
+        read += code[at] + code[at + 1]
+        at += 4
+    d = first_lane(compression((0.0,), code, reads, rows, at, read, row, w))
+    return d, rows[row + 4]
+
+
+@nb.njit(**INNER)
+def _clearance(d: float, gap: float, side: float, leaving: float) -> float:
+    """Distance to the boundary of a side; in the gap, to the boundary in direction ``leaving``."""
+    return side * d - gap if side != 0.0 else gap - leaving * d
+
+
+@nb.njit(**INNER)
+def _row_within(code: Index, rows: Array, base: int, tau: float, part: Array, node: int) -> None:
+    """Interpolate the three rows of a step quadratically at the fraction ``tau``."""
+    columns = code[2]
+    left, middle = (1.0 - tau) * (1.0 - 2.0 * tau), 4.0 * tau * (1.0 - tau)
+    right = tau * (2.0 * tau - 1.0)
+    for column in range(columns):
+        part[node * columns + column] = (
+            left * rows[base + column]
+            + middle * rows[base + columns + column]
+            + right * rows[base + 2 * columns + column]
+        )
+
+
+@nb.njit(**INNER)
+def _first_beyond(
+    code: Index, reads: Index, part: Array, w: Array, known: int
+) -> tuple[Any, float, float, float]:
+    """Contact that seems to have left its side first: its number, direction, clearances.
+
+    Compares the state in buffer 0 at the left row of ``part`` with that in buffer 2 at the right
+    row; the contact ``known`` is passed over. The number is -1 if all are on their sides.
+    """
+    found: Any = I64(-1)
+    direction, g_start, g_end, least = 0.0, 0.0, 0.0, 2.0
+    for j in range(code[1]):
+        if j == known or code[4 + 4 * j + 2] == 0:
+            continue
+        side = w[8 * code[0] + code[1] + j]
+        d, gap = _place(code, reads, part, 2 * code[2], I64(2), w, j)
+        leaving = 1.0 if d > 0.0 else -1.0
+        after = _clearance(d, gap, side, leaving)
+        if after < 0.0:
+            d, gap = _place(code, reads, part, I64(0), I64(0), w, j)
+            before = _clearance(d, gap, side, leaving)
+            at = before / (before - after) if before > 0.0 else 0.0
+            if at < least:
+                found, direction, g_start, g_end, least = j, leaving, before, after, at
+    return found, direction, g_start, g_end
+
+
+@nb.njit(**INNER)
+def split_step(
+    code: Index, reads: Index, rows: Array, base: int, width: float, part: Array, w: Array
+) -> int:
+    """March one lane by one step in parts; returns the number of crossings.
+
+    The state in buffer 0 and the sides are those at the left end; the new state is left in
+    buffer 2, and the sides are updated. Crossings are found by the Illinois method on the step
+    itself, so that they are as accurate as the step.
+    """
+    n, right, sides = code[0], 2 * code[2], 8 * code[0] + code[1]
+    start, target, contact, splits, probe = 0.0, 1.0, I64(-1), 0, 0
+    low = high = g_low = g_high = leaving = scale = 0.0
+    while True:
+        for node in range(3):
+            _row_within(code, rows, base, start + 0.5 * node * (target - start), part, I64(node))
+        w[9 * n + 2 * code[1] + 1] = width * (target - start)
+        step((0.0,), code, reads, part, I64(0), w)
+        if contact >= 0:
+            d, gap = _place(code, reads, part, right, I64(2), w, contact)
+            g = _clearance(d, gap, w[sides + contact], leaving)
+            done = target == start or abs(g) <= 1e-14 * scale or abs(high - low) < 1e-15
+            if probe > 0 and not done:
+                # A contact just made starts on its boundary, to rounding: look for a point inside.
+                if g > 0.0:
+                    low, g_low, probe = target, g, 0
+                elif probe == 7:
+                    target = start
+                    continue
+                else:
+                    probe += 1
+                    target = start + 0.125 * probe * (1.0 - start)
+                    continue
+            elif not done:
+                if g * g_high < 0.0:
+                    low, g_low = high, g_high
+                else:
+                    g_low *= 0.5
+                high, g_high = target, g
+            if not done:
+                target = (low * g_high - high * g_low) / (g_high - g_low)
+                continue
+        other, direction, before, after = _first_beyond(code, reads, part, w, contact)
+        if other >= 0 and splits < MAX_SPLITS and not (contact >= 0 and target == start):
+            # Another contact crossed, earlier than the one just found if there was one.
+            contact, leaving, scale = other, direction, abs(before - after)
+            low, g_low, high, g_high = start, before, target, after
+            if before > 0.0:
+                probe = 0
+                target = (low * g_high - high * g_low) / (g_high - g_low)
+            else:
+                probe = 1
+                target = start + 0.125 * (1.0 - start)
+            continue
+        if contact < 0:
+            break
+        for i in range(2 * n):
+            w[i] = w[4 * n + i]
+        if w[sides + contact] != 0.0:
+            w[sides + contact] = 0.0
+        else:
+            w[sides + contact] = leaving
+        start, target, contact, probe = target, 1.0, I64(-1), 0
+        splits += 1
+    if splits == MAX_SPLITS:
+        find_sides(code, reads, part, right, I64(2), w)
+    return splits

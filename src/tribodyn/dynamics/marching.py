@@ -1,0 +1,217 @@
+"""Marching a block of lanes over whole mesh cycles: steps, crossings, record and statistics."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.crossing import find_sides, split_step
+from tribodyn.dynamics.kernel import I64, INNER, JIT, left_side, step
+from tribodyn.dynamics.lanes import address
+from tribodyn.dynamics.moments import gather
+
+__all__ = ["march_block"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+#: Every file whose code ends up in the compiled kernel.
+_SOURCES = ("lanes", "kernel", "crossing", "moments", "marching")
+
+
+@nb.njit(**INNER)
+def _take(lane: int, width: int, slots: int, w: Array, single: Array) -> None:
+    for slot in range(slots):
+        single[slot] = w[slot * width + lane]
+
+
+@nb.njit(**INNER)
+def _put(lane: int, width: int, first: int, last: int, w: Array, single: Array) -> None:
+    for slot in range(first, last):
+        w[slot * width + lane] = single[slot]
+
+
+@nb.njit(**INNER)
+def _start_sides(
+    width: int, code: Index, reads: Index, rows: Array, base: int, w: Array, single: Array
+) -> None:
+    side, slots = 8 * code[0] + code[1], 9 * code[0] + 2 * code[1] + 5
+    for lane in range(width):
+        _take(lane, width, slots, w, single)
+        find_sides(code, reads, rows, base, I64(0), single)
+        _put(lane, width, side, side + code[1], w, single)
+
+
+@nb.njit(**INNER)
+def _repair(
+    width: int,
+    code: Index,
+    reads: Index,
+    rows: Array,
+    base: int,
+    w: Array,
+    single: Array,
+    part: Array,
+) -> None:
+    """Repeat the step in parts for every lane that crossed a boundary."""
+    n, side = code[0], 8 * code[0] + code[1]
+    h = 9 * n + 2 * code[1] + 1
+    for lane in range(width):
+        _take(lane, width, h + 4, w, single)
+        if left_side((0.0,), code, reads, rows, base + 2 * code[2], single):
+            split_step(code, reads, rows, base, w[h * width + lane], part, single)
+            _put(lane, width, 4 * n, 6 * n, w, single)
+            _put(lane, width, side, side + code[1], w, single)
+
+
+@nb.njit(**INNER)
+def _set_up(lanes: Any, code: Index, period: Array, load: Array, state: Array, w: Array) -> None:
+    n, contacts, width = code[0], code[1], len(lanes)
+    steady = 8 * n + 2 * contacts
+    for lane in range(width):
+        for i in range(2 * n):
+            w[i * width + lane] = state[lane, i]
+        for i in range(n):
+            w[(steady + i) * width + lane] = load[lane, i]
+        for j in range(contacts):
+            w[(8 * n + contacts + j) * width + lane] = 1.0
+        w[(steady + n) * width + lane] = 1.0
+        w[(steady + n + 2) * width + lane] = 1.0 / period[lane]
+
+
+def _digest() -> str:
+    """Hash of the sources of all kernels.
+
+    Numba looks at the file of the cached function alone, and would load a stale one after a
+    change in a file that it calls. As a closure variable the hash is part of the cache key.
+    """
+    folder = Path(__file__).parent
+    content = [(folder / f"{name}.py").read_bytes() for name in _SOURCES]
+    return hashlib.sha256(b"".join(content)).hexdigest()
+
+
+def _build(digest: str) -> Any:
+    @nb.njit(cache=True, **JIT)
+    def march_block(
+        lanes: Any,
+        code: Index,
+        reads: Index,
+        rows: Array,
+        share: Array,
+        restart: Any,
+        work: Array,
+        period: Array,
+        load: Array,
+        state: Array,
+        cycles: int,
+        record: Array,
+        outputs: Array,
+        waves: Array,
+        harmonics: int,
+        moments: Any,
+    ) -> int:
+        """March every lane by ``cycles`` mesh cycles.
+
+        Parameters
+        ----------
+        lanes : tuple of float
+            As long as there are lanes.
+        code, reads, rows, share, restart
+            The program; ``share`` is its ``width``.
+        work : array of zeros
+            Room for the slots of all lanes, the slots of one lane and three rows. It comes from
+            outside because its owner has to outlive the addresses.
+        period : (lanes,) array
+            Mesh period [s].
+        load : (lanes, n) array
+            Constant acceleration.
+        state : (lanes, 2 n) array
+            Position and velocity; overwritten.
+        cycles : int
+            Mesh cycles.
+        record : (points, 2 n, lanes) array
+            Receives the state before every step and at the end; empty to record nothing.
+        outputs : (m, 2 n) array
+            Linear outputs of the state for the statistics.
+        waves : (steps * 3 * 2 * harmonics,) array
+            Cosine and sine of every harmonic at the nodes.
+        harmonics : int
+            Number of harmonics.
+        moments : array or None
+            Receives the statistics, see :mod:`tribodyn.dynamics.moments`; None to gather nothing,
+            which also spares the compiler that code.
+
+        Returns
+        -------
+        int
+            -1 when done, else the step, counted from the start, after which a state is not finite.
+        """
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        n, columns, width = code[0], code[2], len(lanes)
+        slots = 9 * n + 2 * code[1] + 5
+        h = 9 * n + 2 * code[1] + 1
+        single, part = address(work[slots * width :]), address(work[slots * (width + 1) :])
+        w, code, reads, rows = address(work), address(code), address(reads), address(rows)
+        _set_up(lanes, code, period, load, state, w)
+        switching = False
+        for j in range(code[1]):
+            switching = switching or code[4 + 4 * j + 2] != 0
+        keep = record.shape[0] > 0
+        point = 0
+        for _cycle in range(cycles):
+            for r in range(share.size):
+                base = 3 * columns * r
+                for lane in range(width):
+                    w[h * width + lane] = period[lane] * share[r]
+                if switching and restart[r]:
+                    _start_sides(width, code, reads, rows, base, w, single)
+                if keep:
+                    for i in range(2 * n):
+                        for lane in range(width):
+                            record[point, i, lane] = w[i * width + lane]
+                step(lanes, code, reads, rows, base, w)
+                if switching and left_side(lanes, code, reads, rows, base + 2 * columns, w):
+                    _repair(width, code, reads, rows, base, w, single, part)
+                if moments is not None:
+                    for lane in range(width):
+                        w[(h + 3) * width + lane] = 1.0 / w[h * width + lane]
+                    gather(
+                        lanes,
+                        code,
+                        reads,
+                        rows,
+                        base,
+                        switching,
+                        w,
+                        single,
+                        outputs,
+                        share[r] / cycles,
+                        waves,
+                        6 * harmonics * r,
+                        harmonics,
+                        moments,
+                    )
+                for item in range(2 * n * width):
+                    w[item] = w[4 * n * width + item]
+                point += 1
+            for item in range(2 * n * width):
+                if not np.isfinite(w[item]):
+                    return point
+        for lane in range(width):
+            for i in range(2 * n):
+                state[lane, i] = w[i * width + lane]
+        if keep:
+            for i in range(2 * n):
+                for lane in range(width):
+                    record[point, i, lane] = w[i * width + lane]
+        return -1
+
+    return march_block
+
+
+march_block = _build(_digest())

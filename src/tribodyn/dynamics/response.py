@@ -1,0 +1,290 @@
+"""The response: states and contact forces over a periodic orbit or over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.march import Compiled
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["FineSamples", "Response", "build_response"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FineSamples:
+    """Both ends and the middle of every step, with weights of Simpson's rule.
+
+    At events the left and the right value are separate samples, so that means, mean squares and
+    harmonics keep the fourth order of the integrator.
+
+    Parameters
+    ----------
+    phase, time, weight : (3 * steps,) array
+        Mesh phase counted from the start [cycles], time [s], weight (sum 1).
+    position, velocity, acceleration : (3 * steps, n) array
+        Coordinates and their derivatives [m or rad, ...].
+    deflection, contact_force : (3 * steps, contacts) array
+        Compression [m] and force [N] of the contacts.
+    """
+
+    phase: Array
+    time: Array
+    weight: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    deflection: Array
+    contact_force: Array
+
+    def mean(self, signal: Array) -> Array:
+        """Mean over time of a signal of shape (3 * steps, ...).
+
+        Parameters
+        ----------
+        signal : array
+            Any signal on the samples.
+
+        Returns
+        -------
+        array
+            In the unit of the signal.
+        """
+        return np.asarray(np.tensordot(self.weight, signal, axes=(0, 0)))
+
+
+@dataclass(frozen=True)
+class Response:
+    """Motion of a system over one periodic orbit or over time.
+
+    Values are those at the left end of every step; at an event they are the values after it.
+
+    Parameters
+    ----------
+    time : (s,) array
+        Time [s].
+    phase : (s,) array
+        Mesh phase in [0, 1).
+    position, velocity, acceleration : (s, n) array
+        Coordinates and their derivatives [m or rad, ...].
+    deflection : (s, contacts) array
+        Compression of each contact [m].
+    contact_force : (s, contacts) array
+        Force of each contact [N].
+    names : tuple of str
+        Names of the coordinates.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    periods : int
+        Mesh cycles in the record.
+    fine : FineSamples
+        Samples for means and harmonics.
+    step_number : float
+        ``omega_max * dt`` of the integration [-].
+    error : float
+        Certified distance to the exact periodic orbit of the stepped system over its size [-];
+        NaN for a transient.
+    converged : bool
+        Whether the orbit meets its tolerance; False for a transient.
+    floquet_multipliers : (m,) array
+        Multipliers of the orbit; empty for a transient.
+    cycles_used : int
+        Mesh cycles that were marched to find the orbit.
+    extra_force : (n,) array
+        Generalized force that the torque balance added [N or N*m].
+    """
+
+    time: Array
+    phase: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    deflection: Array
+    contact_force: Array
+    names: tuple[str, ...]
+    mesh_frequency: float
+    periods: int
+    fine: FineSamples = field(repr=False)
+    step_number: float
+    error: float = float("nan")
+    converged: bool = False
+    floquet_multipliers: NDArray[np.complex128] = field(
+        default_factory=lambda: np.zeros(0, dtype=complex)
+    )
+    cycles_used: int = 0
+    extra_force: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def period(self) -> float:
+        """Length of the record [s]."""
+        return self.periods / self.mesh_frequency
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle; False for a transient."""
+        multipliers = np.abs(self.floquet_multipliers)
+        return bool(multipliers.size) and bool(multipliers.max() < 1.0)
+
+    def index(self, name: str) -> int:
+        """Column of the coordinate called ``name``.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        int
+        """
+        return self.names.index(name)
+
+    def __repr__(self) -> str:
+        """One line."""
+        kind = "orbit" if self.floquet_multipliers.size else "transient"
+        state = f", error {self.error:.1e}" if kind == "orbit" else ""
+        return (
+            f"Response({kind} of {self.periods} mesh cycle{'s' if self.periods != 1 else ''} at "
+            f"{self.mesh_frequency:.6g} Hz, {self.position.shape[1]} coordinates, "
+            f"{self.time.size} steps{state})"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the series as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``time``, ``coordinate`` and ``contact``.
+        """
+        import xarray
+
+        coordinate, contact = ("time", "coordinate"), ("time", "contact")
+        data: dict[str, Any] = {
+            "position": (coordinate, self.position, {"units": "m or rad"}),
+            "velocity": (coordinate, self.velocity, {"units": "m/s or rad/s"}),
+            "acceleration": (coordinate, self.acceleration, {"units": "m/s^2 or rad/s^2"}),
+            "deflection": (contact, self.deflection, {"units": "m"}),
+            "contact_force": (contact, self.contact_force, {"units": "N"}),
+        }
+        coords: dict[str, Any] = {
+            "time": ("time", self.time, {"units": "s"}),
+            "phase": ("time", self.phase, {"units": "1"}),
+            "coordinate": list(self.names),
+        }
+        attributes = {
+            "mesh_frequency": self.mesh_frequency,
+            "periods": self.periods,
+            "steady_state_error": self.error,
+            "omega_max_dt": self.step_number,
+        }
+        return xarray.Dataset(data, coords, attributes)
+
+
+def build_response(
+    compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, **facts: Any
+) -> Response:
+    """Evaluate contact forces and accelerations along recorded states.
+
+    Parameters
+    ----------
+    compiled : Compiled
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    states : (cycles * steps + 1, 2 n) array
+        Position and velocity at every step and at the end.
+    extra_force : (n,) array
+        Constant generalized force on top of the system's [N or N*m].
+    **facts
+        Further fields of :class:`Response`.
+
+    Returns
+    -------
+    Response
+    """
+    nodes, steps = compiled.nodes, compiled.grid.steps
+    cycles = (states.shape[0] - 1) // steps
+    size = compiled.system.size
+    fine = _fine_samples(compiled, mesh_frequency, states, extra_force)
+
+    def left(values: Array) -> Array:
+        return values.reshape(cycles * steps, 3, values.shape[-1])[:, 0]
+
+    return Response(
+        time=fine.time.reshape(-1, 3)[:, 0],
+        phase=np.tile(nodes.phase[:, 0], cycles),
+        position=states[:-1, :size].copy(),
+        velocity=states[:-1, size:].copy(),
+        acceleration=left(fine.acceleration),
+        deflection=left(fine.deflection),
+        contact_force=left(fine.contact_force),
+        names=tuple(compiled.system.names),
+        mesh_frequency=mesh_frequency,
+        periods=cycles,
+        fine=fine,
+        step_number=compiled.step_number,
+        extra_force=extra_force,
+        **facts,
+    )
+
+
+def _fine_samples(
+    compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array
+) -> FineSamples:
+    nodes, system, grid = compiled.nodes, compiled.system, compiled.grid
+    size, cycles = system.size, (states.shape[0] - 1) // grid.steps
+    shape = (cycles, grid.steps, 3, size)
+    q, v = (item.reshape(shape) for item in _hermite(states, size, grid.width, mesh_frequency))
+    d = np.einsum("rsji,crsi->crsj", nodes.direction, q) - nodes.error
+    rate = np.einsum("rsji,crsi->crsj", nodes.direction, v)
+    rate += mesh_frequency * np.einsum("rsji,crsi->crsj", nodes.direction_slope, q)
+    rate -= mesh_frequency * nodes.error_slope
+    force = _contact_force(compiled, d, rate)
+    total = nodes.force + extra_force - q @ np.asarray(system.stiffness).T
+    total = total - v @ np.asarray(system.damping).T
+    total = total - np.einsum("rsji,crsj->crsi", nodes.force_direction, force)
+    acceleration = total @ np.linalg.inv(np.asarray(system.mass)).T
+    phase = np.arange(cycles)[:, None, None] + nodes.phase
+    weight = np.broadcast_to(nodes.weight / cycles, phase.shape)
+
+    def flat(values: Array) -> Array:
+        return values.reshape(3 * cycles * grid.steps, values.shape[-1])
+
+    return FineSamples(
+        phase=phase.reshape(-1),
+        time=phase.reshape(-1) / mesh_frequency,
+        weight=weight.reshape(-1),
+        position=flat(q),
+        velocity=flat(v),
+        acceleration=flat(acceleration),
+        deflection=flat(d),
+        contact_force=flat(force),
+    )
+
+
+def _hermite(states: Array, size: int, width: Array, mesh_frequency: float) -> tuple[Array, Array]:
+    """States at both ends and in the middle of every step, from the cubic Hermite interpolant."""
+    cycles = (states.shape[0] - 1) // width.size
+    h = np.tile(width, cycles)[:, None] / mesh_frequency
+    q0, v0 = states[:-1, :size], states[:-1, size:]
+    q1, v1 = states[1:, :size], states[1:, size:]
+    q = np.stack((q0, 0.5 * (q0 + q1) + 0.125 * h * (v0 - v1), q1), axis=1)
+    v = np.stack((v0, 1.5 * (q1 - q0) / h - 0.25 * (v0 + v1), v1), axis=1)
+    return q, v
+
+
+def _contact_force(compiled: Compiled, d: Array, rate: Array) -> Array:
+    nodes = compiled.nodes
+    gap = np.broadcast_to(nodes.gap, d.shape)
+    dead = np.any(nodes.gap > 0.0, axis=(0, 1))
+    side = np.where(dead, np.where(d > gap, 1.0, np.where(d < -gap, -1.0, 0.0)), 1.0)
+    free = np.array([contact.damping_in_gap for contact in compiled.system.contacts])
+    damped = (side != 0.0) | free if free.size else side != 0.0
+    spring = np.abs(side) * nodes.stiffness * (d - side * gap)
+    return np.asarray(spring + damped * nodes.damping * rate)

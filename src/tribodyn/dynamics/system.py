@@ -1,0 +1,208 @@
+"""A lumped structure and its contacts: the data of one kernel, whatever the machine.
+
+``M q'' + C q' + K q = f - sum_j [h_j(phi) + s_j(phi)] N_j`` with
+``N_j = k_j(phi) g(delta_j) + c_j(phi) delta_j'`` while in contact, ``delta_j = h_j(phi).q -
+e_j(phi)``, ``g`` a dead zone of half width ``gap``, ``phi`` the mesh phase, ``h`` the direction
+of the line of action in generalized coordinates and ``s`` the direction of friction, which
+already carries the sign of sliding, the friction coefficients and the load shares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import InputError, Problem
+
+__all__ = ["Contact", "Entry", "System"]
+
+#: A constant, or a vectorized function of the mesh phase in [0, 1).
+Entry = float | ArrayLike | Callable[[NDArray[np.float64]], Any]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One contact of a structure: direction, force law and friction over the mesh phase.
+
+    Each entry is a constant or a vectorized function of the mesh phase in [0, 1). A function for
+    ``direction`` or ``friction`` takes phases of shape (p,) and returns (p, n).
+
+    Parameters
+    ----------
+    direction : (n,) array or function
+        Derivative of the contact's compression with respect to the coordinates [1 or m].
+    stiffness : float or function
+        Contact stiffness [N/m].
+    damping : float or function
+        Contact damping [N*s/m], acting while in contact.
+    error : float or function
+        Displacement error taken off the compression [m].
+    gap : float or function
+        Half of the dead zone [m]. Zero makes the contact linear, without separation.
+    friction : (n,) array or function, optional
+        Generalized friction force per unit contact force [1 or m].
+    events : tuple of float
+        Mesh phases at which an entry jumps. They become grid points, and values there are taken
+        from the left and from the right separately.
+    damping_in_gap : bool
+        Keep the damping in free flight. Unphysical; for comparison with published models.
+
+    Raises
+    ------
+    InputError
+        If an event lies outside [0, 1).
+
+    Examples
+    --------
+    >>> Contact(direction=[1.0], stiffness=lambda phase: 1.0 + 0.2 * np.cos(2 * np.pi * phase))
+    Contact(stiffness=function, gap=0.0, events=(0.0,))
+    """
+
+    direction: Entry
+    stiffness: Entry
+    damping: Entry = 0.0
+    error: Entry = 0.0
+    gap: Entry = 0.0
+    friction: Entry | None = None
+    events: tuple[float, ...] = (0.0,)
+    damping_in_gap: bool = False
+
+    def __post_init__(self) -> None:
+        events = tuple(float(event) for event in self.events)
+        bad = [event for event in events if not 0.0 <= event < 1.0]
+        if bad:
+            raise InputError(
+                Problem(
+                    what=f"events holds {bad[0]:g}",
+                    where="Contact.events",
+                    why="Events are mesh phases and lie in [0, 1)",
+                    remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
+                )
+            )
+        object.__setattr__(self, "events", events)
+
+    def __repr__(self) -> str:
+        """One line."""
+        stiffness = "function" if callable(self.stiffness) else f"{self.stiffness}"
+        gap = "function" if callable(self.gap) else f"{self.gap}"
+        return f"Contact(stiffness={stiffness}, gap={gap}, events={self.events})"
+
+
+def _matrix(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    matrix = np.array(value, dtype=float, ndmin=2)
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
+        raise InputError(
+            Problem(
+                what=f"{name} has the shape {matrix.shape}",
+                where=f"System.{name}",
+                why="It must be a square (n, n) matrix",
+            )
+        )
+    if not np.all(np.isfinite(matrix)):
+        raise InputError(Problem(what=f"{name} holds NaN or infinity", where=f"System.{name}"))
+    return matrix
+
+
+@dataclass(frozen=True)
+class System:
+    """A lumped structure with its contacts.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (n, n) array
+        Structural matrices without the contacts [kg or kg*m^2, N*s/m, N/m, ...].
+    force : (n,) array or function
+        External generalized force [N or N*m]; a function returns (p, n).
+    contacts : sequence of Contact
+        Any number of contacts.
+    names : sequence of str, optional
+        Names of the coordinates; ``q0, q1, ...`` by default.
+    balance : (n,) array, optional
+        Direction of a torque whose size is found so that the free rotation of the whole drive
+        keeps its mean speed [N*m per unit]. Without it every force is held as given.
+
+    Raises
+    ------
+    InputError
+        If shapes disagree, a value is not finite or the mass matrix is singular.
+
+    Examples
+    --------
+    >>> System(mass=[[1.0]], damping=[[0.1]], stiffness=[[0.0]], force=[0.5],
+    ...        contacts=[Contact(direction=[1.0], stiffness=1.0, gap=1.0)])
+    System(1 coordinates, 1 contact)
+    """
+
+    mass: ArrayLike
+    damping: ArrayLike
+    stiffness: ArrayLike
+    force: Entry
+    contacts: Sequence[Contact] = ()
+    names: Sequence[str] = ()
+    balance: ArrayLike | None = None
+    _checked: bool = field(default=False, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        matrices = {name: _matrix(name, getattr(self, name)) for name in _MATRICES}
+        size = matrices["mass"].shape[0]
+        for name, matrix in matrices.items():
+            if matrix.shape != (size, size):
+                raise InputError(
+                    Problem(
+                        what=f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
+                        where=f"System.{name}",
+                        why="All three matrices belong to the same coordinates",
+                    )
+                )
+            object.__setattr__(self, name, matrix)
+        _refuse_singular(matrices["mass"])
+        contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
+        object.__setattr__(self, "contacts", tuple(contacts))
+        names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
+        if len(names) != size:
+            raise InputError(
+                Problem(what=f"{len(names)} names for {size} coordinates", where="System.names")
+            )
+        object.__setattr__(self, "names", names)
+        if self.balance is not None:
+            balance = np.asarray(self.balance, dtype=float)
+            if balance.shape != (size,):
+                raise InputError(
+                    Problem(
+                        what=f"balance has the shape {balance.shape}, not ({size},)",
+                        where="System.balance",
+                    )
+                )
+            object.__setattr__(self, "balance", balance)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(np.asarray(self.mass).shape[0])
+
+    def __repr__(self) -> str:
+        """One line."""
+        count = len(self.contacts)
+        return f"System({self.size} coordinates, {count} contact{'s' if count != 1 else ''})"
+
+
+_MATRICES = ("mass", "damping", "stiffness")
+
+
+def _refuse_singular(mass: NDArray[np.float64]) -> None:
+    scale = np.sqrt(np.abs(np.diag(mass)))
+    if np.any(scale == 0.0) or np.linalg.cond(mass / np.outer(scale, scale)) > 1e12:
+        empty = np.flatnonzero(scale == 0.0)
+        detail = f"coordinate {empty[0]} has no inertia" if empty.size else "it is singular"
+        raise InputError(
+            Problem(
+                what=f"the mass matrix cannot be inverted: {detail}",
+                where="System.mass",
+                why="Every coordinate needs an inertia of its own",
+                remedy="Remove the coordinate, or give it a mass or moment of inertia",
+            )
+        )

@@ -1,0 +1,117 @@
+"""Central film of a line contact in all regimes: the formula of Moes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.ehl.groups import line_contact_groups
+from tribodyn.ehl.regimes import (
+    elastic_isoviscous,
+    elastic_piezoviscous,
+    rigid_isoviscous,
+    rigid_piezoviscous,
+)
+from tribodyn.errors import require_positive
+
+__all__ = ["moes_central", "moes_dimensionless_central"]
+
+
+def moes_dimensionless_central(load: ArrayLike, material: ArrayLike) -> NDArray[np.float64]:
+    """Central film in the numbers of Moes, joining the four asymptotes.
+
+    ``H = [(RI^(7/3) + EI^(7/3))^(3s/7) + (RP^(-7/2) + EP^(-7/2))^(-2s/7)]^(1/s)`` with
+    ``s = (7 + 8 exp(-2 EI/RI))/5``.
+
+    Parameters
+    ----------
+    load : float or array [-]
+        Load number M.
+    material : float or array [-]
+        Material number L.
+
+    Returns
+    -------
+    float or array
+        ``H_Moes = (h/R) (2 U)^(-1/2)``, of the common shape of the arguments.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite and positive.
+
+    Valid in all four regimes, for an incompressible oil. Source: Moes (1965, 2000).
+
+    Examples
+    --------
+    >>> round(float(moes_dimensionless_central(5.0, 5.0)), 3)
+    4.105
+    """
+    require_positive("load", load)
+    require_positive("material", material)
+    loads, materials = np.asarray(load, dtype=float), np.asarray(material, dtype=float)
+    rigid, elastic = rigid_isoviscous(loads), elastic_isoviscous(loads)
+    rigid_thick = rigid_piezoviscous(materials)
+    elastic_thick = elastic_piezoviscous(loads, materials)
+    s = (7.0 + 8.0 * np.exp(-2.0 * elastic / rigid)) / 5.0
+    isoviscous = (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 / 7)
+    piezoviscous = (rigid_thick**-3.5 + elastic_thick**-3.5) ** (-2 / 7)
+    return np.asarray((isoviscous**s + piezoviscous**s) ** (1.0 / s))[()]
+
+
+def moes_central(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> NDArray[np.float64]:
+    """Central film: see :func:`moes_dimensionless_central`.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load per face width.
+    equivalent_radius : float or array [m]
+        Reduced radius of curvature.
+    entrainment_speed : float or array [m/s]
+        HALF the sum of the surface speeds.
+    dynamic_viscosity : float or array [Pa*s]
+        Viscosity at ambient pressure.
+    pressure_viscosity_coefficient : float or array [1/Pa]
+        Slope of ln(viscosity) over pressure.
+    effective_modulus : float or array [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+
+    Returns
+    -------
+    float or array [m]
+        Film thickness, of the common shape of the arguments.
+
+    Raises
+    ------
+    InputError
+        If any value is not finite and positive.
+
+    Valid in all regimes; incompressible, hence 12 to 16 % above the solved film of a
+    compressible oil in a gear contact at 0.46 to 0.8 GPa.
+    Source: Moes (1965, 2000).
+
+    Examples
+    --------
+    >>> film = moes_central(147802.0, 8e-3, 3.0722, 0.082, 2.19e-8, 2.2e11)
+    >>> round(float(film) * 1e6, 4)
+    1.1853
+    """
+    groups = line_contact_groups(
+        load_per_width,
+        equivalent_radius,
+        entrainment_speed,
+        dynamic_viscosity,
+        pressure_viscosity_coefficient,
+        effective_modulus,
+    )
+    load, material = groups.moes_load, groups.moes_material
+    film = moes_dimensionless_central(load, material)
+    return np.asarray(film * groups.moes_film_unit)[()]

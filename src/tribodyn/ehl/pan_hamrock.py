@@ -1,0 +1,135 @@
+"""Central and minimum film of a line contact: the formulas of Pan and Hamrock."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.ehl.groups import line_contact_groups
+from tribodyn.ehl.regimes import warn_outside_elastic_piezoviscous
+
+__all__ = ["pan_hamrock_central", "pan_hamrock_minimum"]
+
+
+def pan_hamrock_minimum(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> NDArray[np.float64]:
+    """Minimum film: ``h/R = 1.714 U^0.694 G^0.568 W^-0.128``.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load per face width.
+    equivalent_radius : float or array [m]
+        Reduced radius of curvature.
+    entrainment_speed : float or array [m/s]
+        HALF the sum of the surface speeds.
+    dynamic_viscosity : float or array [Pa*s]
+        Viscosity at ambient pressure.
+    pressure_viscosity_coefficient : float or array [1/Pa]
+        Slope of ln(viscosity) over pressure.
+    effective_modulus : float or array [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+
+    Returns
+    -------
+    float or array [m]
+        Film thickness, of the common shape of the arguments.
+
+    Raises
+    ------
+    InputError
+        If any value is not finite and positive.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``film-range`` clearly outside of the elastic-piezoviscous regime.
+
+    4 to 7 % below the solved film of a gear contact at 0.46 to 0.8 GPa.
+    Source: Pan and Hamrock (1989).
+
+    Examples
+    --------
+    >>> film = pan_hamrock_minimum(147802.0, 8e-3, 3.0722, 0.082, 2.19e-8, 2.2e11)
+    >>> round(float(film) * 1e6, 4)
+    0.8294
+    """
+    groups = line_contact_groups(
+        load_per_width,
+        equivalent_radius,
+        entrainment_speed,
+        dynamic_viscosity,
+        pressure_viscosity_coefficient,
+        effective_modulus,
+    )
+    warn_outside_elastic_piezoviscous(groups, "pan-hamrock")
+    film = 1.714 * groups.speed**0.694 * groups.material**0.568 * groups.load**-0.128
+    return np.asarray(film * groups.equivalent_radius)[()]
+
+
+def pan_hamrock_central(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> NDArray[np.float64]:
+    """Central film: ``h/R = 2.922 U^0.692 G^0.470 W^-0.166``.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load per face width.
+    equivalent_radius : float or array [m]
+        Reduced radius of curvature.
+    entrainment_speed : float or array [m/s]
+        HALF the sum of the surface speeds.
+    dynamic_viscosity : float or array [Pa*s]
+        Viscosity at ambient pressure.
+    pressure_viscosity_coefficient : float or array [1/Pa]
+        Slope of ln(viscosity) over pressure.
+    effective_modulus : float or array [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+
+    Returns
+    -------
+    float or array [m]
+        Film thickness, of the common shape of the arguments.
+
+    Raises
+    ------
+    InputError
+        If any value is not finite and positive.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``film-range`` clearly outside of the elastic-piezoviscous regime.
+
+    3 to 10 % below the solved film of a gear contact at 0.46 to 0.8 GPa.
+    Source: Pan and Hamrock (1989).
+
+    Examples
+    --------
+    >>> film = pan_hamrock_central(147802.0, 8e-3, 3.0722, 0.082, 2.19e-8, 2.2e11)
+    >>> round(float(film) * 1e6, 4)
+    0.9206
+    """
+    groups = line_contact_groups(
+        load_per_width,
+        equivalent_radius,
+        entrainment_speed,
+        dynamic_viscosity,
+        pressure_viscosity_coefficient,
+        effective_modulus,
+    )
+    warn_outside_elastic_piezoviscous(groups, "pan-hamrock")
+    film = 2.922 * groups.speed**0.692 * groups.material**0.47 * groups.load**-0.166
+    return np.asarray(film * groups.equivalent_radius)[()]

@@ -1,0 +1,202 @@
+"""Errors and warnings that a gear engineer can act on.
+
+Every message answers four questions: what is wrong (value and unit), where (file, line and key,
+or argument), why (the limit and its origin) and what to do next.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+__all__ = [
+    "ComputationError",
+    "InputError",
+    "ModelWarning",
+    "OutputExistsError",
+    "Problem",
+    "TribodynError",
+    "require_between",
+    "require_positive",
+    "warn",
+]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One fault, told as a colleague would.
+
+    Parameters
+    ----------
+    what : str
+        The finding, with value and unit.
+    where : str
+        Argument name, or ``file:line: key``. Empty when the context is obvious.
+    why : str
+        The limit that is broken and where it comes from.
+    remedy : str
+        What to do next.
+    """
+
+    what: str
+    where: str = ""
+    why: str = ""
+    remedy: str = ""
+
+    def __str__(self) -> str:
+        """Join the parts into one readable paragraph."""
+        head = f"{self.where}: {self.what}" if self.where else self.what
+        parts = (part.rstrip(".") for part in (head, self.why, self.remedy) if part)
+        return " ".join(part if part.endswith("?") else f"{part}." for part in parts)
+
+
+class TribodynError(Exception):
+    """Base of every error raised on purpose; ``exit_code`` is what the command line returns.
+
+    Parameters
+    ----------
+    problems : Problem, str or iterable of Problem
+        What is wrong; all faults of one input come in one error.
+    """
+
+    exit_code = 1
+
+    def __init__(self, problems: Problem | str | Iterable[Problem]) -> None:
+        if isinstance(problems, str):
+            problems = Problem(problems)
+        self.problems: tuple[Problem, ...] = (
+            (problems,) if isinstance(problems, Problem) else tuple(problems)
+        )
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class InputError(TribodynError, ValueError):
+    """The input is wrong: a unit, a range, a name or a contradiction. Exit code 2."""
+
+    exit_code = 2
+
+
+class OutputExistsError(InputError):
+    """The output directory exists already and was not to be replaced."""
+
+
+class ComputationError(TribodynError, RuntimeError):
+    """The input is valid but the computation failed. Exit code 1."""
+
+    exit_code = 1
+
+
+class ModelWarning(UserWarning):
+    """A model is used outside its range, or a figure needs care.
+
+    Parameters
+    ----------
+    code : str
+        Stable identifier such as ``"friction-range"``.
+    message : str
+        Value, limit and remedy.
+    """
+
+    def __init__(self, code: str, message: str) -> None:
+        self.code = code
+        self.message = message
+        super().__init__(f"[{code}] {message}")
+
+
+def warn(code: str, message: str, *, stacklevel: int = 2) -> None:
+    """Issue a :class:`ModelWarning` with a stable code.
+
+    Parameters
+    ----------
+    code : str
+        Stable identifier.
+    message : str
+        Value, limit and remedy.
+    stacklevel : int
+        Frames to skip, as in :func:`warnings.warn`.
+    """
+    warnings.warn(ModelWarning(code, message), stacklevel=stacklevel + 1)
+
+
+def _check(
+    name: str, value: Any, unit: str, holds: Callable[[Any], Any], limit: str, remedy: str
+) -> None:
+    array = np.asarray(value, dtype=float)
+    bad = ~(np.isfinite(array) & holds(array))
+    if np.any(bad):
+        worst = np.atleast_1d(array)[np.atleast_1d(bad)][0]
+        raise InputError(
+            Problem(
+                what=f"{name} = {worst:.6g} {unit}".rstrip(),
+                where=f"argument {name}",
+                why=f"{name} must be finite and {limit}",
+                remedy=remedy,
+            )
+        )
+
+
+def require_positive(name: str, value: Any, unit: str = "", *, remedy: str = "") -> None:
+    """Raise :class:`InputError` unless every element is finite and greater than zero.
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : float or array
+        Value in ``unit``.
+    unit : str
+        Unit printed in the message.
+    remedy : str
+        What to do next.
+
+    Raises
+    ------
+    InputError
+        If any element is not finite or not positive.
+
+    Examples
+    --------
+    >>> require_positive("load_per_width", 1.0, "N/m")
+    """
+    _check(name, value, unit, lambda a: a > 0.0, "greater than zero", remedy)
+
+
+def require_between(
+    name: str, value: Any, low: float, high: float, unit: str = "", *, remedy: str = ""
+) -> None:
+    """Raise :class:`InputError` unless every element is finite and within [low, high].
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : float or array
+        Value in ``unit``.
+    low, high : float
+        Inclusive limits in ``unit``.
+    unit : str
+        Unit printed in the message.
+    remedy : str
+        What to do next.
+
+    Raises
+    ------
+    InputError
+        If any element is not finite or outside the limits.
+
+    Examples
+    --------
+    >>> require_between("poissons_ratio", 0.3, 0.0, 0.5)
+    """
+    _check(
+        name,
+        value,
+        unit,
+        lambda a: (a >= low) & (a <= high),
+        f"between {low:g} and {high:g} {unit}".rstrip(),
+        remedy,
+    )

@@ -1,0 +1,220 @@
+"""What a friction law is given, what a friction law is, and the laws by name."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.registry import Registry
+
+__all__ = ["LAWS", "FrictionLaw", "TribologicalContact"]
+
+_POSITIVE = (
+    ("load_per_width", "N/m"),
+    ("hertz_pressure", "Pa"),
+    ("entrainment_speed", "m/s"),
+    ("equivalent_radius", "m"),
+)
+
+
+@dataclass(frozen=True)
+class TribologicalContact:
+    """Loaded tooth contacts as friction laws see them: arrays of one shape, and two scalars.
+
+    Contacts that carry no load have no friction coefficient: leave them out.
+
+    Parameters
+    ----------
+    load_per_width : array [N/m]
+        Normal load of the tooth pair per face width.
+    hertz_pressure : array [Pa]
+        Maximum Hertzian pressure.
+    sliding_speed : array [m/s]
+        Difference of the surface speeds, of either sign.
+    entrainment_speed : array [m/s]
+        HALF the sum of the surface speeds.
+    slide_to_roll_ratio : array
+        Sliding speed over entrainment speed.
+    equivalent_radius : array [m]
+        Reduced radius of curvature.
+    dynamic_viscosity : float [Pa*s]
+        Viscosity of the oil at the inlet.
+    composite_roughness : float [m]
+        Root of the sum of squares of the two rms roughnesses.
+
+    Raises
+    ------
+    InputError
+        If there is no contact, the shapes differ, a load, pressure, speed or radius is not
+        positive, or the sliding speed disagrees with the slide-to-roll ratio.
+
+    Examples
+    --------
+    >>> one = np.ones(3)
+    >>> contact = TribologicalContact(
+    ...     1e5 * one, 8e8 * one, one, 2 * one, one / 2, 8e-3 * one, 0.08, 5e-7
+    ... )
+    >>> contact.size
+    3
+    """
+
+    load_per_width: NDArray[np.float64]
+    hertz_pressure: NDArray[np.float64]
+    sliding_speed: NDArray[np.float64]
+    entrainment_speed: NDArray[np.float64]
+    slide_to_roll_ratio: NDArray[np.float64]
+    equivalent_radius: NDArray[np.float64]
+    dynamic_viscosity: float
+    composite_roughness: float
+
+    def __post_init__(self) -> None:
+        """Refuse contacts without load, mixed shapes and contradicting speeds."""
+        names = [name for name, _ in _POSITIVE] + ["sliding_speed", "slide_to_roll_ratio"]
+        shapes = {name: np.shape(getattr(self, name)) for name in names}
+        if len(set(shapes.values())) > 1:
+            listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+            raise InputError(
+                Problem(
+                    what=f"shapes differ: {listed}",
+                    where="TribologicalContact",
+                    why="element i of every array belongs to contact i",
+                    remedy="Broadcast the arrays first",
+                )
+            )
+        if self.size == 0:
+            raise InputError(
+                Problem("no contact", "TribologicalContact", "All arrays are empty", "Give one")
+            )
+        for name, unit in _POSITIVE:
+            require_positive(name, getattr(self, name), unit, remedy="Leave unloaded pairs out")
+        require_positive("dynamic_viscosity", self.dynamic_viscosity, "Pa*s")
+        require_between("composite_roughness", self.composite_roughness, 0.0, np.inf, "m")
+        self._require_consistent_sliding()
+
+    def _require_consistent_sliding(self) -> None:
+        """Refuse a slide-to-roll ratio that was formed with the sum of the speeds, say."""
+        expected = np.atleast_1d(self.sliding_speed) / np.atleast_1d(self.entrainment_speed)
+        given = np.atleast_1d(self.slide_to_roll_ratio)
+        wrong = ~(np.abs(given - expected) <= 1e-4 * np.abs(expected) + 1e-9)
+        if np.any(wrong):
+            raise InputError(
+                Problem(
+                    what=f"slide_to_roll_ratio = {given[wrong][0]:.6g}, but sliding_speed over "
+                    f"entrainment_speed = {expected[wrong][0]:.6g}",
+                    where="TribologicalContact",
+                    why="the ratio is (u1 - u2) / ((u1 + u2)/2)",
+                    remedy="Give entrainment_speed as half the sum of the surface speeds",
+                )
+            )
+
+    @property
+    def size(self) -> int:
+        """Number of contacts."""
+        return int(np.size(self.load_per_width))
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """A friction law: called with contacts and options, gives friction coefficients.
+
+    Parameters
+    ----------
+    name : str
+        Name in the registry.
+    source : str
+        Paper behind the law.
+    function : callable
+        ``function(contact, **options)``.
+    options : mapping of str to default
+        Options that the law knows; ``None`` where the user must give a value.
+
+    Examples
+    --------
+    >>> LAWS["constant"].options["coefficient"] is None
+    True
+    """
+
+    name: str
+    source: str
+    function: Callable[..., NDArray[np.float64]] = field(repr=False)
+    options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __call__(self, contact: TribologicalContact, **options: Any) -> NDArray[np.float64]:
+        """Friction coefficient of every contact, never negative.
+
+        Parameters
+        ----------
+        contact : TribologicalContact
+            Loaded contacts.
+        **options : Any
+            Options of the law.
+
+        Returns
+        -------
+        array
+            Shape of ``contact.load_per_width``.
+
+        Raises
+        ------
+        InputError
+            If an option is unknown or missing, or the law cannot be applied.
+        """
+        return self.function(contact, **self.complete(options))
+
+    def complete(self, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Options with the defaults filled in.
+
+        Parameters
+        ----------
+        options : mapping of str to Any
+            What the user gave.
+
+        Returns
+        -------
+        dict of str to Any
+
+        Raises
+        ------
+        InputError
+            Listing every unknown option and every missing one.
+
+        Examples
+        --------
+        >>> LAWS["constant"].complete({"coefficient": 0.05})
+        {'coefficient': 0.05}
+        """
+        problems = [self._unknown(name) for name in options if name not in self.options]
+        complete = {**self.options, **options}
+        problems += [
+            Problem(
+                what=f'option "{name}" is missing',
+                where=f'friction law "{self.name}"',
+                remedy=f"Give {name}",
+            )
+            for name in self.options
+            if complete[name] is None
+        ]
+        if problems:
+            raise InputError(problems)
+        return complete
+
+    def _unknown(self, name: str) -> Problem:
+        """Say that an option is unknown, naming the nearest."""
+        near = difflib.get_close_matches(name, self.options, n=1)
+        return Problem(
+            what=f'unknown option "{name}"',
+            where=f'friction law "{self.name}"',
+            why=f"Its options: {', '.join(self.options) or 'none'}",
+            remedy=f'Did you mean "{near[0]}"?' if near else "",
+        )
+
+
+#: The friction laws by name, open to third parties through the entry points of this group.
+LAWS: Registry[FrictionLaw] = Registry("friction law", "tribodyn.friction")

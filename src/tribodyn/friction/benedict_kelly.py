@@ -1,0 +1,202 @@
+"""Friction of the mixed-film tooth contact: the formula of Benedict and Kelly."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
+from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.registry import Registry
+
+__all__ = ["MINIMUM_SLIDING_SPEED", "ROLLING_SPEEDS", "VARIANTS", "benedict_kelly"]
+
+#: Floor of the sliding speed [m/s]. The formula grows without bound as sliding stops, though only
+#: by some 0.02 per decade. A tooth slides slower than 1 mm/s on a thousandth of its path, so the
+#: floor changes no mean, and keeps the coefficient finite where the friction reverses.
+MINIMUM_SLIDING_SPEED = 1e-3
+
+#: Factor of the logarithm: as published, and as printed in studies after He and Singh.
+VARIANTS: Registry[float] = Registry("variant of the Benedict-Kelly formula")
+VARIANTS.register("benedict-kelly")(0.0127)
+VARIANTS.register("he-singh")(0.0137)
+
+#: Rolling speed over entrainment speed: the mean of the surface speeds, or their sum, which the
+#: original paper uses. The sum lowers the coefficient of smooth flanks by 0.0076.
+ROLLING_SPEEDS: Registry[float] = Registry("rolling speed of the Benedict-Kelly formula")
+ROLLING_SPEEDS.register("mean")(1.0)
+ROLLING_SPEEDS.register("sum")(2.0)
+
+_LIMIT = 1.13  # [um] roughness at which the formula diverges
+_TRUSTED = 0.8  # [um] roughness above which the divergence rules
+_CREEP = 0.1  # [m/s] entrainment speed below which there is hardly a film
+_GREATEST = 0.2  # friction coefficient that lubricated steel hardly exceeds
+_UNITS = 29700.0  # [mPa*s (m/s)^3 mm/N] makes the argument of the logarithm a pure number
+
+
+def benedict_kelly(
+    load_per_width: ArrayLike,
+    sliding_speed: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    roughness: ArrayLike,
+    *,
+    variant: str = "benedict-kelly",
+    rolling_speed: str = "mean",
+    minimum_sliding_speed: float = MINIMUM_SLIDING_SPEED,
+) -> NDArray[np.float64]:
+    """Friction coefficient by Benedict and Kelly.
+
+    ``mu = 0.0127 * 1.13/(1.13 - S) * log10(29700 W' / (eta v_s v_e^2))`` with W' in N/mm, eta in
+    cP, speeds in m/s and S in um. Largest at the pitch point, where the sliding speed is held at
+    ``minimum_sliding_speed``.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load of the tooth pair per face width.
+    sliding_speed : float or array [m/s]
+        Difference of the surface speeds; its sign does not matter.
+    entrainment_speed : float or array [m/s]
+        HALF the sum of the surface speeds.
+    dynamic_viscosity : float or array [Pa*s]
+        Viscosity at ambient pressure and oil temperature.
+    roughness : float or array [m]
+        Composite roughness, below 1.13 um.
+    variant : {"benedict-kelly", "he-singh"}
+        Factor 0.0127 as published, or 0.0137.
+    rolling_speed : {"mean", "sum"}
+        Speed v_e in the formula: half the sum of the surface speeds, or the sum.
+    minimum_sliding_speed : float [m/s]
+        Floor of the sliding speed. The formula is singular where sliding stops.
+
+    Returns
+    -------
+    float or array
+        Friction coefficient, never negative, of the common shape of the arguments.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite or not positive, or the roughness is 1.13 um or more.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``friction-roughness`` above 0.8 um; code ``friction-range`` where the logarithm is
+        negative and the coefficient is set to zero, below an entrainment speed of 0.1 m/s and
+        where the coefficient exceeds 0.2.
+
+    Fitted to ground steel discs with a factor ``1.13/(1.13 - S)`` of at most 3, S to 0.75 um.
+    Source: Benedict and Kelly, ASLE Trans. 4 (1961), with the constants of later gear studies.
+
+    Examples
+    --------
+    >>> round(float(benedict_kelly(133022.0, 0.913038, 1.407953, 0.082, 0.53e-6)), 6)
+    0.105843
+    """
+    require_positive("load_per_width", load_per_width, "N/m", remedy="1 N/mm is 1000 N/m")
+    require_between("sliding_speed", sliding_speed, -np.inf, np.inf, "m/s")
+    require_positive("entrainment_speed", entrainment_speed, "m/s")
+    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
+    require_positive("minimum_sliding_speed", minimum_sliding_speed, "m/s")
+    rough = _roughness_factor(roughness)
+    load = np.asarray(load_per_width, dtype=float) * 1e-3
+    viscosity = np.asarray(dynamic_viscosity, dtype=float) * 1e3
+    sliding = np.maximum(np.abs(np.asarray(sliding_speed, dtype=float)), minimum_sliding_speed)
+    rolling = ROLLING_SPEEDS[rolling_speed] * np.asarray(entrainment_speed, dtype=float)
+    argument = _UNITS * load / (viscosity * sliding * rolling**2)
+    coefficient = _clipped(VARIANTS[variant] * rough * np.log10(argument))
+    _warn_of_slow(coefficient, rough, entrainment_speed)
+    return coefficient
+
+
+def _roughness_factor(roughness: ArrayLike) -> NDArray[np.float64]:
+    """Return 1.13/(1.13 - S), refused where it diverges and warned of where it soars."""
+    require_between("roughness", roughness, 0.0, np.inf, "m")
+    micrometres = np.asarray(roughness, dtype=float) * 1e6
+    roughest = float(np.max(micrometres))
+    if roughest >= _LIMIT:
+        raise InputError(
+            Problem(
+                what=f"roughness = {roughest:.4g} um",
+                where="argument roughness",
+                why=f"the Benedict-Kelly formula diverges at {_LIMIT:g} um",
+                remedy="Check the unit (m), or choose another friction law",
+            )
+        )
+    factor = np.asarray(_LIMIT / (_LIMIT - micrometres))
+    if roughest > _TRUSTED:
+        warn(
+            "friction-roughness",
+            f"benedict-kelly: roughness = {roughest:.4g} um is above {_TRUSTED:g} um, where the "
+            f"formula multiplies the friction by {np.max(factor):.3g} on its way to infinity at "
+            f"{_LIMIT:g} um; it was fitted up to a factor of 3. Choose another friction law.",
+            stacklevel=3,
+        )
+    return factor
+
+
+def _clipped(coefficient: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Set negative coefficients to zero and say so."""
+    least = float(np.min(coefficient))
+    if least < 0.0:
+        warn(
+            "friction-range",
+            f"benedict-kelly: the logarithm is negative (friction coefficient down to "
+            f"{least:.3g}) where the load is too small for the viscosity and the speed; the "
+            "coefficient is set to 0 there. Choose another friction law.",
+            stacklevel=3,
+        )
+    return np.asarray(np.maximum(coefficient, 0.0))[()]
+
+
+def _warn_of_slow(
+    coefficient: NDArray[np.float64], rough: NDArray[np.float64], entrainment_speed: ArrayLike
+) -> None:
+    """Say where the surfaces creep: the logarithm then grows beyond what rubbing flanks show."""
+    greatest, slowest = float(np.max(coefficient)), float(np.min(entrainment_speed))
+    # A steep roughness factor has its own warning.
+    steep = float(np.max(rough)) > _LIMIT / (_LIMIT - _TRUSTED)
+    if slowest < _CREEP or (greatest > _GREATEST and not steep):
+        warn(
+            "friction-range",
+            f"benedict-kelly: friction coefficient up to {greatest:.3g} at entrainment speeds from "
+            f"{slowest:.3g} m/s on; the formula was fitted to running films, and lubricated steel "
+            f"stays below {_GREATEST:g}. Do not use it below {_CREEP:g} m/s: choose another "
+            "friction law.",
+            stacklevel=3,
+        )
+
+
+def _law(
+    contact: TribologicalContact, *, variant: str, rolling_speed: str, minimum_sliding_speed: float
+) -> NDArray[np.float64]:
+    return benedict_kelly(
+        contact.load_per_width,
+        contact.sliding_speed,
+        contact.entrainment_speed,
+        contact.dynamic_viscosity,
+        contact.composite_roughness,
+        variant=variant,
+        rolling_speed=rolling_speed,
+        minimum_sliding_speed=minimum_sliding_speed,
+    )
+
+
+LAWS.register("benedict-kelly")(
+    FrictionLaw(
+        "benedict-kelly",
+        "Benedict and Kelly, ASLE Trans. 4 (1961)",
+        _law,
+        MappingProxyType(
+            {
+                "variant": "benedict-kelly",
+                "rolling_speed": "mean",
+                "minimum_sliding_speed": MINIMUM_SLIDING_SPEED,
+            }
+        ),
+    )
+)

@@ -1,0 +1,54 @@
+"""The same friction coefficient everywhere."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import require_between
+from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+
+__all__ = ["constant"]
+
+
+def constant(coefficient: float, shape: tuple[int, ...] = ()) -> NDArray[np.float64]:
+    """Same friction coefficient everywhere (Coulomb).
+
+    Parameters
+    ----------
+    coefficient : float
+        Friction force over normal force, 0 to 1.
+    shape : tuple of int
+        Shape of the result.
+
+    Returns
+    -------
+    float or array
+        The coefficient in that shape.
+
+    Raises
+    ------
+    InputError
+        If the coefficient is outside 0 to 1.
+
+    Valid as a mean over the path of contact; a lubricated gear has 0.02 to 0.12.
+    Source: Coulomb (1781).
+
+    Examples
+    --------
+    >>> constant(0.05, (2,)).tolist()
+    [0.05, 0.05]
+    """
+    require_between("coefficient", coefficient, 0.0, 1.0)
+    return np.full(shape, float(coefficient))[()]
+
+
+def _law(contact: TribologicalContact, *, coefficient: float) -> NDArray[np.float64]:
+    return constant(coefficient, np.shape(contact.load_per_width))
+
+
+LAWS.register("constant")(
+    FrictionLaw("constant", "Coulomb (1781)", _law, MappingProxyType({"coefficient": None}))
+)

@@ -1,0 +1,252 @@
+"""From the figures of a drawing to a checked gear pair, with every fault reported at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.gear.drawing import GearDrawing
+from tribodyn.gear.gear_checks import shape_problems
+from tribodyn.gear.mesh_geometry import MeshGeometry
+from tribodyn.gear.pair_checks import (
+    ROUNDING_WARNING,
+    fitting_center_distance,
+    match_problems,
+    mesh_problems,
+)
+from tribodyn.gear.pair_geometry import tip_shortening_coefficient, zero_backlash_center_distance
+from tribodyn.gear.rack import BasicRack
+from tribodyn.gear.spur_pair import SpurPair
+
+__all__ = ["spur_pair"]
+
+
+def _raise_if_any(problems: Iterable[Problem]) -> None:
+    distinct = tuple(dict.fromkeys(problems))
+    if distinct:
+        raise InputError(distinct)
+
+
+def _play_problems(
+    drawings: tuple[GearDrawing, GearDrawing], backlash: float | None
+) -> list[Problem]:
+    """The play may be asked for as such or through the thinning, not both."""
+    if backlash is None:
+        return []
+    try:
+        require_between("backlash", backlash, 0.0, 1.0, "m")
+    except InputError as error:
+        return list(error.problems)
+    return [
+        Problem(
+            what=f"backlash = {backlash * 1e3:.6g} mm and {drawing.name}_tooth_thinning = "
+            f"{drawing.tooth_thinning * 1e3:.6g} mm",
+            where="argument backlash",
+            why="Both set the play between the flanks",
+            remedy="Give one of them",
+        )
+        for drawing in drawings
+        if drawing.tooth_thinning is not None
+    ]
+
+
+def _value_problems(
+    drawings: tuple[GearDrawing, GearDrawing], center_distance: float | None, backlash: float | None
+) -> list[Problem]:
+    problems = [problem for drawing in drawings for problem in drawing.value_problems()]
+    problems += _play_problems(drawings, backlash)
+    if center_distance is not None:
+        try:
+            require_positive("center_distance", center_distance, "m")
+        except InputError as error:
+            problems += error.problems
+    return problems
+
+
+def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
+    """Thinning of each gear that makes up the difference to the play of the full teeth."""
+    if fitting_center_distance(mesh) is not None:
+        return 0.0  # Thinning would only hide that the full teeth interfere.
+    play, module = mesh.geometric_backlash, mesh.pinion.normal_module
+    if backlash < play - ROUNDING_WARNING * module:
+        raise InputError(
+            Problem(
+                what=f"backlash = {backlash * 1e3:.6g} mm",
+                where="argument backlash",
+                why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
+                f"mm leave {play * 1e3:.6g} mm already",
+                remedy="Leave the backlash out, or reduce the centre distance",
+            )
+        )
+    return max(0.5 * (backlash - play), 0.0)
+
+
+def _forms(
+    drawings: tuple[GearDrawing, GearDrawing], center_distance: float | None, backlash: float | None
+) -> MeshGeometry:
+    """Complete the two forms: centre distance, then tips, then thinning."""
+    teeth = sum(drawing.teeth for drawing in drawings)
+    shifts = sum(drawing.profile_shift_coefficient for drawing in drawings)
+    module, angle = drawings[0].normal_module, drawings[0].normal_pressure_angle
+    distance = center_distance
+    if distance is None:
+        distance = zero_backlash_center_distance(teeth, module, angle, shifts)
+    # Without a pressure angle the distance itself is the fault, and no reason to shorten teeth.
+    possible = distance > 0.5 * teeth * module * math.cos(angle)
+    shortening = tip_shortening_coefficient(teeth, module, shifts, distance) if possible else 0.0
+    tips = [drawing.completed_tip_diameter(shortening) for drawing in drawings]
+
+    def mesh(thinnings: Iterable[float]) -> MeshGeometry:
+        pinion, wheel = (
+            drawing.tooth_form(tip, thinning)
+            for drawing, tip, thinning in zip(drawings, tips, thinnings, strict=True)
+        )
+        return MeshGeometry(pinion, wheel, distance)
+
+    if backlash is None:
+        return mesh(drawing.tooth_thinning or 0.0 for drawing in drawings)
+    return mesh([_thinning_for(backlash, mesh((0.0, 0.0)))] * 2)
+
+
+def _checked(
+    drawings: tuple[GearDrawing, GearDrawing],
+    center_distance: float | None,
+    backlash: float | None,
+    driver: str,
+) -> SpurPair:
+    """Pair from two drawings, or one error with all that is wrong."""
+    _raise_if_any(_value_problems(drawings, center_distance, backlash))
+    mesh = _forms(drawings, center_distance, backlash)
+    problems = match_problems(mesh.pinion, mesh.wheel, driver)
+    fitting = fitting_center_distance(mesh)
+    # A centre distance that is too small also spoils the tips: they are looked at where it fits.
+    shaped = mesh if fitting is None else _forms(drawings, fitting, backlash)
+    for drawing, form in zip(drawings, (shaped.pinion, shaped.wheel), strict=True):
+        problems += drawing.named(shape_problems(form, drawing.bore_diameter))
+    _raise_if_any([*mesh_problems(mesh), *problems])
+    pinion = drawings[0].spur_gear(mesh.pinion)
+    wheel = drawings[1].spur_gear(mesh.wheel)
+    return SpurPair(pinion, wheel, mesh.center_distance, driver)
+
+
+def spur_pair(
+    *,
+    pinion_teeth: int,
+    wheel_teeth: int,
+    normal_module: float,
+    normal_pressure_angle: float,
+    pinion_face_width: float,
+    wheel_face_width: float | None = None,
+    center_distance: float | None = None,
+    pinion_profile_shift_coefficient: float = 0.0,
+    wheel_profile_shift_coefficient: float = 0.0,
+    pinion_tip_diameter: float | None = None,
+    wheel_tip_diameter: float | None = None,
+    pinion_bore_diameter: float = 0.0,
+    wheel_bore_diameter: float = 0.0,
+    pinion_tooth_thinning: float | None = None,
+    wheel_tooth_thinning: float | None = None,
+    backlash: float | None = None,
+    pinion_rack: BasicRack | None = None,
+    wheel_rack: BasicRack | None = None,
+    pinion_mass: float | None = None,
+    wheel_mass: float | None = None,
+    pinion_moment_of_inertia: float | None = None,
+    wheel_moment_of_inertia: float | None = None,
+    driver: str = "pinion",
+) -> SpurPair:
+    """Make a spur gear pair from the figures of a drawing.
+
+    Parameters
+    ----------
+    pinion_teeth, wheel_teeth : int
+        Numbers of teeth, 5 to 500; the pinion has the smaller one.
+    normal_module : float
+        Module [m].
+    normal_pressure_angle : float
+        Pressure angle of the rack [rad], 10 to 30 degrees.
+    pinion_face_width : float
+        Width of the pinion's toothing [m].
+    wheel_face_width : float, optional
+        Width of the wheel's toothing [m]; that of the pinion by default.
+    center_distance : float, optional
+        Distance of the axes [m]; by default the one without backlash.
+    pinion_profile_shift_coefficient, wheel_profile_shift_coefficient : float
+        Profile shift over the module.
+    pinion_tip_diameter, wheel_tip_diameter : float, optional
+        Tip diameters [m]; by default d + 2 m (h_aP* + x - k) with the tip shortening k.
+    pinion_bore_diameter, wheel_bore_diameter : float
+        Bore diameters [m]; zero for a solid gear.
+    pinion_tooth_thinning, wheel_tooth_thinning : float, optional
+        Reduction of the tooth thickness along the base circle [m].
+    backlash : float, optional
+        Total play on the line of action [m], reached by thinning both gears alike; by default the
+        play that follows from the other figures.
+    pinion_rack, wheel_rack : BasicRack, optional
+        Generating profiles; ISO 53 profile A by default.
+    pinion_mass, wheel_mass : float, optional
+        Masses [kg] that replace those of the solids.
+    pinion_moment_of_inertia, wheel_moment_of_inertia : float, optional
+        Polar moments of inertia [kg*m^2] that replace those of the solids.
+    driver : str
+        Driving gear, ``"pinion"`` or ``"wheel"``.
+
+    Returns
+    -------
+    SpurPair
+
+    Raises
+    ------
+    InputError
+        Listing all faults found: first of the single values, and if these are sound, of the
+        shapes of both gears and of their mesh. ``where`` names the argument of this function.
+
+    Warns
+    -----
+    ModelWarning
+        As :class:`SpurGear` and :class:`SpurPair` do.
+
+    Notes
+    -----
+    Source: ISO 21771. A negative k (large centre distance) is taken as zero.
+
+    Examples
+    --------
+    >>> import math
+    >>> pair = spur_pair(pinion_teeth=16, wheel_teeth=24, normal_module=4.5e-3,
+    ...                  normal_pressure_angle=math.radians(20.0), center_distance=91.5e-3,
+    ...                  pinion_profile_shift_coefficient=0.8635,
+    ...                  wheel_profile_shift_coefficient=-0.5103, pinion_face_width=20e-3)
+    >>> round(pair.pinion.tip_diameter * 1e3, 3), round(pair.transverse_contact_ratio, 6)
+    (88.593, 1.326952)
+    """
+    pinion = GearDrawing(
+        name="pinion",
+        teeth=pinion_teeth,
+        normal_module=normal_module,
+        normal_pressure_angle=normal_pressure_angle,
+        profile_shift_coefficient=pinion_profile_shift_coefficient,
+        rack=pinion_rack or BasicRack(),
+        tip_diameter=pinion_tip_diameter,
+        tooth_thinning=pinion_tooth_thinning,
+        face_width=pinion_face_width,
+        bore_diameter=pinion_bore_diameter,
+        mass=pinion_mass,
+        moment_of_inertia=pinion_moment_of_inertia,
+    )
+    wheel = GearDrawing(
+        name="wheel",
+        teeth=wheel_teeth,
+        normal_module=normal_module,
+        normal_pressure_angle=normal_pressure_angle,
+        profile_shift_coefficient=wheel_profile_shift_coefficient,
+        rack=wheel_rack or BasicRack(),
+        tip_diameter=wheel_tip_diameter,
+        tooth_thinning=wheel_tooth_thinning,
+        face_width=pinion_face_width if wheel_face_width is None else wheel_face_width,
+        bore_diameter=wheel_bore_diameter,
+        mass=wheel_mass,
+        moment_of_inertia=wheel_moment_of_inertia,
+    )
+    return _checked((pinion, wheel), center_distance, backlash, driver)

@@ -1,0 +1,100 @@
+"""Viscosity over temperature: the two-point line of Walther, as in ASTM D341."""
+
+from __future__ import annotations
+
+import math
+
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+
+__all__ = ["MARGIN", "TemperaturePoint", "walther_viscosity"]
+
+#: One measured point: temperature [K] and kinematic viscosity [m^2/s].
+TemperaturePoint = tuple[float, float]
+
+#: How far [K] beyond the two data points the line may be used.
+MARGIN = 30.0
+
+_SHIFT = 0.7  # [mm^2/s], the constant of the standard for viscosities above 2 mm^2/s
+_ABSOLUTE_ZERO = 273.15
+
+
+def _ordinate(kinematic_viscosity: float) -> float:
+    """Return the double logarithm that is linear in log10(T)."""
+    return math.log10(math.log10(kinematic_viscosity * 1e6 + _SHIFT))
+
+
+def _require_oil(points: tuple[TemperaturePoint, TemperaturePoint]) -> None:
+    """Refuse points from which no falling line of an oil can be drawn."""
+    for temperature, viscosity in points:
+        require_positive("temperature", temperature, "K")
+        require_between(
+            "kinematic_viscosity", viscosity, 2e-6, 1.0, "m^2/s", remedy="1 mm^2/s is 1e-6 m^2/s"
+        )
+    (cold, thick), (warm, thin) = points
+    if cold >= warm or thick <= thin:
+        raise InputError(
+            Problem(
+                what=f"points {cold:g} K, {thick:.4g} m^2/s and {warm:g} K, {thin:.4g} m^2/s",
+                where="argument points",
+                why="two different temperatures in rising order, with falling viscosity, are "
+                "needed for a line over temperature",
+                remedy="Give the colder point first",
+            )
+        )
+
+
+def _require_inside(temperature: float, cold: float, warm: float) -> None:
+    """Refuse a temperature that lies too far outside the data."""
+    if cold - MARGIN <= temperature <= warm + MARGIN:
+        return
+    low, high = cold - _ABSOLUTE_ZERO, warm - _ABSOLUTE_ZERO
+    raise InputError(
+        Problem(
+            what=f"temperature = {temperature - _ABSOLUTE_ZERO:g} degC",
+            where="argument temperature",
+            why=f"the viscosity is known at {low:g} and {high:g} degC, and the line through "
+            f"these points is not trusted more than {MARGIN:g} K beyond them",
+            remedy=f"Stay between {low - MARGIN:g} and {high + MARGIN:g} degC, "
+            "or give the properties at the working temperature",
+        )
+    )
+
+
+def walther_viscosity(
+    temperature: float, points: tuple[TemperaturePoint, TemperaturePoint]
+) -> float:
+    """Kinematic viscosity at a temperature from two measured points.
+
+    ``log10 log10(nu + 0.7) = A - B log10(T)`` with nu in mm^2/s and T in K.
+
+    Parameters
+    ----------
+    temperature : float [K]
+        Wanted temperature.
+    points : tuple of two (float [K], float [m^2/s])
+        Temperature and kinematic viscosity, the colder point first.
+
+    Returns
+    -------
+    float [m^2/s]
+
+    Raises
+    ------
+    InputError
+        If the points make no falling line, or the temperature lies more than 30 K outside them.
+
+    Valid for liquid petroleum products above 2 mm^2/s. Source: Walther (1931); ASTM D341.
+
+    Examples
+    --------
+    >>> points = ((313.15, 100e-6), (373.15, 11.066e-6))
+    >>> round(walther_viscosity(343.15, points) * 1e6, 2)
+    27.13
+    """
+    _require_oil(points)
+    (cold, thick), (warm, thin) = points
+    require_positive("temperature", temperature, "K")
+    _require_inside(temperature, cold, warm)
+    slope = (_ordinate(thin) - _ordinate(thick)) / math.log10(warm / cold)
+    ordinate = _ordinate(thick) + slope * math.log10(temperature / cold)
+    return float(10.0 ** (10.0**ordinate) - _SHIFT) * 1e-6

@@ -1,0 +1,52 @@
+"""Viscosity under pressure: the exponential law of Barus."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import require_between, require_positive
+from tribodyn.lubricant.growth import exponential_growth
+
+__all__ = ["barus_viscosity"]
+
+
+def barus_viscosity(
+    pressure: ArrayLike, dynamic_viscosity: float, pressure_viscosity_coefficient: float
+) -> NDArray[np.float64]:
+    """Viscosity under pressure by Barus: ``eta0 exp(alpha p)``.
+
+    Parameters
+    ----------
+    pressure : float or array [Pa]
+        Pressure above ambient, not negative.
+    dynamic_viscosity : float [Pa*s]
+        Viscosity at ambient pressure.
+    pressure_viscosity_coefficient : float [1/Pa]
+        Slope of ln(viscosity) over pressure.
+
+    Returns
+    -------
+    float or array [Pa*s]
+        Same shape as ``pressure``.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range or the viscosity overflows.
+
+    Valid to about 0.1 GPa; above, it exceeds measured viscosities by orders of magnitude.
+    Source: Barus (1893).
+
+    Examples
+    --------
+    >>> round(float(barus_viscosity(100e6, 0.082, 2.19e-8)), 6)
+    0.732687
+    """
+    require_between("pressure", pressure, 0.0, np.inf, "Pa")
+    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
+    require_between(
+        "pressure_viscosity_coefficient", pressure_viscosity_coefficient, 0.0, 1e-6, "1/Pa"
+    )
+    exponent = pressure_viscosity_coefficient * np.asarray(pressure, dtype=float)
+    return dynamic_viscosity * exponential_growth(exponent, pressure, "Barus")

@@ -1,0 +1,19 @@
+"""The mesh table: what happens in the tooth contact over one mesh cycle, made, kept and drawn."""
+
+from tribodyn.mesh.build import build
+from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.film import film_columns
+from tribodyn.mesh.functions import MeshFunctions
+from tribodyn.mesh.grid import PhaseFunction, PhaseGrid, phase_grid
+from tribodyn.mesh.table import MeshTable
+
+__all__ = [
+    "MeshColumns",
+    "MeshFunctions",
+    "MeshTable",
+    "PhaseFunction",
+    "PhaseGrid",
+    "build",
+    "film_columns",
+    "phase_grid",
+]

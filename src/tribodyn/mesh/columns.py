@@ -1,0 +1,170 @@
+"""The columns of a mesh table: what is stored, and what follows from it at once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.gear import SpurPair
+from tribodyn.mesh.grid import PhaseGrid
+
+__all__ = ["MeshColumns"]
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshColumns:
+    """Arrays over mesh phase and the figures that they were made with.
+
+    Columns have the shape (n, pairs), where n counts the knots: pair ``i`` entered contact ``i``
+    cycles before phase 0. They are zero where the pair is not in contact; only ``path`` goes on.
+    Phase 0 is where a pair enters contact at A.
+
+    Parameters
+    ----------
+    grid : PhaseGrid
+        Knots on the mesh phase, twice at each event.
+    path : array (n, pairs) [m]
+        Distance from the pinion's base tangent point along the line of action.
+    in_contact : bool array (n, pairs)
+        Whether the pair is in contact.
+    sliding_speed, entrainment_speed : array (n, pairs) [m/s]
+        Difference (pinion minus wheel) and half the sum of the surface speeds.
+    slide_to_roll_ratio : array (n, pairs)
+        Sliding over entrainment speed.
+    sliding_direction : array (n, pairs)
+        Sign of the sliding speed, constant between two events.
+    equivalent_radius, pinion_curvature_radius, wheel_curvature_radius : array (n, pairs) [m]
+        Radii of curvature in the contact.
+    stiffness : array (n, pairs) [N/m]
+        Secant stiffness of the pair at its quasi-static load.
+    load_share : array (n, pairs)
+        Part of the total normal force on the pair.
+    normal_force : array (n, pairs) [N]
+        Quasi-static force on the pair.
+    load_per_width : array (n, pairs) [N/m]
+        Normal force over the common face width.
+    hertz_pressure : array (n, pairs) [Pa]
+        Maximum Hertzian pressure.
+    friction_coefficient : array (n, pairs)
+        Friction force over normal force.
+    central_film, minimum_film : array (n, pairs) [m] or None
+        Oil film, where the film model gives it.
+    film_ratio : array (n, pairs) or None
+        Least known film over the composite roughness.
+    gear_pair : SpurPair
+        Both gears in their working position.
+    pinion_speed : float [rad/s]
+        Speed of the pinion.
+    pinion_torque : float [N*m]
+        Torque on the pinion.
+    composite_roughness : float [m]
+        Root of the sum of squares of both roughnesses.
+    stiffness_model, friction_law, film_model : str
+        Which models made the table.
+    """
+
+    grid: PhaseGrid
+    path: FloatArray
+    in_contact: NDArray[np.bool_]
+    sliding_speed: FloatArray
+    entrainment_speed: FloatArray
+    slide_to_roll_ratio: FloatArray
+    sliding_direction: FloatArray
+    equivalent_radius: FloatArray
+    pinion_curvature_radius: FloatArray
+    wheel_curvature_radius: FloatArray
+    stiffness: FloatArray
+    load_share: FloatArray
+    normal_force: FloatArray
+    load_per_width: FloatArray
+    hertz_pressure: FloatArray
+    friction_coefficient: FloatArray
+    central_film: FloatArray | None
+    minimum_film: FloatArray | None
+    film_ratio: FloatArray | None
+    gear_pair: SpurPair
+    pinion_speed: float
+    pinion_torque: float
+    composite_roughness: float
+    stiffness_model: str
+    friction_law: str
+    film_model: str
+
+    @property
+    def driver(self) -> str:
+        """Which gear drives: ``"pinion"`` or ``"wheel"``."""
+        return self.gear_pair.driver
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """Mean number of pairs in contact."""
+        return self.gear_pair.transverse_contact_ratio
+
+    @property
+    def common_face_width(self) -> float:
+        """Face width in which both gears are in contact [m]."""
+        return self.gear_pair.common_face_width
+
+    @property
+    def base_radius_pinion(self) -> float:
+        """Base radius of the pinion [m]."""
+        return self.gear_pair.pinion.base_radius
+
+    @property
+    def base_radius_wheel(self) -> float:
+        """Base radius of the wheel [m]."""
+        return self.gear_pair.wheel.base_radius
+
+    @property
+    def mesh_frequency(self) -> float:
+        """Tooth engagements per second [Hz]."""
+        return self.pinion_speed * self.gear_pair.pinion.teeth / (2.0 * math.pi)
+
+    @property
+    def total_normal_force(self) -> float:
+        """Quasi-static force of all pairs together [N]."""
+        return self.pinion_torque / self.base_radius_pinion
+
+    @property
+    def phase(self) -> FloatArray:
+        """Mesh phase of the knots (n,), each event twice."""
+        return self.grid.phase
+
+    @property
+    def segments(self) -> tuple[slice, ...]:
+        """Knots between two events."""
+        return self.grid.segments
+
+    @property
+    def event_phases(self) -> tuple[float, ...]:
+        """Phases where a pair enters, leaves or passes the pitch point."""
+        return self.grid.event_phases
+
+    @property
+    def mesh_stiffness(self) -> FloatArray:
+        """Stiffness of all pairs together (n,) [N/m]."""
+        return np.asarray(self.stiffness.sum(axis=1))
+
+    @property
+    def friction_sum(self) -> FloatArray:
+        """Friction over normal force of all pairs together, with direction (n,)."""
+        return np.asarray(self._directed_friction.sum(axis=1))
+
+    @property
+    def friction_moment_pinion(self) -> FloatArray:
+        """Friction moment on the pinion over total normal force (n,) [m]."""
+        return np.asarray((self._directed_friction * self.pinion_curvature_radius).sum(axis=1))
+
+    @property
+    def friction_moment_wheel(self) -> FloatArray:
+        """Friction moment on the wheel over total normal force (n,) [m]."""
+        return np.asarray((self._directed_friction * self.wheel_curvature_radius).sum(axis=1))
+
+    @property
+    def _directed_friction(self) -> FloatArray:
+        return self.sliding_direction * self.friction_coefficient * self.load_share

@@ -1,0 +1,195 @@
+"""The phase grid of a mesh cycle: knots that stand exactly on the events, with both sides.
+
+At an event (a pair enters, leaves or passes the pitch point) quantities jump. Each segment
+between two events has its own knots at both ends, so a phase on an event occurs twice: with the
+value before and with the value after.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem
+
+__all__ = ["PhaseFunction", "PhaseGrid", "phase_grid"]
+
+FloatArray = NDArray[np.float64]
+
+#: Cubic interpolation needs three intervals; Simpson's rule an even number.
+_LEAST_INTERVALS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseGrid:
+    """Uniform knots in each segment between two events.
+
+    Parameters
+    ----------
+    event_phases : tuple of float
+        Increasing, from 0 to below 1.
+    intervals : tuple of int
+        Number of intervals of each segment, even, at least four.
+    """
+
+    event_phases: tuple[float, ...]
+    intervals: tuple[int, ...]
+
+    @cached_property
+    def segments(self) -> tuple[slice, ...]:
+        """Knots of each segment, both ends included."""
+        stops = np.cumsum(np.array(self.intervals) + 1)
+        return tuple(
+            slice(int(stop) - count - 1, int(stop))
+            for stop, count in zip(stops, self.intervals, strict=True)
+        )
+
+    @cached_property
+    def phase(self) -> FloatArray:
+        """Mesh phase of the knots, from 0 to 1; each event occurs twice."""
+        ends = (*self.event_phases[1:], 1.0)
+        spans = zip(self.event_phases, ends, self.intervals, strict=True)
+        return np.concatenate([np.linspace(a, b, count + 1) for a, b, count in spans])
+
+    @cached_property
+    def middle(self) -> FloatArray:
+        """Phase of the middle of the segment of each knot: a place that is on no event."""
+        ends = np.array((*self.event_phases[1:], 1.0))
+        middles = 0.5 * (np.array(self.event_phases) + ends)
+        return np.repeat(middles, np.array(self.intervals) + 1)
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Mean over the cycle by Simpson's rule in each segment.
+
+        Parameters
+        ----------
+        values : array (n, ...)
+            Values at the knots.
+
+        Returns
+        -------
+        array (...)
+            Exact for piecewise cubics.
+        """
+        return np.asarray(np.tensordot(self._weights, values, axes=(0, 0)))
+
+    @cached_property
+    def _weights(self) -> FloatArray:
+        parts = []
+        for segment, count in zip(self.segments, self.intervals, strict=True):
+            simpson = np.ones(count + 1)
+            simpson[1:-1:2], simpson[2:-1:2] = 4.0, 2.0
+            ends = self.phase[segment][[0, -1]]
+            parts.append(simpson * (ends[1] - ends[0]) / (3.0 * count))
+        return np.concatenate(parts)
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseFunction:
+    """Values on a phase grid as a function of any mesh phase.
+
+    Parameters
+    ----------
+    grid : PhaseGrid
+        The knots.
+    values : array (n, ...)
+        Values at the knots.
+    """
+
+    grid: PhaseGrid
+    values: FloatArray
+
+    def __call__(self, phase: FloatArray | float) -> FloatArray:
+        """Interpolate with the cubic through four knots of one segment.
+
+        Parameters
+        ----------
+        phase : float or array
+            Mesh phase, taken modulo one. Exactly on an event the value after it is returned,
+            below it the value before it.
+
+        Returns
+        -------
+        array
+            Shape of ``phase`` followed by the further shape of the values.
+        """
+        grid, folded = self.grid, np.mod(np.asarray(phase, dtype=float), 1.0)
+        starts = np.array((*grid.event_phases, 1.0))
+        segment = np.searchsorted(starts[:-1], folded, side="right") - 1
+        count = np.array(grid.intervals)[segment]
+        width = (starts[1:] - starts[:-1])[segment]
+        position = (folded - starts[segment]) / width * count
+        left = np.clip(position.astype(int) - 1, 0, count - 3)
+        first = np.array([part.start for part in grid.segments])[segment] + left
+        u = position - left
+        weights = (
+            (1.0 - u) * (2.0 - u) * (3.0 - u) / 6.0,
+            u * (2.0 - u) * (3.0 - u) / 2.0,
+            u * (u - 1.0) * (3.0 - u) / 2.0,
+            u * (u - 1.0) * (u - 2.0) / 6.0,
+        )
+        further = (1,) * (self.values.ndim - 1)
+        total = np.zeros(folded.shape + self.values.shape[1:])
+        for knot, weight in enumerate(weights):
+            total += weight.reshape(weight.shape + further) * self.values[first + knot]
+        return total
+
+
+def phase_grid(event_phases: tuple[float, ...], steps: int = 512) -> PhaseGrid:
+    """Lay about ``steps`` intervals over one mesh cycle, with knots on every event.
+
+    Parameters
+    ----------
+    event_phases : tuple of float
+        Phases at which something jumps: increasing, the first 0, all below 1.
+    steps : int
+        Wanted number of intervals, at least 16.
+
+    Returns
+    -------
+    PhaseGrid
+        Each segment has an even number of intervals near its share, at least four.
+
+    Raises
+    ------
+    InputError
+        If the events are not in order, or there are too few steps.
+
+    Notes
+    -----
+    Any number of events. Source: quadrature and interpolation keep their order only on smooth
+    pieces.
+
+    Examples
+    --------
+    >>> grid = phase_grid((0.0, 0.25), 16)
+    >>> grid.intervals, grid.segments
+    ((4, 12), (slice(0, 5, None), slice(5, 18, None)))
+    >>> float(grid.mean(grid.phase**3))
+    0.25
+    """
+    edges = np.array((*event_phases, 1.0))
+    if edges[0] != 0.0 or np.any(np.diff(edges) <= 0.0):
+        raise InputError(
+            Problem(
+                what=f"event phases {', '.join(f'{edge:g}' for edge in event_phases)}",
+                where="argument event_phases",
+                why="They start with 0, increase and stay below 1",
+                remedy="Sort the phases and remove repeated ones",
+            )
+        )
+    if steps < 16:
+        raise InputError(
+            Problem(
+                what=f"steps = {steps}",
+                where="argument steps",
+                why="A mesh cycle needs at least 16 intervals",
+                remedy="Give for example steps = 512",
+            )
+        )
+    halves = np.rint(0.5 * steps * np.diff(edges)).astype(int)
+    intervals = tuple(max(_LEAST_INTERVALS, 2 * int(half)) for half in halves)
+    return PhaseGrid(tuple(float(event) for event in event_phases), intervals)

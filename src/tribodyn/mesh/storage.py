@@ -1,0 +1,169 @@
+"""A mesh table as a labelled data set, and to and from a netCDF file."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from dataclasses import asdict, fields
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, ModelWarning, OutputExistsError, Problem
+from tribodyn.gear import BasicRack, SpurGear, SpurPair
+from tribodyn.mesh.grid import PhaseGrid
+from tribodyn.mesh.table import MeshTable
+from tribodyn.nomenclature import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["load", "save", "to_xarray"]
+
+_FORMAT = "tribodyn mesh table 1"
+#: Columns whose quantity has another name in the nomenclature.
+_QUANTITY = {
+    "stiffness": "pair_stiffness",
+    "pinion_curvature_radius": "curvature_radius",
+    "wheel_curvature_radius": "curvature_radius",
+    "phase": "mesh_phase",
+}
+_DERIVED = ("mesh_stiffness", "friction_sum", "friction_moment_pinion", "friction_moment_wheel")
+
+
+def to_xarray(table: MeshTable) -> xarray.Dataset:
+    """Convert a mesh table to a labelled data set.
+
+    Parameters
+    ----------
+    table : MeshTable
+        The table.
+
+    Returns
+    -------
+    xarray.Dataset
+        Columns with attributes ``units`` and ``long_name`` over the dimensions ``knot`` and
+        ``pair``, events over ``event``; what made the table as attributes.
+    """
+    import xarray
+
+    variables: dict[str, Any] = {}
+    attributes: dict[str, Any] = {"format": _FORMAT, "gear_pair": _write_pair(table.gear_pair)}
+    for field in fields(table):
+        value = getattr(table, field.name)
+        if isinstance(value, np.ndarray):
+            variables[field.name] = (("knot", "pair"), value, _describe(field.name))
+        elif isinstance(value, float | str):
+            attributes[field.name] = value
+    for name in _DERIVED:
+        variables[name] = (("knot",), getattr(table, name), _describe(name))
+    coordinates = {
+        "phase": (("knot",), table.phase, _describe("phase")),
+        "event_phase": (("event",), np.array(table.event_phases), _describe("phase")),
+        "intervals": (("event",), np.array(table.grid.intervals)),
+    }
+    return xarray.Dataset(variables, coordinates, attributes)
+
+
+def _describe(column: str) -> dict[str, str]:
+    quantity = QUANTITIES[_QUANTITY.get(column, column)]
+    return {"units": quantity.unit or "1", "long_name": quantity.meaning}
+
+
+def save(table: MeshTable, path: str | PathLike[str]) -> None:
+    """Write a mesh table to a netCDF file.
+
+    Parameters
+    ----------
+    table : MeshTable
+        The table.
+    path : str or path
+        File to write.
+
+    Raises
+    ------
+    OutputExistsError
+        If the file exists.
+    """
+    if Path(path).exists():
+        raise OutputExistsError(
+            Problem(
+                what=f"{path} exists already",
+                where="argument path",
+                why="An existing file is never overwritten",
+                remedy="Choose another name or remove the file",
+            )
+        )
+    to_xarray(table).to_netcdf(Path(path), engine="h5netcdf")
+
+
+def load(path: str | PathLike[str]) -> MeshTable:
+    """Read a mesh table from a netCDF file.
+
+    Parameters
+    ----------
+    path : str or path
+        File that :func:`save` wrote.
+
+    Returns
+    -------
+    MeshTable
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it holds no mesh table.
+    """
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf") as opened:
+            data = opened.load()
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, str(error)) from error
+    if data.attrs.get("format") != _FORMAT:
+        raise _unreadable(path, f"its format is {data.attrs.get('format', 'not named')}")
+    grid = PhaseGrid(
+        tuple(float(value) for value in data["event_phase"].values),
+        tuple(int(value) for value in data["intervals"].values),
+    )
+    values: dict[str, Any] = {"grid": grid, "gear_pair": _read_pair(data.attrs["gear_pair"])}
+    for field in fields(MeshTable):
+        if field.name in data:
+            values[field.name] = data[field.name].values
+        elif field.name not in values:
+            values[field.name] = _plain(data.attrs.get(field.name))
+    return MeshTable(**values)
+
+
+def _plain(value: Any) -> Any:
+    """NetCDF attributes come back as NumPy scalars."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
+    return InputError(
+        Problem(
+            what=f"{path} is no mesh table",
+            where="argument path",
+            why=reason,
+            remedy="Give a file that MeshTable.save wrote",
+        )
+    )
+
+
+def _write_pair(pair: SpurPair) -> str:
+    return json.dumps(asdict(pair))
+
+
+def _read_pair(text: str) -> SpurPair:
+    values = json.loads(text)
+    with warnings.catch_warnings():
+        # Whoever made the table has seen what there was to say about these gears.
+        warnings.simplefilter("ignore", ModelWarning)
+        for name in ("pinion", "wheel"):
+            rack = BasicRack(**values[name].pop("rack"))
+            values[name] = SpurGear(rack=rack, **values[name])
+        return SpurPair(**values)

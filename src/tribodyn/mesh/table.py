@@ -1,0 +1,193 @@
+"""The mesh table: everything that happens in the tooth contact over one mesh cycle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.functions import MeshFunctions
+from tribodyn.mesh.grid import PhaseFunction
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["MeshTable"]
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MeshTable(MeshColumns):
+    """One mesh cycle of the tooth contact, made by :func:`tribodyn.mesh.build`.
+
+    Parameters and columns are those of :class:`tribodyn.mesh.MeshColumns`.
+    """
+
+    @property
+    def mean_mesh_stiffness(self) -> float:
+        """Mean of the mesh stiffness over the cycle [N/m]."""
+        return float(self.grid.mean(self.mesh_stiffness))
+
+    @property
+    def mean_friction_coefficient(self) -> float:
+        """Mean over the cycle of the friction coefficient, weighted with the load share."""
+        return float(self.grid.mean((self.load_share * self.friction_coefficient).sum(axis=1)))
+
+    @property
+    def mean_friction_power(self) -> float:
+        """Mean over the cycle of the sliding power lost in the quasi-static mesh [W]."""
+        losses = self.friction_coefficient * self.normal_force * np.abs(self.sliding_speed)
+        return float(self.grid.mean(losses.sum(axis=1)))
+
+    def at(self, column: str, phase: FloatArray | float) -> FloatArray:
+        """Interpolate a column at any mesh phase.
+
+        Parameters
+        ----------
+        column : str
+            Name of an array of this table.
+        phase : float or array
+            Mesh phase, taken modulo one; exactly on an event the value after it is returned.
+
+        Returns
+        -------
+        array
+            Shape of ``phase``, and the pairs as last axis where the column has them.
+
+        Raises
+        ------
+        InputError
+            If there is no such column.
+
+        Notes
+        -----
+        Cubic within each segment between two events; the error falls with the fourth power of
+        the knot distance.
+        """
+        values = getattr(self, column, None)
+        if not isinstance(values, np.ndarray):
+            raise InputError(
+                Problem(
+                    what=f'the mesh table has no column "{column}"',
+                    where="argument column",
+                    why=f"Its columns are: {', '.join(self._columns())}",
+                    remedy="Name one of them",
+                )
+            )
+        if values.dtype == np.bool_:
+            return np.asarray(PhaseFunction(self.grid, values.astype(float))(phase) > 0.5)
+        return PhaseFunction(self.grid, values)(phase)
+
+    def _columns(self) -> list[str]:
+        derived = ["mesh_stiffness", "friction_sum", "friction_moment_pinion"]
+        stored = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]
+        return [*stored, *derived, "friction_moment_wheel"]
+
+    def functions(self) -> MeshFunctions:
+        """Hand over what a dynamic model reads, as functions of mesh phase.
+
+        Returns
+        -------
+        MeshFunctions
+        """
+        return MeshFunctions(
+            stiffness=PhaseFunction(self.grid, self.mesh_stiffness),
+            friction_sum=PhaseFunction(self.grid, self.friction_sum),
+            friction_moment_pinion=PhaseFunction(self.grid, self.friction_moment_pinion),
+            friction_moment_wheel=PhaseFunction(self.grid, self.friction_moment_wheel),
+            event_phases=self.event_phases,
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Convert to a labelled data set with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``knot``, ``pair`` and ``event``.
+        """
+        from tribodyn.mesh.storage import to_xarray
+
+        return to_xarray(self)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the table to a netCDF file.
+
+        Parameters
+        ----------
+        path : str or path
+            File to write; an existing one is an error.
+
+        Raises
+        ------
+        OutputExistsError
+            If the file exists.
+        """
+        from tribodyn.mesh.storage import save
+
+        save(self, path)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> MeshTable:
+        """Read a table that :meth:`save` wrote.
+
+        Parameters
+        ----------
+        path : str or path
+            File to read.
+
+        Returns
+        -------
+        MeshTable
+            Equal to the saved one to the last bit.
+
+        Raises
+        ------
+        InputError
+            If there is no such file, or it holds no mesh table.
+        """
+        from tribodyn.mesh.storage import load
+
+        return load(path)
+
+    def plot_stiffness(self) -> Any:
+        """Draw pair and mesh stiffness over the mesh cycle.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return self._figure("mesh_stiffness")
+
+    def plot_friction(self) -> Any:
+        """Draw the friction of a tooth pair over the path of contact.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return self._figure("friction")
+
+    def _figure(self, name: str) -> Any:
+        # The one step upward of the layers: a result draws itself. Figures take whatever has
+        # a mesh and a case with a gear pair, of which this table is the part they need.
+        from tribodyn.plot import FIGURES
+
+        case = SimpleNamespace(gear_pair=self.gear_pair)
+        return FIGURES[name](SimpleNamespace(mesh=self, case=case))
+
+    def __repr__(self) -> str:
+        """One line with the figures that tell tables apart."""
+        return (
+            f"MeshTable(contact ratio {self.transverse_contact_ratio:.4f}, "
+            f"mesh frequency {self.mesh_frequency:.4g} Hz, "
+            f"mean stiffness {self.mean_mesh_stiffness:.4g} N/m, "
+            f"mean friction coefficient {self.mean_friction_coefficient:.4g})"
+        )

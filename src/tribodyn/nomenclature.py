@@ -1,0 +1,204 @@
+"""Every quantity of the product once: name, symbol, unit, display unit, meaning.
+
+Case fields, summary figures, plot axes and the glossary come from this table or are tested
+against it. Symbols follow ISO 21771 and ISO 6336 where they have one.
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+
+__all__ = ["QUANTITIES", "Quantity", "find", "lookup"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One named quantity.
+
+    Parameters
+    ----------
+    name : str
+        Long exact name used in the API.
+    symbol : str
+        Symbol of the field, plain text.
+    unit : str
+        SI unit, empty for a pure number.
+    display_unit : str
+        Unit shown to engineers.
+    meaning : str
+        One line.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    display_unit: str
+    meaning: str
+
+    @property
+    def label(self) -> str:
+        """Axis label: name in words with the display unit."""
+        words = self.name.replace("_", " ")
+        words = words[0].upper() + words[1:]
+        return f"{words} [{self.display_unit}]" if self.display_unit else words
+
+
+_TABLE = """
+teeth | z | | | number of teeth
+normal_module | m_n | m | mm | module in the normal section
+normal_pressure_angle | alpha_n | rad | deg | pressure angle of the basic rack
+operating_pressure_angle | alpha_wt | rad | deg | pressure angle at the operating pitch circle
+center_distance | a | m | mm | distance between the two axes
+profile_shift_coefficient | x | | | rack displacement divided by the module, positive outwards
+addendum_coefficient | h_aP* | | | addendum of the basic rack divided by the module
+dedendum_coefficient | h_fP* | | | dedendum of the basic rack divided by the module
+rack_tip_radius_coefficient | rho_fP* | | | tip radius of the basic rack divided by the module
+face_width | b | m | mm | width of the toothing
+common_face_width | b | m | mm | face width in which both gears are in contact
+tip_diameter | d_a | m | mm | diameter of the tip circle
+root_diameter | d_f | m | mm | diameter of the root circle
+reference_diameter | d | m | mm | diameter of the reference circle
+bore_diameter | d_i | m | mm | diameter of the bore; zero for a solid gear
+base_radius | r_b | m | mm | radius of the base circle
+base_pitch | p_b | m | mm | distance of neighbouring flanks along the line of action
+tip_shortening_coefficient | k | | | shortening of the addendum divided by the module
+tip_thickness | s_a | m | mm | tooth thickness at the tip circle
+transverse_contact_ratio | epsilon_alpha | | | length of the path of contact divided by the base pitch
+roll_angle | xi | rad | rad | roll angle of the driving gear, radius of curvature over base radius
+curvature_radius | rho | m | mm | radius of curvature of a flank in the contact
+equivalent_radius | R | m | mm | reduced radius of curvature of the contact
+mass | m | kg | kg | mass of a gear
+moment_of_inertia | I | kg*m^2 | kg*mm^2 | polar moment of inertia of a gear about its axis
+youngs_modulus | E | Pa | GPa | Young's modulus
+poissons_ratio | nu | | | Poisson's ratio
+density | rho | kg/m^3 | kg/m^3 | density
+effective_modulus | E' | Pa | GPa | 2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2 (Dowson-Higginson convention)
+dynamic_viscosity | eta_0 | Pa*s | mPa*s | absolute viscosity at ambient pressure and working temperature
+kinematic_viscosity | nu | m^2/s | mm^2/s | viscosity divided by density
+pressure_viscosity_coefficient | alpha | 1/Pa | 1/GPa | slope of ln(viscosity) over pressure at ambient pressure
+temperature | theta | K | degC | working temperature
+speed | n | rad/s | rpm | rotational speed of the gear named by speed_of
+torque | T | N*m | N*m | torque on the gear named by speed_of
+mesh_frequency | f_m | Hz | Hz | tooth engagements per second
+mesh_phase | phi | | | fraction of the mesh cycle since a tooth pair entered contact at A
+load_per_width | w | N/m | N/mm | normal load of a tooth pair per face width
+normal_force | F_n | N | N | force along the line of action
+load_share | | | | part of the total normal force that a tooth pair carries
+hertz_pressure | p_H | Pa | GPa | maximum Hertzian pressure
+half_width | a | m | um | half width of the Hertzian contact
+sliding_speed | v_s | m/s | m/s | difference of the surface speeds, pinion minus wheel
+entrainment_speed | u_e | m/s | m/s | half the sum of the surface speeds
+slide_to_roll_ratio | SR | | | sliding speed over entrainment speed
+film_thickness | h | m | um | oil film thickness
+central_film | h_c | m | um | oil film thickness in the centre of the contact
+minimum_film | h_min | m | um | least oil film thickness
+film_ratio | Lambda | | | minimum film over composite roughness
+composite_roughness | S | m | um | root of the sum of squares of the two rms roughnesses
+roughness_rms | S_q | m | um | rms roughness of one flank
+friction_coefficient | mu | | | friction force over normal force
+gear_loss_factor | H_V | | | mean sliding work over transmitted work at unit friction
+pair_stiffness | k_i | N/m | N/um | stiffness of one tooth pair along the line of action
+mesh_stiffness | K_m | N/m | N/um | stiffness of all tooth pairs in contact
+mesh_force | N | N | N | dynamic force along the line of action
+friction_force | F_f | N | N | dynamic friction force of all tooth pairs
+power | P | W | W | power
+mesh_damping | c_m | N*s/m | N*s/m | damping of the tooth contact along the line of action
+mesh_damping_ratio | zeta | | | mesh damping over its critical value
+bearing_stiffness | k_b | N/m | N/um | radial stiffness of each gear's support
+bearing_damping | c_b | N*s/m | N*s/m | radial damping of each gear's support
+bearing_force | F_b | N | N | force of a gear on its support
+backlash | j_bt | m | mm | total play along the line of action
+transmission_error | e | m | um | displacement of the wheel behind its ideal place on the line of action
+dynamic_transmission_error | DTE | m | um | compression of the mesh along the line of action while running
+deflection | delta | m | um | compression of a contact
+acceleration | a | m/s^2 | m/s^2 | acceleration
+frequency | f | Hz | Hz | frequency
+time | t | s | ms | time
+angle | | rad | deg | angle
+contact_loss_share | | | | part of the mesh cycle without contact on the driving flank
+steady_state_error | | | | distance to the exact periodic orbit relative to its size
+path | g | m | mm | distance of a contact from the pinion's base tangent point along the line of action
+in_contact | | | | whether a tooth pair is in contact
+pinion_curvature_radius | rho_1 | m | mm | radius of curvature of the pinion's flank in the contact
+wheel_curvature_radius | rho_2 | m | mm | radius of curvature of the wheel's flank in the contact
+sliding_direction | sigma | | | sign of the sliding speed
+friction_sum | | | | directed friction coefficient of all tooth pairs, each with its load share
+friction_moment_pinion | | m | mm | friction moment on the pinion over total normal force
+friction_moment_wheel | | m | mm | friction moment on the wheel over total normal force
+total_normal_force | F_n | N | N | force along the line of action of all tooth pairs together
+pinion_speed | n_1 | rad/s | rpm | rotational speed of the pinion
+pinion_torque | T_1 | N*m | N*m | torque on the pinion
+base_radius_pinion | r_b1 | m | mm | base radius of the pinion
+base_radius_wheel | r_b2 | m | mm | base radius of the wheel
+single_pair_stiffness | | N/m | N/um | stiffness of the mesh while one tooth pair is in contact
+double_pair_stiffness | | N/m | N/um | stiffness of the mesh while two tooth pairs are in contact
+mean_mesh_stiffness | | N/m | N/um | mean of the mesh stiffness over the mesh cycle
+mean_friction_coefficient | mu_m | | | friction coefficient weighted with the load share, mean over the mesh cycle
+compliance | | m/N | um/kN | deflection over force
+bore_radius | r_i | m | mm | radius of the bore
+root_radius | r_f | m | mm | radius of the root circle
+"""
+
+
+def _read() -> dict[str, Quantity]:
+    rows = (line.split("|") for line in _TABLE.strip().splitlines())
+    quantities = (Quantity(*(cell.strip() for cell in row)) for row in rows)
+    return {quantity.name: quantity for quantity in quantities}
+
+
+QUANTITIES: dict[str, Quantity] = _read()
+
+
+def lookup(name: str) -> Quantity:
+    """Return the quantity called ``name``.
+
+    Parameters
+    ----------
+    name : str
+        Exact name.
+
+    Returns
+    -------
+    Quantity
+
+    Raises
+    ------
+    KeyError
+        If there is none; the message names the nearest.
+
+    Examples
+    --------
+    >>> lookup("base_radius").symbol
+    'r_b'
+    """
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    near = difflib.get_close_matches(name, QUANTITIES, n=1)
+    hint = f'; did you mean "{near[0]}"?' if near else ""
+    raise KeyError(f'no quantity is called "{name}"{hint}')
+
+
+def find(text: str) -> list[Quantity]:
+    """Find quantities by symbol, name or part of a name.
+
+    Parameters
+    ----------
+    text : str
+        What the user typed.
+
+    Returns
+    -------
+    list of Quantity
+        Exact matches of symbol or name alone if there are any, else all partial matches.
+
+    Examples
+    --------
+    >>> [quantity.name for quantity in find("epsilon_alpha")]
+    ['transverse_contact_ratio']
+    """
+    exact = [q for q in QUANTITIES.values() if text in (q.name, q.symbol)]
+    if exact:
+        return exact
+    lowered = text.lower().replace(" ", "_")
+    return [q for q in QUANTITIES.values() if lowered in q.name or lowered in q.meaning.lower()]

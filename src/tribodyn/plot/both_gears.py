@@ -1,0 +1,112 @@
+"""Panels that show a signal of both gear centres, along the line of action and across it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.plot.harmonics import harmonic_panel
+from tribodyn.plot.labels import axis_label, axis_words, display_unit
+from tribodyn.plot.motion import Motion
+from tribodyn.plot.style import PINION, WHEEL, Panel, line
+
+__all__ = ["harmonic_panels", "motion_panels", "no_translation"]
+
+#: Takes a result, a gear and an axis; returns the signal on the fine samples in SI.
+Signal = Callable[[Any, str, str], NDArray[np.float64]]
+
+#: Name and colour of each gear's curve.
+_GEARS = (("pinion", PINION), ("wheel", WHEEL))
+#: Axis of the coordinate and the words for it.
+_DIRECTIONS = (("y", "along the line of action"), ("x", "across the line of action"))
+
+
+def _words(quantity: str, direction: str) -> str:
+    """Quantity and direction on two lines, which fit beside one panel."""
+    return f"{axis_words(quantity)}<br>{direction}"
+
+
+def no_translation(result: Any) -> str:
+    """Tell why a result has no motion of the gear centres.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    str
+        Empty when the gear centres move.
+    """
+    if "pinion_y" in result.response.names:
+        return ""
+    return (
+        "The model turns the gears only: their centres stay in place and no bearing is loaded. "
+        'Choose dynamics.model = "spur-6dof" to let them move.'
+    )
+
+
+def motion_panels(result: Any, quantity: str, signal: Signal) -> list[Panel]:
+    """Show a signal of both gears over the mesh cycle or over time.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+    quantity : str
+        Quantity of the signal in the nomenclature.
+    signal : callable
+        Takes a result, a gear and an axis; returns the signal in SI.
+
+    Returns
+    -------
+    list of Panel
+        Along the line of action, and across it.
+    """
+    motion, unit = Motion(result), display_unit(quantity)
+
+    def curve(gear: str, axis: str, color: str) -> dict[str, Any]:
+        x, y = motion.curve(quantity, signal(result, gear, axis))
+        return line(x, y, gear, color, unit=unit, width=1.5)
+
+    return [
+        Panel(
+            axis_label(quantity, _words(quantity, words)),
+            [curve(gear, axis, color) for gear, color in _GEARS],
+        )
+        for axis, words in _DIRECTIONS
+    ]
+
+
+def harmonic_panels(result: Any, quantity: str, signal: Signal) -> list[Panel]:
+    """Show the mesh harmonics of a signal of both gears.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns; its response is a steady state.
+    quantity : str
+        Quantity of the signal in the nomenclature.
+    signal : callable
+        Takes a result, a gear and an axis; returns the signal in SI.
+
+    Returns
+    -------
+    list of Panel
+        Along the line of action, and across it; empty if the gear centres do not move.
+    """
+    if no_translation(result):
+        return []
+    return [
+        harmonic_panel(
+            result,
+            quantity,
+            _words(quantity, words),
+            [(gear, color, signal(result, gear, axis)) for gear, color in _GEARS],
+        )
+        for axis, words in _DIRECTIONS
+    ]

@@ -1,0 +1,192 @@
+"""The response as curves: over two mesh cycles for a steady state, over time for a transient."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.plot.cycle import CYCLES, cycles, mesh_events
+from tribodyn.plot.events import event_lines
+from tribodyn.plot.labels import axis_label, displayed, significant
+from tribodyn.plot.style import button_row
+from tribodyn.study import record
+
+__all__ = ["Motion", "is_periodic"]
+
+Array = NDArray[np.float64]
+
+#: Samples that each part of a transient curve keeps; more would not be seen but fill the file.
+_KEPT = 2000
+#: Relative change of the vibration from one quarter of a run to the next that is called settled.
+_SETTLED = 0.01
+#: Difference of two neighbouring samples, relative to the range, that is drawn as a jump.
+_JUMP = 1e-6
+
+
+def is_periodic(result: Any) -> bool:
+    """Tell a steady state from a transient, whose error has no meaning.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    bool
+    """
+    return record.is_steady(result.response)
+
+
+def _ends(values: Array) -> NDArray[np.intp]:
+    """Of three samples a step, its left end, and its right end where a jump or the end follows."""
+    left = np.arange(0, len(values), 3)
+    right = left + 2
+    apart = np.abs(values[right[:-1]] - values[left[1:]]) > _JUMP * np.ptp(values)
+    return np.sort(np.concatenate((left, right[:-1][apart], right[-1:])))
+
+
+def _extremes(values: Array, kept: int) -> NDArray[np.intp]:
+    """Indices of the least and greatest value of every group, so that thinning keeps peaks."""
+    count = len(values)
+    if count <= kept:
+        return np.arange(count)
+    width = -(-2 * count // kept)
+    folded = np.append(values, np.full(-count % width, values[-1])).reshape(-1, width)
+    picked = np.stack((folded.argmin(axis=1), folded.argmax(axis=1)), axis=1)
+    starts = np.arange(len(folded))[:, None] * width
+    return np.unique(np.minimum(picked + starts, count - 1))
+
+
+class Motion:
+    """The horizontal axis on which a response is drawn.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Attributes
+    ----------
+    periodic : bool
+        Whether the response is one period of a steady state.
+    label : str
+        Label of the horizontal axis.
+    window : str
+        Words for the part of a transient over which figures are taken; empty for a steady state.
+    """
+
+    def __init__(self, result: Any) -> None:
+        self._response = result.response
+        self._mesh = result.mesh
+        self.periodic = is_periodic(result)
+        words = "Mesh cycles"
+        self.label = axis_label("mesh_phase", words) if self.periodic else axis_label("time")
+        #: Mesh cycles drawn of a steady state.
+        self.shown = max(CYCLES, self._response.periods)
+        self._measured = len(record.measured(self._response).phase)
+        periods = self._response.periods
+        counted = round(periods * self._measured / len(self._response.fine.phase))
+        self.window = "" if self.periodic else f" in the last {counted} of {periods} mesh cycles"
+
+    def measured(self, values: Array) -> Array:
+        """Keep the part of a signal over which the figures of a summary are taken.
+
+        Parameters
+        ----------
+        values : array, shape (3 s,)
+            A signal on the fine samples of the response.
+
+        Returns
+        -------
+        array, shape (3 m,)
+            All of a steady state, the second half of a transient.
+        """
+        return values[-self._measured :]
+
+    def _last(self) -> int:
+        """Samples before the last mesh cycles, those that the zoom of a transient shows."""
+        count, periods = len(self._response.fine.phase), int(self._response.periods)
+        return count - count // periods * min(CYCLES, periods)
+
+    def settling(self, values: Array) -> str:
+        """Say whether a transient has become steady, judged by its last two quarters.
+
+        Parameters
+        ----------
+        values : array, shape (3 s,)
+            A signal on the fine samples of the response.
+
+        Returns
+        -------
+        str
+            One sentence; empty for a steady state.
+        """
+        if self.periodic:
+            return ""
+        periods, weight = self._response.periods, self._response.fine.weight
+        quarter = len(values) // periods * (periods // 4)
+        if not quarter:
+            return "The run is too short to tell whether the motion has settled."
+
+        def rms(part: slice) -> float:
+            mean = np.average(values[part], weights=weight[part])
+            return float(np.sqrt(np.average((values[part] - mean) ** 2, weights=weight[part])))
+
+        before, after = rms(slice(-2 * quarter, -quarter)), rms(slice(-quarter, None))
+        larger = max(before, after)
+        change = abs(after - before) / larger if larger else 0.0
+        percent = "less than 0.01" if change < 1e-4 else significant(100.0 * change, 2)
+        verdict = "has settled" if change < _SETTLED else "has not settled"
+        return (
+            f"The motion {verdict}: from the third to the last quarter of the run the rms of its "
+            f"alternating part changes by {percent} %."
+        )
+
+    def curve(self, name: str, values: Array) -> tuple[Array, Array]:
+        """Place a signal on the axis.
+
+        Parameters
+        ----------
+        name : str
+            Quantity in the nomenclature.
+        values : array, shape (3 s,)
+            The signal in SI on the fine samples of the response.
+
+        Returns
+        -------
+        tuple of array, each of shape (k,)
+            Horizontal axis and signal, both in display units. Values before and after a jump
+            stand at the same place of the axis.
+        """
+        shown, fine = displayed(name, values), self._response.fine
+        if not self.periodic:
+            last = self._last()
+            early, late = _extremes(shown[:last], _KEPT), last + _extremes(shown[last:], _KEPT)
+            kept = np.concatenate((early, late))
+            return displayed("time", fine.time)[kept], shown[kept]
+        kept = _ends(shown)
+        if self._response.periods > 1:
+            return fine.phase[kept], shown[kept]
+        return cycles(fine.phase[kept], shown[kept])
+
+    def layout(self) -> dict[str, Any]:
+        """Marks of the events and range of the horizontal axis.
+
+        Returns
+        -------
+        dict
+            Plotly layout. A transient has no events but buttons that show its last mesh cycles.
+        """
+        if self.periodic:
+            events = event_lines(mesh_events(self._mesh, self.shown))
+            return {**events, "xaxis": {"range": [0, self.shown]}}
+        time = displayed("time", self._response.fine.time)
+        views = [("whole run", float(time[0]))]
+        if self._last():
+            views.append((f"last {CYCLES} mesh cycles", float(time[self._last()])))
+        end = float(time[-1])
+        buttons = [(words, {"xaxis.range": [start, end]}) for words, start in views]
+        return {"updatemenus": [button_row(buttons)], "xaxis": {"range": [views[0][1], end]}}

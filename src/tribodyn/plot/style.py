@@ -1,0 +1,287 @@
+"""One look for every figure: colours with fixed roles, fonts, grids and the panel layout.
+
+The colours are those of Okabe and Ito, which stay apart under the common forms of colour
+blindness; curves that share a panel differ in dash as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+__all__ = [
+    "FILLS",
+    "FONT",
+    "GRID",
+    "INK",
+    "MUTED",
+    "PAIR_COLORS",
+    "PINION",
+    "TOTAL",
+    "WHEEL",
+    "Panel",
+    "button_row",
+    "figure",
+    "line",
+    "stack",
+]
+
+FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+INK = "#1f2933"
+MUTED = "#6b7785"
+GRID = "#e4e8ec"
+
+#: Fixed roles, so that a colour means the same thing in every figure.
+PINION = "#0072B2"
+WHEEL = "#D55E00"
+TOTAL = INK
+PAIR_COLORS = ("#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+
+#: Light fill that goes with a line colour.
+FILLS = {PINION: "rgba(0, 114, 178, 0.14)", WHEEL: "rgba(213, 94, 0, 0.14)"}
+
+#: Pixels of one panel, of the gap between panels, and of everything above and below them.
+_PANEL, _GAP, _TOP, _BOTTOM = 230, 34, 74, 58
+
+#: The line that follows the pointer, and the number that it points at.
+_SPIKE = {
+    "spikecolor": MUTED,
+    "spikethickness": 1,
+    "spikedash": "solid",
+    "hoverformat": ".4g",
+}
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One panel of a stacked figure.
+
+    Parameters
+    ----------
+    label : str
+        Label of the vertical axis, with its unit.
+    traces : sequence of dict
+        Curves made by :func:`line`.
+    axis : dict
+        Further properties of the vertical axis.
+    height : float
+        Height relative to the other panels.
+    """
+
+    label: str
+    traces: Sequence[dict[str, Any]]
+    axis: dict[str, Any] = field(default_factory=dict)
+    height: float = 1.0
+
+
+def _axis(**more: Any) -> dict[str, Any]:
+    return {
+        "gridcolor": GRID,
+        "linecolor": MUTED,
+        "showline": True,
+        "ticks": "outside",
+        "ticklen": 4,
+        "tickcolor": MUTED,
+        "zeroline": False,
+        "automargin": True,
+        "exponentformat": "none",
+        "title": {"standoff": 10, "font": {"size": 13, "color": MUTED}},
+        **more,
+    }
+
+
+def figure(
+    title: str, traces: Sequence[dict[str, Any]], layout: dict[str, Any] | None = None
+) -> Any:
+    """Make a plotly figure in the look of the package.
+
+    Parameters
+    ----------
+    title : str
+        The answer that the figure gives, as a sentence.
+    traces : sequence of dict
+        Plotly traces.
+    layout : dict, optional
+        Plotly layout that comes on top of the common one.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Examples
+    --------
+    >>> made = figure("Two points", [line([0, 1], [2, 3], "a curve", INK)])
+    >>> made.layout.title.text
+    'Two points'
+    """
+    import plotly.graph_objects as go
+
+    common: dict[str, Any] = {
+        "template": {"layout": {"xaxis": _axis(**_SPIKE), "yaxis": _axis()}},
+        "title": {
+            "text": title,
+            "x": 0.0,
+            "xref": "container",
+            "y": 1.0,
+            "yref": "container",
+            "yanchor": "top",
+            "pad": {"t": 12},
+            "font": {"size": 17, "color": INK},
+        },
+        "font": {"family": FONT, "size": 13, "color": INK},
+        "paper_bgcolor": "white",
+        "plot_bgcolor": "white",
+        "hovermode": "x unified",
+        "hoverlabel": {"bgcolor": "white", "bordercolor": GRID, "font": {"family": FONT}},
+        "margin": {"l": 70, "r": 24, "t": _TOP, "b": _BOTTOM},
+    }
+    return go.Figure({"data": list(traces), "layout": {**common, **(layout or {})}})
+
+
+def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
+    """Describe buttons above the left end of the panels, clear of the menu of the figure.
+
+    Parameters
+    ----------
+    choices : sequence of tuple
+        Words on the button, and the changes of the layout that it makes.
+
+    Returns
+    -------
+    dict
+        A plotly update menu.
+
+    Examples
+    --------
+    >>> button_row([("linear", {"yaxis.type": "linear"})])["buttons"][0]["label"]
+    'linear'
+    """
+    return {
+        "type": "buttons",
+        "direction": "right",
+        "buttons": [
+            {"label": words, "method": "relayout", "args": [change]} for words, change in choices
+        ],
+        "x": 0.0,
+        "xanchor": "left",
+        "y": 1.0,
+        "yanchor": "bottom",
+        "pad": {"b": 6},
+        "showactive": True,
+        "bgcolor": "white",
+        "font": {"size": 12},
+    }
+
+
+def line(
+    x: Any,
+    y: Any,
+    name: str,
+    color: str,
+    *,
+    unit: str = "",
+    dash: str = "solid",
+    width: float = 2.0,
+) -> dict[str, Any]:
+    """Describe one curve whose hover text carries its unit.
+
+    Parameters
+    ----------
+    x, y : array, shape (n,)
+        Coordinates in display units.
+    name : str
+        Name in the legend.
+    color : str
+        Colour of the curve.
+    unit : str
+        Display unit of ``y``, printed on hovering.
+    dash : str
+        Plotly dash style.
+    width : float
+        Width of the line [px].
+
+    Returns
+    -------
+    dict
+        A plotly scatter trace.
+
+    Examples
+    --------
+    >>> line([0, 1], [2, 3], "force", INK, unit="N")["hovertemplate"]
+    '%{y:.4g} N<extra>force</extra>'
+    """
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": x,
+        "y": y,
+        "name": name,
+        "line": {"color": color, "dash": dash, "width": width},
+        "hovertemplate": f"%{{y:.4g}} {unit}".rstrip() + f"<extra>{name}</extra>",
+    }
+
+
+def _domains(panels: Sequence[Panel]) -> tuple[list[tuple[float, float]], float]:
+    """Vertical domain of each panel from the top down, and the height of the figure [px]."""
+    heights = [_PANEL * panel.height for panel in panels]
+    total = sum(heights) + _GAP * (len(panels) - 1)
+    domains, upper = [], total
+    for height in heights:
+        domains.append((max(upper - height, 0.0) / total, upper / total))
+        upper -= height + _GAP
+    return domains, total + _TOP + _BOTTOM
+
+
+def stack(
+    title: str, x_label: str, panels: Sequence[Panel], layout: dict[str, Any] | None = None
+) -> Any:
+    """Stack panels over one common horizontal axis, each with its own legend beside it.
+
+    Parameters
+    ----------
+    title : str
+        The answer that the figure gives.
+    x_label : str
+        Label of the common axis, with its unit.
+    panels : sequence of Panel
+        From the top down.
+    layout : dict, optional
+        Further plotly layout; its ``xaxis`` is merged into the common axis.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Examples
+    --------
+    >>> curves = [line([0, 1], [2, 3], "force", INK)]
+    >>> made = stack("Forces", "Time [ms]", [Panel("Force [N]", curves)] * 2)
+    >>> made.layout.yaxis2.title.text
+    'Force [N]'
+    """
+    more = dict(layout or {})
+    domains, height = _domains(panels)
+    last = "" if len(panels) == 1 else str(len(panels))
+    merged: dict[str, Any] = {
+        "xaxis": {"title": {"text": x_label}, "anchor": f"y{last}", **more.pop("xaxis", {})},
+        "height": height,
+    }
+    traces: list[dict[str, Any]] = []
+    for number, (panel, domain) in enumerate(zip(panels, domains, strict=True), start=1):
+        suffix = "" if number == 1 else str(number)
+        merged[f"yaxis{suffix}"] = {
+            "title": {"text": panel.label},
+            "domain": domain,
+            **panel.axis,
+        }
+        merged[f"legend{suffix}"] = _legend(domain[1])
+        # A single curve needs no legend: the label of its axis names it.
+        place = {"xaxis": "x", "yaxis": f"y{suffix}", "legend": f"legend{suffix}"}
+        several = len(panel.traces) > 1
+        traces += [{"showlegend": several, **trace, **place} for trace in panel.traces]
+    return figure(title, traces, {**merged, **more})
+
+
+def _legend(top: float) -> dict[str, Any]:
+    return {"x": 1.01, "xanchor": "left", "y": top, "yanchor": "top", "tracegroupgap": 2}

@@ -1,0 +1,7 @@
+"""Reports: a result as one HTML file that opens by double click and asks nothing of the network."""
+
+from __future__ import annotations
+
+from tribodyn.report.html import render_report, write_report
+
+__all__ = ["render_report", "write_report"]

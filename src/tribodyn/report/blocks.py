@@ -1,0 +1,132 @@
+"""The figures of a report: drawn, or replaced by the reason why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tribodyn.plot import FIGURES, Drawing
+
+__all__ = ["SECTIONS", "Block", "figure_blocks", "script_json"]
+
+#: Order of the figures in the report.
+SECTIONS = (
+    "gear_pair",
+    "path_of_contact",
+    "mesh_stiffness",
+    "friction",
+    "film",
+    "mesh_force",
+    "transmission_error",
+    "acceleration",
+    "spectrum",
+    "bearing_force",
+    "bearing_spectrum",
+)
+
+#: Room above the panels for marks and buttons [px].
+_MARGIN = 44
+
+
+@dataclass(frozen=True)
+class Block:
+    """One section of the report.
+
+    Parameters
+    ----------
+    name, heading : str
+        From the figure's registration.
+    caption : str
+        What to look for in the figure.
+    missing : str
+        Why there is no figure; empty if there is one.
+    title : str
+        Title of the figure.
+    height : int
+        Height of the figure [px].
+    json : str
+        Data and layout of the figure, safe within a script element.
+    """
+
+    name: str
+    heading: str
+    caption: str = ""
+    missing: str = ""
+    title: str = ""
+    height: int = 0
+    json: str = ""
+
+
+def script_json(text: str) -> str:
+    r"""Make JSON safe within a script element, which ends at the first closing tag it meets.
+
+    Parameters
+    ----------
+    text : str
+        Any JSON.
+
+    Returns
+    -------
+    str
+        The same JSON with the sign ``<`` written as an escape.
+
+    Examples
+    --------
+    >>> script_json('["</script>"]')
+    '["\\u003c/script>"]'
+    """
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _block(figure: Drawing, result: Any) -> Block:
+    reason = figure.missing(result)
+    if reason:
+        return Block(figure.name, figure.heading, missing=reason)
+    drawn = figure(result)
+    title, saved = drawn.layout.title.text, drawn.layout.margin.t - _MARGIN
+    # The page prints the title itself, where it can break into lines on a narrow screen.
+    drawn.layout.update(
+        title=None, margin={"t": _MARGIN}, height=drawn.layout.height - saved, overwrite=False
+    )
+    return Block(
+        figure.name,
+        figure.heading,
+        figure.caption_of(result),
+        title=title,
+        height=round(drawn.layout.height),
+        json=script_json(drawn.to_json()),
+    )
+
+
+def _joined(blocks: Iterable[Block]) -> list[Block]:
+    """Gather the headings of figures that are missing for the same reason."""
+    kept: list[Block] = []
+    place: dict[str, int] = {}
+    for block in blocks:
+        if block.missing in place:
+            first = kept[place[block.missing]]
+            heading = f"{first.heading}, {block.heading[0].lower()}{block.heading[1:]}"
+            kept[place[block.missing]] = replace(first, heading=heading)
+            continue
+        if block.missing:
+            place[block.missing] = len(kept)
+        kept.append(block)
+    return kept
+
+
+def figure_blocks(result: Any) -> list[Block]:
+    """Draw every figure of the report; what lacks for one reason is told once.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    list of Block
+        In the order of :data:`SECTIONS`.
+    """
+    figures = (FIGURES[name] for name in SECTIONS)
+    return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

@@ -1,0 +1,119 @@
+"""One result as one HTML file that needs nothing else: no network, no second file."""
+
+from __future__ import annotations
+
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from tribodyn.report.blocks import Block, figure_blocks
+from tribodyn.report.numbers import headlines, table
+from tribodyn.report.origin import operating_point, provenance, version
+from tribodyn.study.save import write_file
+
+__all__ = ["render_report", "write_report"]
+
+_HERE = Path(__file__).parent
+
+
+@lru_cache(maxsize=1)
+def _template() -> Any:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(_HERE),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("template.html.j2")
+
+
+def _own(name: str) -> Any:
+    """Text of a file of this package, marked as safe."""
+    from markupsafe import Markup
+
+    return Markup((_HERE / name).read_text(encoding="utf-8"))
+
+
+def _plotly_js() -> Any:
+    from markupsafe import Markup
+    from plotly.offline import get_plotlyjs
+
+    return Markup(get_plotlyjs())
+
+
+def _figures(blocks: list[Block]) -> Any:
+    from markupsafe import Markup
+
+    drawn = [f'"{block.name}": {block.json}' for block in blocks if not block.missing]
+    return Markup("{\n" + ",\n".join(drawn) + "\n}")
+
+
+def render_report(result: Any) -> str:
+    """Write a result as one self-contained HTML page.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    str
+        HTML with all scripts, styles and data within. Every text of the user is escaped.
+    """
+    summary, blocks = result.summary(), figure_blocks(result)
+    return str(
+        _template().render(
+            title=result.case.title,
+            version=version(),
+            operating_point=operating_point(result.case),
+            cards=headlines(summary),
+            rows=table(summary),
+            blocks=blocks,
+            warnings=[str(warning) for warning in result.warnings],
+            assumptions=result.assumptions,
+            citations=_lines(result.cite()),
+            provenance=provenance(result),
+            case_text=result.case.to_toml(),
+            figures=_figures(blocks),
+            style=_own("report.css"),
+            script=_own("report.js"),
+            plotly_js=_plotly_js(),
+        )
+    )
+
+
+def _lines(citations: Any) -> list[str]:
+    """Citations as separate lines, whether they come as one text or as several."""
+    return citations.splitlines() if isinstance(citations, str) else [str(c) for c in citations]
+
+
+def write_report(result: Any, path: str | os.PathLike[str]) -> Path:
+    """Write the report of a result to a file.
+
+    The file appears complete or not at all: it is written beside its place and then moved there.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+    path : path
+        File to write; an existing one is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    target = Path(path)
+    write_file(target, render_report(result))
+    return target

@@ -1,0 +1,175 @@
+"""The figures of a summary in words: name, value in its display unit, value in SI, meaning."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.plot.labels import readable
+from tribodyn.study.summary_names import SUMMARY
+from tribodyn.units import convert
+
+__all__ = ["HEADLINES", "Number", "describe", "headlines", "in_words", "table"]
+
+#: Summary figures shown on cards at the top, most wanted first.
+HEADLINES = (
+    "transverse_contact_ratio",
+    "mesh_frequency",
+    "peak_mesh_force",
+    "peak_to_peak_dynamic_transmission_error",
+    "rms_acceleration_loa_pinion",
+    "rms_bearing_force_loa_pinion",
+    "mean_friction_coefficient",
+    "contact_loss_share",
+)
+
+_STATISTICS = {
+    "peak_to_peak": "peak to peak",
+    "mean": "mean",
+    "rms": "rms",
+    "peak": "peak",
+    "maximum": "greatest",
+    "minimum": "least",
+}
+#: Names whose words do not follow from their parts.
+_WORDS = {
+    "omega_max_dt": "omega_max dt",
+    "line_of_action_indicator": "Bearing force across over along the line of action",
+}
+_START = re.compile(rf"^({'|'.join(_STATISTICS)})_")
+_ENDINGS = (
+    (re.compile(r"_harmonic_(\d+)$"), "mesh harmonic {}"),
+    (re.compile(r"_(pinion|wheel)$"), "{}"),
+    (re.compile(r"_(loa)$"), "along the line of action"),
+    (re.compile(r"_(oloa)$"), "across the line of action"),
+    (re.compile(r"_([A-E])$"), "at {}"),
+)
+
+
+@dataclass(frozen=True)
+class Number:
+    """One figure ready to be printed.
+
+    Parameters
+    ----------
+    name : str
+        Key in the summary.
+    words : str
+        The same in words.
+    shown, unit : str
+        Value in the display unit, and that unit.
+    si, si_unit : str
+        Value in SI, and its unit.
+    meaning : str
+        One line.
+    """
+
+    name: str
+    words: str
+    shown: str
+    unit: str
+    si: str
+    si_unit: str
+    meaning: str
+
+
+def in_words(name: str) -> str:
+    """Write the name of a summary figure in words, the quantity first.
+
+    Parameters
+    ----------
+    name : str
+        Key in the summary.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> in_words("rms_bearing_force_oloa_pinion")
+    'Bearing force, rms, across the line of action, pinion'
+    """
+    if name in _WORDS:
+        return _WORDS[name]
+    said: list[str] = []
+    rest = name
+    start = _START.match(rest) if rest not in QUANTITIES else None
+    if start:
+        rest = rest[start.end() :]
+    for pattern, words in _ENDINGS:
+        end = pattern.search(rest)
+        if end:
+            rest = rest[: end.start()]
+            said.insert(0, words.format(end.group(1)))
+    if start:
+        said.insert(0, _STATISTICS[start.group(1)])
+    rest = rest.replace("_", " ")
+    return ", ".join([rest[:1].upper() + rest[1:], *said])
+
+
+def describe(name: str, value: float, digits: int = 5) -> Number:
+    """Put one figure of a summary into words.
+
+    Parameters
+    ----------
+    name : str
+        Key in the summary, such as ``"mesh_frequency"``.
+    value : float
+        Value in SI.
+    digits : int
+        Significant digits in the display unit.
+
+    Returns
+    -------
+    Number
+
+    Examples
+    --------
+    >>> number = describe("peak_to_peak_dynamic_transmission_error", 1.38e-5)
+    >>> number.words, number.shown, number.unit
+    ('Dynamic transmission error, peak to peak', '13.8', 'µm')
+    """
+    figure = SUMMARY[name]
+    return Number(
+        name,
+        in_words(name),
+        f"{convert(float(value), figure.unit, figure.display_unit):.{digits}g}",
+        readable(figure.display_unit),
+        f"{value:.6g}",
+        readable(figure.unit),
+        figure.meaning,
+    )
+
+
+def table(summary: Mapping[str, float]) -> list[Number]:
+    """Put a whole summary into words.
+
+    Parameters
+    ----------
+    summary : mapping
+        Names and SI values.
+
+    Returns
+    -------
+    list of Number
+    """
+    return [describe(name, value) for name, value in summary.items()]
+
+
+def headlines(summary: Mapping[str, float]) -> list[Number]:
+    """Pick the figures that everybody asks for first.
+
+    Parameters
+    ----------
+    summary : mapping
+        Names and SI values.
+
+    Returns
+    -------
+    list of Number
+        In the order of :data:`HEADLINES`; those that the summary lacks are left out.
+    """
+    return [describe(name, summary[name], digits=4) for name in HEADLINES if name in summary]

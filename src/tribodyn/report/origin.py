@@ -1,0 +1,89 @@
+"""Where the figures of a report come from: operating point, versions and date."""
+
+from __future__ import annotations
+
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version as installed
+from typing import Any
+
+from tribodyn.plot.labels import display_unit, displayed
+
+__all__ = ["operating_point", "provenance", "version"]
+
+#: Packages whose version may change a figure.
+_PACKAGES = ("numpy", "scipy", "numba")
+
+
+def version() -> str:
+    """Version of the package.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> version().count(".") >= 1
+    True
+    """
+    import tribodyn
+
+    return tribodyn.__version__
+
+
+def _shown(name: str, value: float) -> str:
+    return f"{float(displayed(name, value)):.5g} {display_unit(name)}"
+
+
+def operating_point(case: Any) -> list[tuple[str, str]]:
+    """Speed, load, surfaces, oil and models of a case, ready to be printed.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list of tuple of str
+        Name and value.
+    """
+    pair, operation = case.gear_pair, case.operation
+    point = [
+        ("Teeth", f"{pair.pinion.teeth} : {pair.wheel.teeth}"),
+        ("Speed", f"{_shown('speed', operation.speed)} ({operation.speed_of})"),
+        ("Torque", f"{_shown('torque', operation.torque)} ({operation.speed_of})"),
+        ("Driver", pair.driver),
+        ("Friction law", case.friction.law),
+        ("Stiffness model", case.stiffness.model),
+        ("Structure", case.dynamics.model),
+        ("Method", case.solver.method),
+    ]
+    if case.composite_roughness is not None:
+        roughness = _shown("composite_roughness", case.composite_roughness)
+        point.insert(4, ("Composite roughness", roughness))
+    if case.lubricant is not None and case.lubricant.name:
+        point.insert(4, ("Oil", case.lubricant.name))
+    return point
+
+
+def provenance(result: Any) -> list[tuple[str, str]]:
+    """Versions and date that stand behind a report.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    list of tuple of str
+        Name and value.
+    """
+    packages = ", ".join(f"{name} {installed(name)}" for name in _PACKAGES)
+    return [
+        ("Software", f"tribodyn {version()}"),
+        ("Built on", f"Python {platform.python_version()}, {packages}"),
+        ("Report written", f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"),
+    ]

@@ -1,0 +1,128 @@
+"""What a stiffness model is, and the registry in which models are found by name.
+
+A model tells how stiff each tooth pair is over one mesh cycle. All models answer the same
+question in the same form, so the mesh table does not know which one it asks.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.gear import Material, SpurPair
+from tribodyn.registry import Registry
+
+__all__ = ["MODELS", "StiffnessModel", "share_equally"]
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class StiffnessModel:
+    """One named model of tooth pair stiffness.
+
+    Parameters
+    ----------
+    name : str
+        Name in case files.
+    function : callable
+        ``function(pair, material, path, in_contact, phase, normal_force, /, **options)``.
+    options : mapping of str to object
+        Accepted options with their defaults; ``None`` where the user must give a value, or one
+        of several values.
+    """
+
+    name: str
+    function: Callable[..., FloatArray]
+    options: Mapping[str, Any]
+
+    def __call__(
+        self,
+        pair: SpurPair,
+        material: Material,
+        path: FloatArray,
+        in_contact: BoolArray,
+        phase: FloatArray,
+        normal_force: float,
+        /,
+        **options: Any,
+    ) -> FloatArray:
+        """Return the pair stiffness over the mesh cycle.
+
+        Parameters
+        ----------
+        pair : SpurPair
+            Both gears in their working position.
+        material : Material
+            Material of both gears.
+        path : array (n, pairs) [m]
+            Distance of each contact from the pinion's base tangent point.
+        in_contact : bool array (n, pairs)
+            Whether the pair is in contact.
+        phase : array (n,)
+            Mesh phase.
+        normal_force : float [N]
+            Force along the line of action that all pairs carry together.
+        **options : object
+            Options of this model, see ``options``; ``None`` counts as not given.
+
+        Returns
+        -------
+        array (n, pairs) [N/m]
+            Secant stiffness of each pair at its quasi-static load, zero where not in contact.
+
+        Raises
+        ------
+        InputError
+            If an option is unknown, missing or out of range.
+        """
+        given = {name: value for name, value in options.items() if value is not None}
+        unknown = [name for name in given if name not in self.options]
+        if unknown:
+            raise InputError([self._unknown(name) for name in unknown])
+        return self.function(
+            pair, material, path, in_contact, phase, normal_force, **{**self.options, **given}
+        )
+
+    def _unknown(self, name: str) -> Problem:
+        near = difflib.get_close_matches(name, self.options, n=1)
+        known = ", ".join(self.options)
+        return Problem(
+            what=f'the stiffness model "{self.name}" has no option "{name}"',
+            where=f"stiffness option {name}",
+            why=f"Its options are: {known}",
+            remedy=f'Did you mean "{near[0]}"?' if near else "",
+        )
+
+
+MODELS: Registry[StiffnessModel] = Registry("stiffness model", "tribodyn.stiffness")
+
+
+def share_equally(total: FloatArray, in_contact: BoolArray) -> FloatArray:
+    """Spread the stiffness of the whole mesh evenly over the pairs in contact.
+
+    Parameters
+    ----------
+    total : array (n,) [N/m]
+        Stiffness of all pairs together.
+    in_contact : bool array (n, pairs)
+        Whether the pair is in contact; at least one in every row.
+
+    Returns
+    -------
+    array (n, pairs) [N/m]
+        Zero where not in contact.
+
+    Examples
+    --------
+    >>> share_equally(np.array([3e8]), np.array([[True, True, False]]))
+    array([[1.5e+08, 1.5e+08, 0.0e+00]])
+    """
+    return np.where(in_contact, (total / in_contact.sum(axis=1))[:, None], 0.0)

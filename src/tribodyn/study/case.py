@@ -1,0 +1,252 @@
+"""The case: what the user typed, checked and in SI, with everything derived one call away."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field, PrivateAttr, ValidationError
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.study import derive
+from tribodyn.study.checks import cross_problems
+from tribodyn.study.faults import translate
+from tribodyn.study.fields import text
+from tribodyn.study.gears import Gears
+from tribodyn.study.given import Given, plain
+from tribodyn.study.options import left_behind
+from tribodyn.study.section import Section
+from tribodyn.study.source import Source
+from tribodyn.study.structure import Dynamics, Friction, Solver, Stiffness
+from tribodyn.study.surroundings import Film, LubricantData, MaterialData, Operation
+from tribodyn.study.values import Plain
+
+if TYPE_CHECKING:
+    from tribodyn.gear import Material, SpurPair
+    from tribodyn.lubricant import Lubricant
+
+__all__ = ["Case"]
+
+#: Keys whose choice decides which other keys of their table are allowed.
+_SELECTORS = ("stiffness.model", "friction.law", "dynamics.model", "solver.method")
+
+
+class Case(Section):
+    """One gear pair under one load: frozen, checked, in SI.
+
+    Made by :func:`tribodyn.load_case`, or from nested keywords: a float is SI, text and pint
+    quantities carry their unit.
+
+    Parameters
+    ----------
+    source : Source, optional
+        Where the values come from; then a bare number for a dimension is refused.
+    **data : object
+        The tables of the case file.
+
+    Raises
+    ------
+    InputError
+        Listing every fault with its place, the allowed range and the remedy.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness")
+    >>> case.gears.pinion.teeth
+    16
+    """
+
+    title: str = text("Gear pair", meaning="one line that names this case", example='"My gear"')
+    origin: str | None = text(
+        None, meaning="the document that the values come from", example='"Drawing 4711"'
+    )
+    gears: Gears = Field(description="the gear pair")
+    material: MaterialData = Field(
+        default_factory=MaterialData, description="material of the gears"
+    )
+    lubricant: LubricantData | None = Field(None, description="the oil")
+    operation: Operation = Field(description="speed and load")
+    film: Film = Field(default_factory=Film, description="oil film")
+    stiffness: Stiffness = Field(default_factory=Stiffness, description="stiffness of the teeth")
+    friction: Friction = Field(default_factory=Friction, description="friction of the teeth")
+    dynamics: Dynamics = Field(default_factory=Dynamics, description="the vibrating structure")
+    solver: Solver = Field(default_factory=Solver, description="how the motion is computed")
+    assumed: dict[str, str] = Field(
+        default_factory=dict, description="values that the source of the case does not print"
+    )
+
+    _given: Given = PrivateAttr()
+    _source: Source = PrivateAttr()
+
+    def __init__(self, source: Source | None = None, /, **data: Any) -> None:
+        given = Given(data if source is not None else plain(data))
+        source = source or Source()
+        found: list[tuple[str, Problem]] = []
+        try:
+            super().__init__(**given.data)
+        except ValidationError as error:
+            found = translate(type(self), error)
+        found += cross_problems(given, {key for key, _ in found})
+        found += derive.gear_problems(given) if found else derive.case_problems(self)
+        if found:
+            raise InputError(source.place(found))
+        self._given = given
+        self._source = source
+
+    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Case:
+        """Return a new case with some values changed; it is checked as a whole.
+
+        Parameters
+        ----------
+        changes : mapping
+            Dotted key to value: a float in SI, text with a unit, a pint quantity, or None to go
+            back to the default. A changed value is no longer marked as assumed.
+        by : str
+            What made the change, for messages, for example ``"--set"``; then a bare number for
+            a dimension is refused as in a file.
+
+        Returns
+        -------
+        Case
+
+        Raises
+        ------
+        InputError
+            As for a case file.
+
+        Examples
+        --------
+        >>> import tribodyn
+        >>> rough = tribodyn.load_case("fzg-roughness").replace(
+        ...     {"gears.composite_roughness": "0.991 um"})
+        >>> round(rough.gears.composite_roughness * 1e6, 3)
+        0.991
+        """
+        ready = changes if by else {key: Plain(value) for key, value in changes.items()}
+        gone = left_behind(self._given, ready, self._chosen_by(ready))
+        data = self._given.merged({**dict.fromkeys(gone), **ready})
+        if "assumed" in data:
+            kept = {k: w for k, w in data["assumed"].items() if k not in changes and k not in gone}
+            data["assumed"] = kept
+        source = self._source.with_replaced(changes, by or "replace:")
+        return type(self)(source, **data)
+
+    def _chosen_by(self, changes: Mapping[str, Any]) -> dict[str, str]:
+        """Models, laws and methods that changes choose anew, by key; unknown names are left out."""
+        chosen = {}
+        for key in _SELECTORS:
+            section, _, name = key.partition(".")
+            kind = type(getattr(self, section))
+            spec = kind.spec(name)
+            value = changes.get(key)
+            value = value.value if isinstance(value, Plain) else value
+            value = kind.model_fields[name].default if value is None else value
+            if key in changes and spec and spec.names and value in spec.names():
+                chosen[key] = value
+        return chosen
+
+    @property
+    def gear_pair(self) -> SpurPair:
+        """Both gears in their working position."""
+        return derive.gear_pair(self.gears, self.dynamics.backlash)
+
+    @property
+    def material_properties(self) -> Material:
+        """Material of both gears."""
+        return derive.material(self.material)
+
+    @property
+    def lubricant_properties(self) -> Lubricant | None:
+        """The oil at its working temperature; None if the case has none."""
+        return None if self.lubricant is None else derive.lubricant(self.lubricant)
+
+    @property
+    def backlash(self) -> float:
+        """Total play on the line of action [m]: given, or that of the tooth thicknesses."""
+        given = self.dynamics.backlash
+        return self.gear_pair.backlash if given is None else given
+
+    @property
+    def composite_roughness(self) -> float | None:
+        """Root of the sum of squares of both roughnesses [m]; None if none is given."""
+        each = (self.gears.pinion.roughness_rms, self.gears.wheel.roughness_rms)
+        if each[0] is not None and each[1] is not None:
+            return math.hypot(each[0], each[1])
+        return self.gears.composite_roughness
+
+    @property
+    def pinion_speed(self) -> float:
+        """Speed of the pinion [rad/s], whichever gear the speed is given for."""
+        of_wheel = self.operation.speed_of == "wheel"
+        return self.operation.speed * (self.gear_pair.ratio if of_wheel else 1.0)
+
+    @property
+    def pinion_torque(self) -> float:
+        """Nominal torque on the pinion [N*m], whichever gear the torque is given for."""
+        of_wheel = self.operation.speed_of == "wheel"
+        return self.operation.torque / (self.gear_pair.ratio if of_wheel else 1.0)
+
+    @property
+    def given(self) -> Given:
+        """What the user gave, before any default."""
+        return self._given
+
+    @property
+    def source(self) -> Source:
+        """Where the values came from."""
+        return self._source
+
+    def values(self) -> Iterator[tuple[str, Any]]:
+        """Walk over all values of the case.
+
+        Yields
+        ------
+        tuple of (str, object)
+            Dotted key and value in SI; None where nothing was given and a default is derived.
+        """
+        return _values(self, "")
+
+    def to_toml(self) -> str:
+        """Write the complete commented case file; it reads back to an equal case.
+
+        Returns
+        -------
+        str
+            TOML text with value, unit, symbol, meaning and range of every key.
+        """
+        from tribodyn.study.write import case_toml
+
+        return case_toml(self)
+
+    def __eq__(self, other: object) -> bool:
+        """Cases are equal when all values and what is known of their origin are."""
+        from tribodyn.study.provenance import effective, provenance
+
+        if not isinstance(other, Case):
+            return NotImplemented
+        return effective(self) == effective(other) and provenance(self) == provenance(other)
+
+    def __hash__(self) -> int:
+        """Hash of all values in force."""
+        from tribodyn.study.provenance import effective
+
+        return hash(tuple(effective(self).items()))
+
+    def __repr__(self) -> str:
+        """Show a table of all values with units."""
+        from tribodyn.study.write import case_table
+
+        return case_table(self)
+
+    __str__ = __repr__
+
+
+def _values(section: Section, prefix: str) -> Iterator[tuple[str, Any]]:
+    for name in type(section).model_fields:
+        value = getattr(section, name)
+        if isinstance(value, Section):
+            yield from _values(value, f"{prefix}{name}.")
+        elif name != "assumed":
+            yield f"{prefix}{name}", value

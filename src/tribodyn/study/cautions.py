@@ -1,0 +1,136 @@
+"""What runs but deserves a second look: gear bodies, pressure and contact loss of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribodyn.errors import ModelWarning
+from tribodyn.study.collect import collected
+from tribodyn.study.derive import gear_warnings
+from tribodyn.study.record import is_steady, measured
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response
+    from tribodyn.gear import SpurGear
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.case import Case
+
+__all__ = ["case_cautions", "mesh_cautions", "motion_cautions"]
+
+#: Hertzian pressure that case-hardened steel does not survive [Pa].
+_STEEL = 3e9
+#: Rim under the root below which the body bends with the teeth [modules].
+_RIM = 1.0
+#: Ratio of a given mass or inertia to that of the solid, or the inverse, that is a slip.
+_UNLIKELY = 3.0
+
+
+def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
+    """Find what is odd about the gears of a case, before anything is computed.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    tuple of ModelWarning
+        Those of the geometry first.
+    """
+    pair = case.gear_pair
+    found = list(gear_warnings(case.gears, case.dynamics.backlash))
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        found += [*_rim(case, name, gear), *_mass(case, name, gear)]
+    return tuple(found)
+
+
+def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+    from tribodyn.study.provenance import effective
+
+    rim = gear.root_radius - 0.5 * gear.bore_diameter
+    if (
+        effective(case)["stiffness.reference"] == "bore"
+        and gear.bore_diameter > 0.0
+        and rim < _RIM * gear.normal_module
+    ):
+        yield ModelWarning(
+            "thin-rim",
+            f"{name}: the body under the root is {rim * 1e3:.4g} mm thick, less than one module of "
+            f"{gear.normal_module * 1e3:.4g} mm; such a ring bends as a whole, which the stiffness "
+            'model does not know. Reduce the bore, or set stiffness.reference = "rim"',
+        )
+
+
+def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+    """Compare given inertias with those of the solid: a wrong unit is far off."""
+    from tribodyn.gear import mass_properties
+
+    with collected():  # What is odd about the shape has been said.
+        bare = replace(gear, mass=None, moment_of_inertia=None)
+    solid = mass_properties(bare, case.material.density)
+    for key, unit, factor in (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6)):
+        given, own = getattr(gear, key), getattr(solid, key)
+        if given is not None and not 1.0 / _UNLIKELY <= given / own <= _UNLIKELY:
+            yield ModelWarning(
+                "mass-unlikely",
+                f"{name}: {key} = {given * factor:.4g} {unit}, {given / own:.3g} times that of the "
+                f"solid gear, {own * factor:.4g} {unit}. Check the unit, or whether it holds more "
+                "than the gear",
+            )
+
+
+def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
+    """Find a load that no gear stands.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        The tooth contact.
+
+    Returns
+    -------
+    tuple of ModelWarning
+    """
+    greatest = float(mesh.hertz_pressure.max())
+    if greatest <= _STEEL:
+        return ()
+    message = (
+        f"the Hertzian pressure reaches {greatest * 1e-9:.4g} GPa; gear steel stands no more than "
+        f"{_STEEL * 1e-9:g} GPa. Check torque and face width"
+    )
+    return (ModelWarning("hertz-pressure", message),)
+
+
+def motion_cautions(case: Case, response: Response) -> tuple[ModelWarning, ...]:
+    """Find flanks that part in a steady motion.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    response : Response
+        Its motion.
+
+    Returns
+    -------
+    tuple of ModelWarning
+    """
+    gap = 0.5 * case.backlash
+    if gap == 0.0 or not is_steady(response):
+        return ()
+    samples = measured(response)
+    deflection = samples.deflection[:, 0]
+    share = float(samples.mean((deflection <= gap).astype(float)))
+    if share == 0.0:
+        return ()
+    back = "the back flanks touch as well" if np.any(deflection < -gap) else "no back flank touches"
+    message = (
+        f"the flanks are apart for {share:.3g} of the mesh cycle; {back}. More load or damping "
+        "keeps them together; other steady motions may exist beside this one"
+    )
+    return (ModelWarning("contact-loss", message),)

@@ -1,0 +1,46 @@
+"""Collect model warnings, so that none is lost and none is told twice."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from tribodyn.errors import ModelWarning
+
+__all__ = ["collected"]
+
+
+@contextmanager
+def collected() -> Iterator[list[ModelWarning]]:
+    """Collect the model warnings issued inside the block, each once; others pass as usual.
+
+    Yields
+    ------
+    list of ModelWarning
+        Filled when the block ends, also when it ends by an error.
+
+    Examples
+    --------
+    >>> from tribodyn.errors import warn
+    >>> with collected() as found:
+    ...     warn("friction-range", "speed 25 m/s is above 20 m/s")
+    >>> found[0].code
+    'friction-range'
+    """
+    found: list[ModelWarning] = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ModelWarning)
+        try:
+            yield found
+        finally:
+            seen = set()
+            others = []
+            for record in caught:
+                if not isinstance(record.message, ModelWarning):
+                    others.append(record)
+                elif str(record.message) not in seen:
+                    seen.add(str(record.message))
+                    found.append(record.message)
+    for record in others:
+        warnings.warn_explicit(record.message, record.category, record.filename, record.lineno)

@@ -1,0 +1,251 @@
+"""From the sections of a case to the objects of the physics, and their faults back to its keys."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from tribodyn.errors import InputError, ModelWarning, Problem
+from tribodyn.study.collect import collected
+from tribodyn.study.gears import Gear, Gears
+from tribodyn.study.given import Given
+from tribodyn.study.surroundings import LubricantData, MaterialData
+
+if TYPE_CHECKING:
+    from tribodyn.gear import Material, SpurPair
+    from tribodyn.lubricant import Lubricant
+    from tribodyn.study.case import Case
+
+__all__ = [
+    "case_problems",
+    "gear_pair",
+    "gear_problems",
+    "gear_warnings",
+    "lubricant",
+    "material",
+    "unused_lubricant",
+]
+
+#: Arguments of the physics that the case file calls otherwise.
+_KEYS = {
+    "rack": "gears.dedendum_coefficient",
+    "tip_radius_coefficient": "gears.rack_tip_radius_coefficient",
+    "backlash": "dynamics.backlash",
+}
+
+
+def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:
+    values = {key: getattr(gear, key) for key in _PASSED}
+    values["face_width"] = gear.face_width if gear.face_width is not None else other.face_width
+    return {f"{name}_{key}": value for key, value in values.items()}
+
+
+_PASSED = (
+    "teeth", "profile_shift_coefficient", "tip_diameter", "bore_diameter", "mass",
+    "moment_of_inertia",
+)  # fmt: skip
+
+
+def gear_pair(gears: Gears, backlash: float | None = None) -> SpurPair:
+    """Build the gear pair of a case, silently; what was to be said is in :func:`gear_warnings`.
+
+    Parameters
+    ----------
+    gears : Gears
+        The ``[gears]`` table.
+    backlash : float, optional
+        Total play on the line of action [m]; both teeth are thinned to make it. Zero or nothing
+        leaves the teeth full.
+
+    Returns
+    -------
+    SpurPair
+
+    Raises
+    ------
+    InputError
+        Listing everything that makes the pair impossible.
+    """
+    return _built(gears, backlash or None)[0]
+
+
+def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWarning, ...]:
+    """Warnings about the geometry of the pair.
+
+    Parameters
+    ----------
+    gears : Gears
+        The ``[gears]`` table.
+    backlash : float, optional
+        Total play on the line of action [m].
+
+    Returns
+    -------
+    tuple of ModelWarning
+    """
+    return _built(gears, backlash or None)[1]
+
+
+@lru_cache(maxsize=16)
+def _built(gears: Gears, backlash: float | None) -> tuple[SpurPair, tuple[ModelWarning, ...]]:
+    with collected() as found:
+        pair = _spur_pair(gears, backlash)
+    return pair, tuple(found)
+
+
+def _spur_pair(gears: Gears, backlash: float | None) -> SpurPair:
+    from tribodyn.gear import BasicRack, spur_pair
+
+    rack = BasicRack(
+        addendum_coefficient=gears.addendum_coefficient,
+        dedendum_coefficient=gears.dedendum_coefficient,
+        tip_radius_coefficient=gears.rack_tip_radius_coefficient,
+    )
+    return spur_pair(
+        normal_module=gears.normal_module,
+        normal_pressure_angle=gears.normal_pressure_angle,
+        center_distance=gears.center_distance,
+        driver=gears.driver,
+        backlash=backlash,
+        pinion_rack=rack,
+        wheel_rack=rack,
+        **_gear_arguments("pinion", gears.pinion, gears.wheel),
+        **_gear_arguments("wheel", gears.wheel, gears.pinion),
+    )
+
+
+def material(data: MaterialData) -> Material:
+    """Build the material of the gears.
+
+    Parameters
+    ----------
+    data : MaterialData
+        The ``[material]`` table.
+
+    Returns
+    -------
+    Material
+    """
+    from tribodyn.gear import Material
+
+    return Material(data.youngs_modulus, data.poissons_ratio, data.density)
+
+
+def lubricant(data: LubricantData) -> Lubricant:
+    """Build the oil, from the library or from its properties.
+
+    Parameters
+    ----------
+    data : LubricantData
+        The ``[lubricant]`` table.
+
+    Returns
+    -------
+    Lubricant
+
+    Raises
+    ------
+    InputError
+        If the oil is not known at the temperature.
+    """
+    from tribodyn.lubricant import Lubricant, from_library
+
+    if data.name is not None:
+        return from_library(data.name, data.temperature)
+    properties = (data.dynamic_viscosity, data.density, data.pressure_viscosity_coefficient)
+    viscosity, density, coefficient = (float(value or 0.0) for value in properties)
+    return Lubricant(viscosity, density, coefficient, temperature=data.temperature)
+
+
+def unused_lubricant() -> Lubricant:
+    """Return an oil for a case that needs none: no law or formula of such a case looks at it.
+
+    Returns
+    -------
+    Lubricant
+    """
+    from tribodyn.lubricant import Lubricant
+
+    return Lubricant(0.1, 900.0, 2e-8, name="unused")
+
+
+def _key(problem: Problem, section: str) -> str:
+    """Key of the case file for the argument that a problem names."""
+    named = re.search(r"argument (?:(pinion|wheel)[_ .])?([a-z_]+)", problem.where)
+    if named is None:
+        return section
+    gear, name = named.groups()
+    if name in _KEYS:
+        return _KEYS[name]
+    if gear is None and section == "gears" and name in Gear.model_fields:
+        return section
+    return f"{section}.{gear}.{name}" if gear else f"{section}.{name}"
+
+
+def _faults(section: str, build: Callable[[], object]) -> list[tuple[str, Problem]]:
+    try:
+        build()
+    except InputError as error:
+        return [(_key(problem, section), problem) for problem in error.problems]
+    return []
+
+
+def gear_problems(given: Given) -> list[tuple[str, Problem]]:
+    """Find the faults of the gear pair alone, where other tables are faulty.
+
+    Parameters
+    ----------
+    given : Given
+        What the user gave.
+
+    Returns
+    -------
+    list of (str, Problem)
+        Empty when the pair is possible, or when its own keys are faulty.
+    """
+    try:
+        gears = Gears.model_validate(given.value("gears"))
+    except ValidationError:
+        return []
+    if gears.pinion.face_width is None and gears.wheel.face_width is None:
+        return []
+    return _faults("gears", lambda: gear_pair(gears))
+
+
+def case_problems(case: Case) -> list[tuple[str, Problem]]:
+    """Find what makes a well-written case physically impossible.
+
+    Parameters
+    ----------
+    case : Case
+        Case whose keys are all in order.
+
+    Returns
+    -------
+    list of (str, Problem)
+        Dotted key and problem.
+    """
+    found = _faults("gears", lambda: case.gear_pair)
+    found += _faults("lubricant", lambda: case.lubricant_properties)
+    return found + _bores(case)
+
+
+def _bores(case: Case) -> list[tuple[str, Problem]]:
+    """A gear body without a bore has nothing that holds it."""
+    if case.stiffness.model != "potential-energy" or case.stiffness.reference != "bore":
+        return []
+    gears = {"pinion": case.gears.pinion, "wheel": case.gears.wheel}
+    problem = Problem(
+        "bore_diameter = 0 mm",
+        why='The model "potential-energy" measures deflection against the bore',
+        remedy='Give bore_diameter, or reference = "rim" in [stiffness], without the body',
+    )
+    return [
+        (f"gears.{name}.bore_diameter", problem)
+        for name, gear in gears.items()
+        if gear.bore_diameter == 0.0
+    ]

@@ -1,0 +1,163 @@
+"""One field of the case file: its meaning, its unit and what it accepts.
+
+Every section of the case declares its fields with :func:`number`, :func:`integer`,
+:func:`numbers`, :func:`choice`, :func:`flag` or :func:`text`. The :class:`Spec` behind a field is
+what checks its value, what the commented case file prints and what the documentation tables show.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import Field
+
+from tribodyn import units
+from tribodyn.nomenclature import QUANTITIES
+
+__all__ = ["Spec", "choice", "flag", "integer", "number", "numbers", "text"]
+
+Names = Callable[[], list[str]]
+
+
+@dataclass(frozen=True)
+class Spec:
+    """What is known about one field.
+
+    Parameters
+    ----------
+    kind : str
+        ``"number"``, ``"numbers"``, ``"integer"``, ``"choice"``, ``"flag"`` or ``"text"``.
+    meaning : str
+        One line.
+    symbol, unit, display_unit : str
+        Symbol of the field, SI unit and the unit shown; empty for a pure number.
+    low, high : float
+        Inclusive limits in ``unit``.
+    positive : bool
+        Zero is refused although ``low`` is zero.
+    origin : str
+        Why the limits are what they are.
+    names : callable
+        Names allowed, for a choice.
+    later : tuple of str
+        Names that a later release will have.
+    example : str
+        TOML value shown where the field is missing.
+    """
+
+    kind: str
+    meaning: str
+    symbol: str = ""
+    unit: str = ""
+    display_unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    positive: bool = False
+    origin: str = ""
+    names: Names | None = None
+    later: tuple[str, ...] = ()
+    example: str = ""
+
+    def show(self, value: Any) -> str:
+        """Write a value in the display unit, lists in brackets, flags as TOML does."""
+        if isinstance(value, tuple):
+            return f"[{', '.join(self.show(item) for item in value)}]"
+        if isinstance(value, bool):
+            return str(value).lower()
+        if self.unit:
+            return units.format_quantity(value, self.unit, self.display_unit)
+        return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+    def allowed(self) -> str:
+        """Range or names that the field accepts, as one phrase."""
+        if self.kind == "flag":
+            return "true or false"
+        if self.names is not None:
+            return ", ".join(self.names())
+        low, high = math.isfinite(self.low), math.isfinite(self.high)
+        if low and high:
+            sign = "above " if self.positive else ""
+            return f"{sign}{self.show(self.low)} to {self.show(self.high)}"
+        return "text" if self.kind == "text" else "any finite value"
+
+
+#: A sensible value of each quantity, shown where one is missing or not understood.
+_EXAMPLES = {
+    "normal_module": '"4.5 mm"', "normal_pressure_angle": '"20 deg"', "angle": '"20 deg"',
+    "center_distance": '"91.5 mm"', "composite_roughness": '"0.5 um"', "roughness_rms": '"0.4 um"',
+    "face_width": '"20 mm"', "tip_diameter": '"88.6 mm"', "bore_diameter": '"30 mm"',
+    "mass": '"0.676 kg"', "moment_of_inertia": '"407 kg*mm^2"', "youngs_modulus": '"206 GPa"',
+    "density": '"880 kg/m^3"', "dynamic_viscosity": '"82 mPa*s"', "temperature": '"40 degC"',
+    "pressure_viscosity_coefficient": '"21.9 1/GPa"', "speed": '"900 rpm"', "torque": '"90 N*m"',
+    "pair_stiffness": '"2e8 N/m"', "mesh_stiffness": '"2.5e8 N/m"', "roll_angle": '"0.5 rad"',
+    "sliding_speed": '"0.001 m/s"', "bearing_stiffness": '"3.5e9 N/m"', "backlash": '"0.05 mm"',
+    "bearing_damping": '"4000 N*s/m"', "mesh_damping": '"900 N*s/m"',
+    "transmission_error": '"2 um"', "friction_coefficient": "0.05",
+}  # fmt: skip
+
+
+def _field(default: Any, spec: Spec) -> Any:
+    return Field(default, description=spec.meaning, json_schema_extra={"spec": spec})  # type: ignore[dict-item]
+
+
+def number(
+    default: Any,
+    low: float,
+    high: float,
+    origin: str,
+    *,
+    of: str = "",
+    meaning: str = "",
+    positive: bool = False,
+    several: bool = False,
+) -> Any:
+    """Declare a real field; ``of`` names its quantity in the nomenclature, ranges are SI."""
+    quantity = QUANTITIES.get(of)
+    spec = Spec(
+        kind="numbers" if several else "number",
+        meaning=meaning or (quantity.meaning if quantity else ""),
+        symbol=quantity.symbol if quantity else "",
+        unit=quantity.unit if quantity else "",
+        display_unit=quantity.display_unit if quantity else "",
+        low=low,
+        high=high,
+        positive=positive,
+        origin=origin,
+        example=_EXAMPLES.get(of, "1.0"),
+    )
+    return _field(default, spec)
+
+
+def numbers(low: float, high: float, origin: str, *, of: str = "", meaning: str) -> Any:
+    """Declare an optional list of real values; arguments as for :func:`number`."""
+    return number(None, low, high, origin, of=of, meaning=meaning, several=True)
+
+
+def integer(
+    default: Any, low: int, high: int, origin: str, *, meaning: str, symbol: str = "", example: str
+) -> Any:
+    """Declare a whole-number field."""
+    spec = Spec("integer", meaning, symbol, low=low, high=high, origin=origin, example=example)
+    return _field(default, spec)
+
+
+def choice(
+    default: Any, names: tuple[str, ...] | Names, *, meaning: str, later: tuple[str, ...] = ()
+) -> Any:
+    """Declare a field that takes one of several names; ``names`` may be looked up late."""
+    look_up = names if callable(names) else lambda: list(names)
+    example = "" if callable(names) else f'"{names[0]}"'
+    return _field(default, Spec("choice", meaning, names=look_up, later=later, example=example))
+
+
+def flag(default: bool, *, meaning: str) -> Any:
+    """Declare a field that is true or false."""
+    return _field(default, Spec("flag", meaning))
+
+
+def text(default: Any, *, meaning: str, example: str = "") -> Any:
+    """Declare a field of free text."""
+    return _field(default, Spec("text", meaning, example=example))

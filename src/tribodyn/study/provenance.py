@@ -1,0 +1,174 @@
+"""Which values the user gave, which are assumed, and which are defaults: nothing is hidden."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.study.checks import DEFAULT_MARK
+from tribodyn.study.derived import BASIS, derived_values
+from tribodyn.study.faults import section_at
+from tribodyn.study.fields import Spec
+from tribodyn.study.options import model_options
+
+if TYPE_CHECKING:
+    from tribodyn.study.case import Case
+
+__all__ = ["Assumption", "assumptions", "effective", "provenance", "spec_of"]
+
+
+_TRANSIENT_CYCLES = 50
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """A value that nobody stated, and why it is what it is.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key of the case file.
+    value : str
+        Value with unit.
+    kind : str
+        ``"assumed"`` by whoever wrote the case, or a ``"default"`` of tribodyn.
+    reason : str
+        Why.
+    """
+
+    key: str
+    value: str
+    kind: str
+    reason: str
+
+    def __str__(self) -> str:
+        """One line."""
+        return f"{self.key} = {self.value} ({self.kind}): {self.reason}"
+
+
+def spec_of(case: Case, key: str) -> Spec | None:
+    """Return the Spec of a dotted key, or None if there is no such plain field.
+
+    Parameters
+    ----------
+    case : Case
+        Any case.
+    key : str
+        Dotted key.
+    """
+    *path, name = key.split(".")
+    section = section_at(type(case), tuple(path))
+    return section.spec(name) if section and name in section.model_fields else None
+
+
+def _option_default(case: Case, key: str) -> Any:
+    """Default of an option of the chosen stiffness model or friction law."""
+    section, _, name = key.rpartition(".")
+    if key == "stiffness.reference" and case.stiffness.model == "potential-energy":
+        # A gear without a bore has no shaft seat to measure against.
+        bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
+        return "bore" if all(bores) else "rim"
+    chosen = {"stiffness": case.stiffness.model, "friction": case.friction.law}.get(section)
+    return model_options(section, chosen).get(name) if chosen else None
+
+
+def effective(case: Case) -> dict[str, Any]:
+    """Return all values in force by dotted key, defaults of options and solver filled in.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    dict
+        SI values; None where a value is derived from the geometry or not used.
+    """
+    values = {}
+    for key, value in case.values():
+        values[key] = _option_default(case, key) if value is None else value
+    for name in ("mesh_damping", "bearing_damping"):
+        if values[f"dynamics.{name}"] is not None:
+            values[f"dynamics.{name}_ratio"] = None
+    if case.dynamics.model == "torsional":
+        values["dynamics.bearing_damping_ratio"] = None
+    if case.solver.method == "transient" and values["solver.cycles"] is None:
+        values["solver.cycles"] = _TRANSIENT_CYCLES
+    return values
+
+
+def _marked(case: Case, key: str, reason: str, value: Any) -> str:
+    """Origin of a value with a mark in ``[assumed]``."""
+    if reason != DEFAULT_MARK:
+        return f"assumed: {reason}"
+    *path, name = key.split(".")
+    section = section_at(type(case), tuple(path))
+    standard = section.model_fields[name].default if section else None
+    standard = _option_default(case, key) if standard is None else standard
+    if key == "solver.cycles" and standard is None:
+        standard = _TRANSIENT_CYCLES
+    if standard == value:
+        return DEFAULT_MARK
+    spec = spec_of(case, key)
+    now = spec.show(standard) if spec and standard is not None else "derived"
+    return f"assumed: marked as default in the file, while this version has {now}"
+
+
+def provenance(case: Case) -> dict[str, str]:
+    """Tell the origin of every value in force.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    dict of str to str
+        Dotted key to ``"given"``, ``"default"`` or ``"assumed: reason"``.
+    """
+    origins = {}
+    for key, value in effective(case).items():
+        if key in case.assumed:
+            origins[key] = _marked(case, key, case.assumed[key], value)
+        elif key in case.given:
+            origins[key] = "given"
+        elif value is not None or key.rpartition(".")[2] in BASIS:
+            origins[key] = DEFAULT_MARK
+    return origins
+
+
+def assumptions(case: Case) -> tuple[Assumption, ...]:
+    """List everything that the user did not state: assumed values and defaults.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    tuple of Assumption
+    """
+    values, derived, rows = effective(case), derived_values(case), []
+    for key, origin in provenance(case).items():
+        kind, _, reason = origin.partition(": ")
+        spec = spec_of(case, key)
+        if kind == "given" or spec is None:
+            continue
+        name = key.rpartition(".")[2]
+        if key in derived or (values[key] is None and name in BASIS):
+            reason = f"derived from {BASIS[name]}"
+        value = derived.get(key, values[key])
+        shown = "automatic" if value is None else spec.show(value)
+        rows.append(Assumption(key, shown, kind, reason or spec.meaning))
+    return (*rows, *_oil_assumptions(case))
+
+
+def _oil_assumptions(case: Case) -> list[Assumption]:
+    """What the library assumes about the oil of a case."""
+    oil = case.lubricant_properties
+    if oil is None:
+        return []
+    return [Assumption("lubricant", oil.name, "assumed", reason) for reason in oil.assumptions]

@@ -1,0 +1,114 @@
+"""The part of a response that is measured: a whole orbit, or the second half of a transient."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import FineSamples, Response, System
+    from tribodyn.study.result import Result
+
+__all__ = [
+    "is_steady",
+    "measured",
+    "one_sided_phase",
+    "support_forces",
+    "transmission_error",
+]
+
+#: Distance from an event that tells its two sides apart [mesh cycles].
+_SIDE = 1e-11
+
+
+def is_steady(response: Response) -> bool:
+    """Tell a periodic orbit from a transient.
+
+    Parameters
+    ----------
+    response : Response
+        Any motion.
+
+    Returns
+    -------
+    bool
+    """
+    return response.floquet_multipliers.size > 0
+
+
+def measured(response: Response) -> FineSamples:
+    """Samples over which the figures of a summary are taken.
+
+    Parameters
+    ----------
+    response : Response
+        Orbit or transient.
+
+    Returns
+    -------
+    FineSamples
+        Of whole mesh cycles, with weights that sum to one.
+    """
+    fine = response.fine
+    first = 0 if is_steady(response) else response.periods // 2
+    skipped = fine.phase.size * first // response.periods
+    part = replace(fine, **{f.name: getattr(fine, f.name)[skipped:] for f in fields(fine)})
+    return replace(part, phase=part.phase - first, weight=part.weight / part.weight.sum())
+
+
+def one_sided_phase(samples: FineSamples) -> NDArray[np.float64]:
+    """Phase of each sample moved by a hair into its own step, so that events have two sides.
+
+    Parameters
+    ----------
+    samples : FineSamples
+        Both ends and the middle of every step.
+
+    Returns
+    -------
+    (3 * steps,) array
+        Mesh phase [cycles].
+    """
+    steps = samples.phase.reshape(-1, 3) + np.array([_SIDE, 0.0, -_SIDE])
+    return np.asarray(steps.reshape(-1))
+
+
+def transmission_error(result: Result, samples: FineSamples) -> NDArray[np.float64]:
+    """Dynamic transmission error, counted from first contact of the driving flank.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` made.
+    samples : FineSamples
+        Samples of its response.
+
+    Returns
+    -------
+    (3 * steps,) array
+        Compression of the mesh, prescribed error included [m].
+    """
+    error = samples.deflection[:, 0] + result.static_error(samples.phase)
+    return np.asarray(error - result.half_backlash)
+
+
+def support_forces(system: System, samples: FineSamples) -> NDArray[np.float64]:
+    """Forces of the bodies on their supports, from springs and dampers together.
+
+    Parameters
+    ----------
+    system : System
+        The structure.
+    samples : FineSamples
+        Samples of its response.
+
+    Returns
+    -------
+    (3 * steps, n) array
+        Generalized force of each coordinate [N or N*m].
+    """
+    stiffness, damping = np.asarray(system.stiffness), np.asarray(system.damping)
+    return np.asarray(samples.position @ stiffness.T + samples.velocity @ damping.T)

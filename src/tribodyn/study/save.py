@@ -1,0 +1,171 @@
+"""Write files and directories whole or not at all, and never over something by accident."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from tribodyn.errors import InputError, OutputExistsError, Problem
+
+__all__ = ["RESULT_FILES", "check_target", "new_directory", "write_file"]
+
+#: What a result directory holds; only such a directory may be replaced.
+RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.html")
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write a text file at once: it appears complete or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; an existing one is replaced.
+    text : str
+        Its content.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    except OSError as error:
+        raise InputError(_cannot(path, error)) from None
+    partial = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        partial.chmod(0o666 & ~_umask())
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _cannot(path: Path, error: OSError) -> Problem:
+    reason = error.strerror or str(error)
+    return Problem(f"cannot write: {reason}", str(path), "", "Choose another place")
+
+
+def check_target(
+    target: Path, force: bool, *, remedy: str = "Choose another directory, or set force=True"
+) -> None:
+    """Refuse a directory that cannot or must not be written, before any work is done.
+
+    Parameters
+    ----------
+    target : Path
+        Directory to make.
+    force : bool
+        An existing result may be replaced.
+    remedy : str
+        What to do about an existing result.
+
+    Raises
+    ------
+    OutputExistsError
+        If something is there that is not to be replaced.
+    InputError
+        If the place cannot be written to.
+    """
+    parent = target.absolute().parent
+    if parent.exists() and not parent.is_dir():
+        raise InputError(
+            Problem("this is a file, not a directory", str(target.parent), "", "Choose another")
+        )
+    if not parent.is_dir():
+        raise InputError(
+            Problem("there is no such directory", str(target.parent), "", "Create it first")
+        )
+    if not os.access(parent, os.W_OK):
+        raise InputError(
+            Problem("no permission to write", str(target.parent), "", "Choose another place")
+        )
+    if not (target.exists() or target.is_symlink()):
+        return
+    if target.is_file():
+        remedy = "Choose another name, or move the file away"
+        raise OutputExistsError(Problem("a file is in the way", str(target), "", remedy))
+    strange = _strangers(target)
+    if strange:
+        why = f"It is no result of tribodyn: it {strange}"
+        problem = Problem("this exists already", str(target), why, "Choose another name")
+        raise OutputExistsError(problem)
+    if not force:
+        raise OutputExistsError(Problem("this exists already", str(target), "", remedy))
+
+
+def _strangers(target: Path) -> str:
+    """Say what keeps an existing place from being replaced; empty if it is a result."""
+    if target.is_symlink() or not target.is_dir():
+        return "is not a directory"
+    names = sorted(entry.name for entry in target.iterdir())
+    others = [name for name in names if name not in RESULT_FILES]
+    if others:
+        return f"holds {others[0]}"
+    return "" if "summary.json" in names else "holds no summary.json"
+
+
+@contextmanager
+def new_directory(target: Path, *, force: bool = False) -> Iterator[Path]:
+    """Fill a directory beside its place and move it there when it is complete.
+
+    Parameters
+    ----------
+    target : Path
+        Directory to make.
+    force : bool
+        Replace an existing result.
+
+    Yields
+    ------
+    Path
+        Directory to write into. If the block fails or is interrupted, nothing of it remains.
+
+    Raises
+    ------
+    OutputExistsError
+        If something is there that is not to be replaced.
+    InputError
+        If the place cannot be written to.
+    """
+    check_target(target, force)
+    place = target.absolute()
+    try:
+        partial = Path(tempfile.mkdtemp(prefix=f".{place.name}.", dir=place.parent))
+    except OSError as error:
+        raise InputError(_cannot(target, error)) from None
+    try:
+        yield partial
+        partial.chmod(0o777 & ~_umask())
+        check_target(target, force)
+        _publish(partial, place)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _publish(partial: Path, place: Path) -> None:
+    """Move the complete directory to its place; what was there goes last."""
+    if not place.exists():
+        partial.rename(place)
+        return
+    old = Path(tempfile.mkdtemp(prefix=f".{place.name}.old.", dir=place.parent))
+    try:
+        place.rename(old / place.name)
+        try:
+            partial.rename(place)
+        except BaseException:
+            (old / place.name).rename(place)
+            raise
+    finally:
+        shutil.rmtree(old, ignore_errors=True)

@@ -1,0 +1,139 @@
+"""The figures of a result: geometry, mesh and motion as one flat dictionary in SI."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.study.geometry import geometry
+from tribodyn.study.record import (
+    is_steady,
+    measured,
+    one_sided_phase,
+    support_forces,
+    transmission_error,
+)
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import FineSamples
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.result import Result
+
+__all__ = ["summarize"]
+
+#: Direction in the names of the summary -> letter of the coordinate.
+_DIRECTIONS = {"loa": "y", "oloa": "x"}
+_GEARS = ("pinion", "wheel")
+_HARMONICS = 5
+
+
+def summarize(result: Result) -> dict[str, float]:
+    """Compute all figures of a result.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` made.
+
+    Returns
+    -------
+    dict of str to float
+        Names and units as in :data:`tribodyn.study.SUMMARY`. A transient is measured over the
+        second half of its mesh cycles. Figures that a model does not have are left out.
+    """
+    samples = measured(result.response)
+    values: dict[str, Any] = {
+        **geometry(result.case),
+        **_mesh_figures(result.mesh),
+        **_force_figures(result, samples),
+        **_error_figures(result, samples),
+        **_friction_figures(result.mesh, samples),
+    }
+    if "pinion_x" in result.response.names:
+        values |= _support_figures(result, samples)
+    values["steps_per_mesh_cycle"] = result.response.time.size // result.response.periods
+    values["omega_max_dt"] = result.response.step_number
+    if is_steady(result.response):
+        values["steady_state_error"] = result.response.error
+    return {name: float(value) for name, value in values.items()}
+
+
+def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
+    figures = {
+        "mesh_frequency": mesh.mesh_frequency,
+        "static_mesh_force": mesh.total_normal_force,
+        "mean_mesh_stiffness": mesh.mean_mesh_stiffness,
+        "mean_friction_coefficient": mesh.mean_friction_coefficient,
+        "maximum_hertz_pressure": mesh.hertz_pressure.max(),
+    }
+    for name in ("minimum_film", "central_film"):
+        film = getattr(mesh, name)
+        if film is not None:
+            figures[name] = film[mesh.in_contact].min()
+    return figures
+
+
+def _force_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    from tribodyn.analysis import extremes, mean, rms
+
+    force, gap = samples.contact_force[:, 0], result.half_backlash
+    apart = (samples.deflection[:, 0] <= gap) & (gap > 0.0)
+    least, greatest = extremes(force)
+    return {
+        "mesh_damping": result.damping.mesh,
+        "mean_mesh_force": mean(samples, force),
+        "rms_mesh_force": rms(samples, force),
+        "peak_mesh_force": greatest,
+        "minimum_mesh_force": least,
+        "contact_loss_share": mean(samples, apart.astype(float)),
+    }
+
+
+def _error_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    from tribodyn.analysis import alternating_rms, mean, mesh_harmonics, peak_to_peak
+
+    error = transmission_error(result, samples)
+    name = "dynamic_transmission_error"
+    amplitudes = np.abs(mesh_harmonics(samples, error, _HARMONICS))
+    return {
+        f"mean_{name}": mean(samples, error),
+        f"rms_{name}": alternating_rms(samples, error),
+        f"peak_to_peak_{name}": peak_to_peak(error),
+        **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},
+    }
+
+
+def _friction_figures(mesh: MeshTable, samples: FineSamples) -> dict[str, Any]:
+    from tribodyn.analysis import mean, rms
+    from tribodyn.mesh import PhaseFunction
+
+    force, phase = samples.contact_force[:, 0], one_sided_phase(samples)
+    losses = mesh.friction_coefficient * mesh.load_share * np.abs(mesh.sliding_speed)
+    lost = PhaseFunction(mesh.grid, losses.sum(axis=1))(phase)
+    return {
+        "rms_friction_force": rms(samples, mesh.functions().friction_sum(phase) * force),
+        "mean_friction_power": mean(samples, lost * force),
+    }
+
+
+def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    """Forces on the supports and accelerations of the gear centres."""
+    from tribodyn.analysis import alternating_rms, line_of_action_indicator
+
+    index = result.response.index
+    forces = support_forces(result.system, samples)
+    figures: dict[str, Any] = {
+        "bearing_damping_pinion": result.damping.bearing_pinion,
+        "bearing_damping_wheel": result.damping.bearing_wheel,
+    }
+    for kind, signals in (("bearing_force", forces), ("acceleration", samples.acceleration)):
+        for gear in _GEARS:
+            for direction, letter in _DIRECTIONS.items():
+                signal = signals[:, index(f"{gear}_{letter}")]
+                figures[f"rms_{kind}_{direction}_{gear}"] = alternating_rms(samples, signal)
+    along, across = (forces[:, index(f"pinion_{letter}")] for letter in "yx")
+    indicator = line_of_action_indicator(samples, along, across)
+    if np.isfinite(indicator):
+        figures["line_of_action_indicator"] = indicator
+    return figures

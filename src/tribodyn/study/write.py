@@ -1,0 +1,132 @@
+"""Write a case: as a commented case file that reads back, and as a table to look at."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+from tribodyn import units
+from tribodyn.study.checks import DEFAULT_MARK
+from tribodyn.study.derived import BASIS, derived_values
+from tribodyn.study.faults import section_at
+from tribodyn.study.fields import Spec
+from tribodyn.study.provenance import effective, provenance, spec_of
+
+if TYPE_CHECKING:
+    from tribodyn.study.case import Case
+
+__all__ = ["case_table", "case_toml"]
+
+
+def _quantity(spec: Spec, value: float) -> str:
+    """Text with a unit that reads back to exactly the same float."""
+    if not spec.unit:
+        return repr(value)
+    for unit in (spec.display_unit, spec.unit):
+        text = units.format_quantity(value, spec.unit, unit)
+        if units.parse(text, spec.unit) == value:
+            return f'"{text}"'
+    return f'"{value!r} {spec.unit}"'
+
+
+def _toml_value(spec: Spec, value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return f"[{', '.join(_quantity(spec, item) for item in value)}]"
+    if spec.kind == "number":
+        return _quantity(spec, value)
+    return str(value) if spec.kind == "integer" else json.dumps(value, ensure_ascii=False)
+
+
+def _comment(spec: Spec, note: str) -> str:
+    meaning = f"{spec.symbol}: {spec.meaning}" if spec.symbol else spec.meaning
+    limits = spec.allowed() if spec.names or math.isfinite(spec.low) else ""
+    return "; ".join(part for part in (meaning, limits, note) if part)
+
+
+def _line(spec: Spec, name: str, value: Any, origin: str, derived: float | None) -> str:
+    if value is None and derived is not None:
+        note = f"default: from {BASIS[name]}"
+        return f'# {name} = "{spec.show(derived)}"  # {_comment(spec, note)}'
+    if value is None:
+        return f"# {name} = {_unset_example(spec)}  # {_comment(spec, 'not given')}"
+    note = origin if origin == DEFAULT_MARK else ""
+    return f"{name} = {_toml_value(spec, value)}  # {_comment(spec, note)}"
+
+
+def _unset_example(spec: Spec) -> str:
+    if spec.kind == "numbers":
+        return f"[{spec.example}]"
+    return f'"{spec.names()[0]}"' if spec.names is not None else spec.example
+
+
+def case_toml(case: Case) -> str:
+    """Write the complete commented case file.
+
+    Values that are defaults are written out and marked in ``[assumed]`` by the reason
+    ``"default"``, so that the file gives the same results in a later version and still tells
+    what its user chose.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    str
+    """
+    values, origins, derived = effective(case), provenance(case), derived_values(case)
+    lines, table = [], ""
+    for key, value in values.items():
+        spec = spec_of(case, key)
+        place, _, name = key.rpartition(".")
+        if spec is None:
+            continue
+        if place != table:
+            table = place
+            section = section_at(type(case), tuple(place.split(".")))
+            lines += ["", f"[{place}]  # {_table_meaning(case, place)}" if section else ""]
+        lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key)))
+    if case.lubricant is None:
+        lines += ["", "# [lubricant] is not given: nothing in this case needs an oil"]
+    marks = {key: case.assumed.get(key, DEFAULT_MARK) for key, origin in origins.items()
+             if origin != "given" and values[key] is not None}  # fmt: skip
+    if marks:
+        lines += ["", "# Values above that the source of this case does not print, and defaults"]
+        lines += ["[assumed]"]
+        lines += [f'"{key}" = {json.dumps(why, ensure_ascii=False)}' for key, why in marks.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _table_meaning(case: Case, place: str) -> str:
+    *path, name = place.split(".")
+    parent = section_at(type(case), tuple(path))
+    return (parent.model_fields[name].description if parent else "") or ""
+
+
+def case_table(case: Case) -> str:
+    """Write the case as a table with units, one row for each value in force.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    str
+    """
+    origins, derived = provenance(case), derived_values(case)
+    values = {key: derived.get(key, value) for key, value in effective(case).items()}
+    rows = [
+        (key, spec.show(value), origins.get(key, "").partition(":")[0])
+        for key, value in values.items()
+        if value is not None and (spec := spec_of(case, key)) is not None and key != "title"
+    ]
+    widths = [max(len(row[column]) for row in rows) for column in range(2)]
+    head = f"Case: {case.title}"
+    body = [f"  {k:<{widths[0]}}  {v:<{widths[1]}}  {origin}" for k, v, origin in rows]
+    return "\n".join([head, *(line.rstrip() for line in body)])

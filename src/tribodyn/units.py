@@ -1,0 +1,284 @@
+"""Units at the border: text with a unit becomes an SI float, and back.
+
+``pint`` does the arithmetic, and is loaded only for a unit that is not in the small table of
+this field's usual ones (loading it costs more than everything else that reading a case does).
+The field's spellings are known: ``Nm``, ``N·m``, ``r/min``, ``cSt``, ``cP``, ``mPa s``, ``µm``,
+``N/(mm µm)``, ``kg mm2``, ``°``, ``°C``; plain pint reads ``150 Nm`` as a textile unit and rejects
+``1400 r/min``. An angle is a kind of its own: ``15 Hz`` is no rotational speed, because only the
+author knows whether a factor of 2 pi is meant.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import lru_cache
+from typing import Any
+
+__all__ = ["SPELLINGS", "UnitProblemError", "convert", "format_quantity", "parse", "split"]
+
+_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+
+#: Field spelling -> the plain spelling used in the table below and understood by pint.
+SPELLINGS: dict[str, str] = {
+    "Nm": "(N*m)",
+    "kNm": "(kN*m)",
+    "mNm": "(mN*m)",
+    "Nmm": "(N*mm)",
+    "Ns": "(N*s)",
+    "Nms": "(N*m*s)",
+    "Pas": "(Pa*s)",
+    "mPas": "(mPa*s)",
+    "RPM": "rpm",
+    "r/min": "rpm",
+    "rev/min": "rpm",
+    "U/min": "rpm",
+    "1/min": "rpm",
+    "min^-1": "rpm",
+    "min-1": "rpm",
+    "cSt": "(mm^2/s)",
+    "cP": "(mPa*s)",
+    "°C": "degC",
+    "°F": "degF",
+    "°": "deg",
+    "mum": "um",
+    "micron": "um",
+    "rev": "turn",
+}
+
+_SIGNS = {
+    **dict.fromkeys(("·", "⋅", "×", "•"), "*"),
+    **dict.fromkeys(("µ", "μ"), "u"),
+    **{"⁻¹": "^-1", "⁻²": "^-2", "⁻³": "^-3", "²": "^2", "³": "^3", "⁴": "^4", "−": "-", "**": "^"},
+}
+_WORD = re.compile(
+    r"(?<![A-Za-z0-9_°])(?:"
+    + "|".join(re.escape(word) for word in sorted(SPELLINGS, key=len, reverse=True))
+    + r")(?![A-Za-z0-9_])"
+)
+
+#: SI unit -> usual unit -> (times, per): SI value = value * times / per. Two whole numbers, so
+#: that 4.5 mm is the float nearest to 0.0045. A test compares every entry with pint.
+_USUAL: dict[str, dict[str, tuple[float, float]]] = {
+    "m": {"mm": (1, 1e3), "um": (1, 1e6), "cm": (1, 1e2), "nm": (1, 1e9)},
+    "m^2/s": {"mm^2/s": (1, 1e6)},
+    "m/s": {"mm/s": (1, 1e3)},
+    "m/s^2": {"mm/s^2": (1, 1e3)},
+    "kg": {"g": (1, 1e3)},
+    "kg*m^2": {"kg*mm^2": (1, 1e6), "kg*cm^2": (1, 1e4), "g*mm^2": (1, 1e9)},
+    "kg/m^3": {"g/cm^3": (1e3, 1), "kg/dm^3": (1e3, 1), "kg/l": (1e3, 1)},
+    "s": {"ms": (1, 1e3), "us": (1, 1e6), "min": (60, 1)},
+    "Hz": {"kHz": (1e3, 1)},
+    "rad": {"deg": (math.pi, 180)},
+    "rad/s": {"rpm": (math.pi, 30)},
+    "N": {"kN": (1e3, 1)},
+    "W": {"kW": (1e3, 1)},
+    "m/N": {"um/kN": (1, 1e9), "um/N": (1, 1e6)},
+    "N*m": {"kN*m": (1e3, 1), "N*mm": (1, 1e3)},
+    "N/m": {"N/um": (1e6, 1), "N/mm": (1e3, 1), "kN/mm": (1e6, 1), "kN/m": (1e3, 1)},
+    "N/m^2": {"N/(mm*um)": (1e9, 1), "N/mm/um": (1e9, 1)},
+    "N*s/m": {"N*s/mm": (1e3, 1)},
+    "Pa": {"kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1), "N/mm^2": (1e6, 1), "bar": (1e5, 1)},
+    "Pa*s": {"mPa*s": (1, 1e3)},
+    "1/Pa": {"1/MPa": (1, 1e6), "1/GPa": (1, 1e9), "GPa^-1": (1, 1e9), "Pa^-1": (1, 1)},
+}
+_ZERO_CELSIUS = 273.15
+
+
+class UnitProblemError(ValueError):
+    """Text that is no quantity of the wanted dimension; the message says why and what to write."""
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    registry: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+    return registry
+
+
+@lru_cache(maxsize=1024)
+def _plain(unit: str) -> str:
+    """Rewrite the field's spellings plainly: ``mPa s`` -> ``mPa*s``, ``kg mm2`` -> ``kg*mm^2``."""
+    text = unit.strip()
+    for sign, plain in _SIGNS.items():
+        text = text.replace(sign, plain)
+    text = _WORD.sub(lambda word: f" {SPELLINGS[word.group()]} ", text)
+    text = re.sub(r"([A-Za-z])(-?\d+)", r"\1^\2", text)
+    text = re.sub(r"\s*([*/^()])\s*", r"\1", text.strip())
+    text = re.sub(r"([A-Za-z0-9)])\s+(?=[A-Za-z(])|(?<=\))(?=[A-Za-z(])", r"\1*", text)
+    whole = re.fullmatch(r"\(([^()]*)\)", text)
+    return whole.group(1) if whole else text
+
+
+def _usual(value: float, unit: str, si: str) -> float | None:
+    """Return ``value`` in ``si``, or None when the table does not hold the unit."""
+    if unit == si:
+        return value
+    if si == "K" and unit == "degC":
+        return value + _ZERO_CELSIUS
+    scale = _USUAL.get(si, {}).get(unit)
+    return None if scale is None else value * scale[0] / scale[1]
+
+
+def _from_si(value: float, si: str, unit: str) -> float | None:
+    """Return an SI ``value`` in ``unit``, or None when the table does not hold the unit."""
+    if si == "K" and unit == "degC":
+        return value - _ZERO_CELSIUS
+    scale = _USUAL.get(si, {}).get(unit)
+    return None if scale is None else value * scale[1] / scale[0]
+
+
+def _by_pint(value: float, unit: str, to: str) -> float:
+    """Convert with pint; both units in plain spelling."""
+    import pint
+
+    registry = _registry()
+    try:
+        quantity = registry.Quantity(value, unit.replace("^", "**"))
+        wanted = registry.Quantity(1.0, to.replace("^", "**"))
+    except Exception as error:  # pint lets its tokenizer's errors of many types through
+        raise UnitProblemError(f'"{unit}" is not a unit that tribodyn knows') from error
+    message = (
+        f'"{value:g} {unit}" cannot be expressed in {to or "a pure number"}: wrong kind of quantity'
+    )
+    if _angle_power(quantity) != _angle_power(wanted):
+        raise UnitProblemError(f"{message} (one is an angle or a rotational speed)")
+    try:
+        return float(quantity.to(wanted.units).magnitude)
+    except (pint.DimensionalityError, pint.OffsetUnitCalculusError) as error:
+        raise UnitProblemError(message) from error
+
+
+def _angle_power(quantity: Any) -> float:
+    """Power of the radian, which pint takes for the pure number 1."""
+    return float(dict(quantity.to_root_units().unit_items()).get("radian", 0))
+
+
+def split(text: str) -> tuple[float, str]:
+    """Split ``"4.5 mm"`` into its number and its unit.
+
+    Parameters
+    ----------
+    text : str
+        Number followed by a unit; the unit may be empty.
+
+    Returns
+    -------
+    tuple of float and str
+        Number as written and unit as written.
+
+    Raises
+    ------
+    UnitProblemError
+        If the text does not begin with a number.
+
+    Examples
+    --------
+    >>> split("4.5 mm")
+    (4.5, 'mm')
+    """
+    match = _NUMBER.match(text)
+    if match is None:
+        raise UnitProblemError(f'"{text}" does not begin with a number')
+    return float(match.group(1)), match.group(2)
+
+
+@lru_cache(maxsize=1024)
+def parse(text: str, unit: str) -> float:
+    """Read text with a unit as a float in SI.
+
+    Parameters
+    ----------
+    text : str
+        For example ``"4.5 mm"``, ``"1400 r/min"``, ``"150 Nm"``.
+    unit : str
+        The SI unit wanted; ``""`` for a pure number.
+
+    Returns
+    -------
+    float
+        Value in ``unit``.
+
+    Raises
+    ------
+    UnitProblemError
+        If the text is no number, has no unit, an unknown unit or the wrong dimension.
+
+    Examples
+    --------
+    >>> parse("150 Nm", "N*m")
+    150.0
+    >>> round(parse("1400 r/min", "rad/s"), 6)
+    146.607657
+    >>> round(parse("40 °C", "K"), 2)
+    313.15
+    """
+    number, written = split(text)
+    if not math.isfinite(number):
+        raise UnitProblemError(f'"{text}" is not a finite number')
+    if not written:
+        if unit:
+            raise UnitProblemError(f'"{text}" has no unit; write for example "{number:g} {unit}"')
+        return number
+    plain, wanted = _plain(written), _plain(unit)
+    value = _usual(number, plain, wanted)
+    return _by_pint(number, plain, wanted) if value is None else value
+
+
+@lru_cache(maxsize=256)
+def convert(value: float, unit: str, to: str) -> float:
+    """Convert a float from one unit to another.
+
+    Parameters
+    ----------
+    value : float
+        Value in ``unit``.
+    unit, to : str
+        Unit of the value and unit wanted.
+
+    Returns
+    -------
+    float
+        Value in ``to``.
+
+    Raises
+    ------
+    UnitProblemError
+        If the two units are of different kinds.
+
+    Examples
+    --------
+    >>> convert(0.0045, "m", "mm")
+    4.5
+    """
+    plain, wanted = _plain(unit), _plain(to)
+    for found in (_usual(value, plain, wanted), _from_si(value, plain, wanted)):
+        if found is not None:
+            return found
+    return _by_pint(value, plain, wanted)
+
+
+def format_quantity(value: float, unit: str, display_unit: str | None = None) -> str:
+    """Write an SI float as text with a unit that :func:`parse` reads back.
+
+    Parameters
+    ----------
+    value : float
+        Value in ``unit``.
+    unit : str
+        SI unit.
+    display_unit : str, optional
+        Unit to write; ``unit`` by default.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> format_quantity(0.0045, "m", "mm")
+    '4.5 mm'
+    """
+    shown = display_unit or unit
+    return f"{convert(float(value), unit, shown):.10g} {shown}".strip()

@@ -1,0 +1,184 @@
+"""The report in a real browser: no error, no request, everything drawn, nothing cut off."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tribodyn
+from tribodyn.errors import ModelWarning
+from tribodyn.report import write_report
+from tribodyn.report.blocks import SECTIONS
+
+pytestmark = pytest.mark.browser
+
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+
+
+def chromium() -> str | None:
+    """Path of a Chromium on this machine."""
+    asked = os.environ.get("TRIBODYN_CHROMIUM")
+    return asked or next((path for path in map(shutil.which, NAMES) if path), None)
+
+
+@dataclass
+class Visit:
+    """An open page and what the browser had to say about it."""
+
+    page: Any
+    told: list[str] = field(default_factory=list)
+    requested: list[str] = field(default_factory=list)
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        result = tribodyn.run(tribodyn.load_case("fzg-roughness"))
+    return write_report(result, tmp_path_factory.mktemp("report") / "report.html")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    program = chromium()
+    if program is None:
+        pytest.skip("no Chromium found; install it or set TRIBODYN_CHROMIUM to its path")
+    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    with playwright.sync_playwright() as driver:
+        opened = driver.chromium.launch(executable_path=program, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module", params=[1280, 800, 420])
+def visit(request: pytest.FixtureRequest, browser: Any, report: Path) -> Iterator[Visit]:
+    page = browser.new_page(viewport={"width": request.param, "height": 900})
+    seen = Visit(page)
+    page.on("console", lambda message: seen.told.append(f"{message.type}: {message.text}"))
+    page.on("pageerror", lambda error: seen.told.append(f"error: {error}"))
+    page.on("request", lambda asked: seen.requested.append(asked.url))
+    page.goto(report.as_uri())
+    page.wait_for_function(
+        "Object.keys(figures).every(name =>"
+        " document.querySelector('#figure-' + name + ' .main-svg'))"
+    )
+    yield seen
+    page.close()
+
+
+def test_console_is_silent(visit: Visit) -> None:
+    assert visit.told == []
+
+
+def test_nothing_is_requested_from_outside(visit: Visit) -> None:
+    assert visit.requested[0].startswith("file://")
+    outside = [url for url in visit.requested if not url.startswith(("file:", "data:", "blob:"))]
+    assert outside == []
+    assert len([url for url in visit.requested if url.startswith("file:")]) == 1
+
+
+def test_every_figure_is_drawn(visit: Visit) -> None:
+    drawn = visit.page.locator(".figure")
+    assert drawn.count() == len(SECTIONS) - 1  # the case computes no oil film
+    for number in range(drawn.count()):
+        figure = drawn.nth(number)
+        assert figure.locator(".main-svg").count() > 0
+        assert figure.locator(".trace, .bars").count() > 0
+    answers = visit.page.locator(".answer").all_inner_texts()
+    assert len(answers) == drawn.count()
+    assert all(answer.strip() for answer in answers)
+
+
+def test_no_text_is_broken(visit: Visit) -> None:
+    text = visit.page.inner_text("body") + " ".join(
+        visit.page.locator("svg text").all_text_contents()
+    )
+    for mark in ("NaN", "nan", "undefined", "None", "Infinity", "[object"):
+        assert mark not in text.split()
+
+
+def test_no_button_sends_data_away(visit: Visit) -> None:
+    buttons = visit.page.evaluate(
+        "[...document.querySelectorAll('.modebar-btn')].map(button => button.dataset.title)"
+    )
+    assert len(set(buttons)) == 6
+    assert not [title for title in buttons if any(w in title for w in ("Share", "cloud", "Plotly"))]
+
+
+def test_headings_are_there(visit: Visit) -> None:
+    headings = visit.page.locator("h2").all_inner_texts()
+    assert len(headings) >= len(SECTIONS) + 4
+    assert {"Mesh force", "Bearing forces", "Assumptions", "Provenance"} <= set(headings)
+    assert "FZG" in visit.page.inner_text("h1")
+
+
+def test_nothing_hangs_over_the_side(visit: Visit) -> None:
+    assert visit.page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+
+
+def test_labels_stay_within_their_figures(visit: Visit) -> None:
+    overhang = visit.page.evaluate(
+        """[...document.querySelectorAll('.figure')].flatMap(figure => {
+             const frame = figure.getBoundingClientRect();
+             return [...figure.querySelectorAll('.annotation-text, .legendtext, .ytitle, .xtitle')]
+               .filter(label => {
+                 const box = label.getBoundingClientRect();
+                 return box.left < frame.left || box.right > frame.right
+                   || box.top < frame.top || box.bottom > frame.bottom;
+               }).map(label => figure.id + ': ' + label.textContent);
+           })"""
+    )
+    assert overhang == []
+
+
+def test_nothing_runs_out_of_its_card(visit: Visit) -> None:
+    outside = visit.page.evaluate(
+        """[...document.querySelectorAll('.block, .card, .notice, header')].flatMap(card => {
+             const frame = card.getBoundingClientRect();
+             return [...card.querySelectorAll('p, h1, h2, li, dd, .figure, .main-svg, .scroll')]
+               .filter(part => {
+                 const box = part.getBoundingClientRect();
+                 return box.left < frame.left || box.right > frame.right + 0.5;
+               }).map(part => card.id + ': ' + part.textContent.slice(0, 40));
+           })"""
+    )
+    assert outside == []
+
+
+def test_buttons_do_not_lie_under_the_menu(visit: Visit) -> None:
+    overlaps = visit.page.evaluate(
+        """[...document.querySelectorAll('.figure')].filter(figure => {
+             const menu = figure.querySelector('.modebar').getBoundingClientRect();
+             return [...figure.querySelectorAll('.updatemenu-button')].some(button => {
+               const box = button.getBoundingClientRect();
+               return box.right > menu.left && box.bottom > menu.top && box.top < menu.bottom;
+             });
+           }).map(figure => figure.id)"""
+    )
+    assert overlaps == []
+
+
+def test_spectra_switch_to_a_logarithmic_scale(visit: Visit) -> None:
+    figure = visit.page.locator("#figure-spectrum")
+    kind = "document.getElementById('figure-spectrum')._fullLayout.yaxis2.type"
+    figure.locator(".updatemenu-button", has_text="logarithmic").click()
+    visit.page.wait_for_function(f"{kind} === 'log'")
+    figure.locator(".updatemenu-button", has_text="linear").click()
+    visit.page.wait_for_function(f"{kind} === 'linear'")
+    assert visit.told == []

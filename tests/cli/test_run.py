@@ -1,0 +1,167 @@
+"""``tribodyn run`` and ``cite``: results appear whole, are kept, and Ctrl-C leaves nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tribodyn.cli import call
+from tribodyn.study.save import RESULT_FILES
+
+_TRIBODYN = (sys.executable, "-m", "tribodyn.cli")
+_FAST = ("--set", "solver.steps_per_mesh_cycle=256")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_run_writes_a_result_named_after_the_case(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(["run", "fzg-roughness", *_FAST]) == 0
+    told = capsys.readouterr()
+    assert "peak_mesh_force" in told.out
+    assert "fzg-roughness/report.html" in told.err
+    assert "warning [thin-tip]" in told.err
+    assert os.listdir(folder) == ["fzg-roughness"]
+    assert set(os.listdir(folder / "fzg-roughness")) == set(RESULT_FILES)
+
+
+def test_json_is_the_summary_that_is_saved(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["run", "fzg-roughness", *_FAST, "--json", "--out", "rough"]
+    assert call([*words, "--set", "gears.composite_roughness=0.991 um"]) == 0
+    told = capsys.readouterr()
+    figures = json.loads(told.out)
+    assert figures == json.loads((folder / "rough" / "summary.json").read_text())
+    assert figures["mesh_frequency"] == pytest.approx(240.0)
+    assert "warning [friction-roughness]" in told.err
+
+
+def test_an_existing_result_is_replaced_only_by_force(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = folder / "fzg-roughness"
+    assert call(["run", "fzg-roughness", *_FAST]) == 0
+    first = (place / "summary.json").read_text()
+    other = ["run", "fzg-roughness", *_FAST, "--set", "operation.torque=120 N*m"]
+    assert call(other) == 2
+    assert "--force" in capsys.readouterr().err
+    assert (place / "summary.json").read_text() == first
+    assert call([*other, "--force"]) == 0
+    assert (place / "summary.json").read_text() != first
+    assert os.listdir(folder) == ["fzg-roughness"]
+
+
+def test_the_saved_case_runs_again_to_the_same_figures(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(["run", "fzg-roughness", *_FAST]) == 0
+    assert call(["run", "fzg-roughness/case.toml", "--out", "again"]) == 0
+    one, two = (json.loads((folder / d / "summary.json").read_text())
+                for d in ("fzg-roughness", "again"))  # fmt: skip
+    assert one == two
+    capsys.readouterr()
+
+
+def test_force_spares_what_is_no_result(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "fzg-roughness").mkdir()
+    (folder / "fzg-roughness" / "thesis.tex").write_text("x")
+    assert call(["run", "fzg-roughness", *_FAST, "--force"]) == 2
+    assert "thesis.tex" in capsys.readouterr().err
+    assert (folder / "fzg-roughness" / "thesis.tex").exists()
+
+
+def test_a_failed_computation_exits_with_one(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tribodyn.errors import ComputationError
+
+    def fail(*_: object) -> None:
+        raise ComputationError("the search failed")
+
+    monkeypatch.setattr("tribodyn.study.pipeline.run", fail)
+    assert call(["run", "fzg-roughness", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["error"]["exit_code"] == 1
+    assert os.listdir(folder) == []
+
+
+def test_cite_reads_a_result(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["run", "fzg-roughness", *_FAST, "--json"]) == 0
+    capsys.readouterr()
+    assert call(["cite", "fzg-roughness"]) == 0
+    assert "Benedict" in capsys.readouterr().out
+    assert call(["cite", "fzg-roughness", "--bibtex"]) == 0
+    assert "@article{benedict-kelley," in capsys.readouterr().out
+    assert call(["cite", "fzg-roughness", "--json"]) == 0
+    assert "xu" not in [paper["key"] for paper in json.loads(capsys.readouterr().out)]
+    assert call(["cite", "."]) == 2
+    assert "no case.toml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "code"), [(["cases"], 0), (["check", "no-such-case"], 2), (["frobnicate"], 2)]
+)
+def test_exit_codes_of_the_process(words: list[str], code: int) -> None:
+    done = subprocess.run([*_TRIBODYN, *words], capture_output=True, text=True, check=False)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
+    assert bool(done.stdout) == (code == 0)
+
+
+def test_a_closed_pipe_is_no_failure() -> None:
+    command = f"{' '.join(_TRIBODYN)} units | head -n 1"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+
+
+@pytest.mark.parametrize("moment", ["computing", "writing"])
+def test_ctrl_c_leaves_nothing(folder: Path, moment: str) -> None:
+    # A long transient is interrupted while it marches; a result while its report is written.
+    hook = folder.parent / f"{folder.name}-hook"
+    hook.mkdir()
+    (hook / "sitecustomize.py").write_text(_SLOW_REPORT if moment == "writing" else "")
+    march = ["--set", "solver.method=transient", "--set", "solver.cycles=20000"]
+    words = [*_TRIBODYN, "run", "fzg-roughness", *(march if moment == "computing" else _FAST)]
+    process = subprocess.Popen(
+        words, cwd=folder, text=True, stderr=subprocess.PIPE, stdout=subprocess.PIPE,
+        start_new_session=True, env={**os.environ, "PYTHONPATH": str(hook)},
+    )  # fmt: skip
+    _wait_until(folder, moment)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in err
+    assert "Traceback" not in err
+    assert out == ""
+    assert os.listdir(folder) == []
+
+
+_SLOW_REPORT = """
+import threading, time
+import tribodyn.report
+tribodyn.report.write_report = lambda result, path: time.sleep(60)
+"""
+
+
+def _wait_until(folder: Path, moment: str) -> None:
+    """Wait for the temporary directory when writing, else for the process to be at work."""
+    if moment == "computing":
+        time.sleep(3.0)
+        return
+    for _ in range(600):
+        if any((place / "response.nc").exists() for place in folder.iterdir()):
+            return
+        time.sleep(0.1)
+    pytest.fail("the result was never written")

@@ -1,0 +1,34 @@
+"""The page on the case file is made from the same fields that check a case."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tribodyn.cli.app import COMMANDS
+from tribodyn.friction import LAWS
+from tribodyn.stiffness import MODELS
+from tribodyn.study.options import model_options
+from tribodyn.study.reference import case_keys, reference_tables
+
+_DOCS = Path(__file__).parents[2] / "docs"
+
+
+def test_all_keys_are_on_the_page_as_they_are_checked() -> None:
+    page = (_DOCS / "case-file.md").read_text(encoding="utf-8")
+    assert page.endswith(reference_tables())
+    assert len(list(case_keys())) > 60
+
+
+def test_options_on_the_page_belong_to_their_models() -> None:
+    page = (_DOCS / "case-file.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `([\w-]+)` \| (.*) \|$", page.split("## All keys")[0], re.M))
+    for section, names in (("stiffness", MODELS.names()), ("friction", LAWS.names())):
+        for name in names:
+            assert set(re.findall(r"`(\w+)`", rows[name])) == set(model_options(section, name))
+
+
+def test_every_command_is_on_its_page() -> None:
+    page = (_DOCS / "command-line.md").read_text(encoding="utf-8")
+    for name, _, _ in COMMANDS:
+        assert f"`tribodyn {name}" in page

@@ -1,0 +1,39 @@
+"""Every doctest of every module runs, each module on its own."""
+
+import doctest
+import importlib
+import pkgutil
+from pathlib import Path
+
+import pytest
+
+import tribodyn
+
+FOUND = [info.name for info in pkgutil.walk_packages(tribodyn.__path__, "tribodyn.")]
+NAMES = ["tribodyn", *(name for name in FOUND if not name.endswith("__main__"))]
+
+
+def examples(name: str) -> list[doctest.DocTest]:
+    module = importlib.import_module(name)
+    return [test for test in doctest.DocTestFinder().find(module, name) if test.examples]
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+@pytest.mark.parametrize("name", NAMES)
+def test_doctests(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    complaints: list[str] = []
+    runner = doctest.DocTestRunner(verbose=False)
+    for test in examples(name):
+        runner.run(test, out=complaints.append)
+    assert runner.failures == 0, "".join(complaints)
+
+
+def test_doctests_are_found() -> None:
+    assert len(examples("tribodyn.units")) >= 4
+    assert sum(len(examples(name)) for name in NAMES) >= 60
+
+
+def test_a_wrong_doctest_is_noticed() -> None:
+    test = doctest.DocTestParser().get_doctest(">>> 1 + 1\n3\n", {}, "wrong", None, 0)
+    assert doctest.DocTestRunner(verbose=False).run(test, out=lambda text: None).failed == 1

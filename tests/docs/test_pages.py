@@ -1,0 +1,83 @@
+"""README and documentation: code runs, links lead somewhere, the glossary is the table."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from glossary import PAGE, page
+from pages import PAGES, ROOT, anchors, blocks, broken_links
+
+README = (ROOT / "README.md").read_text("utf-8")
+WITH_PYTHON = [path for path in PAGES if blocks(path.read_text("utf-8"), "python")]
+
+
+def test_readme_has_exactly_the_two_commands() -> None:
+    main, suite = blocks(README, "bash")
+    for command in (main, suite):
+        assert command.count("\n") == 1
+        assert command.startswith("python3 -m venv .venv && .venv/bin/pip install ")
+    assert " .venv/bin/tribodyn run fzg-roughness --out fzg-report" in main
+    assert '".[test]"' in suite
+    assert suite.rstrip().endswith("-m pytest -n auto")
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+@pytest.mark.parametrize("path", WITH_PYTHON, ids=lambda path: path.name)
+def test_python_blocks_run(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {"__name__": "page"}
+    for block in blocks(path.read_text("utf-8"), "python"):
+        exec(compile(block, path.name, "exec"), names)
+    if path.name == "README.md":
+        assert (tmp_path / "my-report" / "report.html").is_file()
+
+
+def test_readme_is_among_the_pages_with_code() -> None:
+    assert ROOT / "README.md" in WITH_PYTHON
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
+def test_toml_blocks_are_toml(path: Path) -> None:
+    for block in blocks(path.read_text("utf-8"), "toml"):
+        assert tomllib.loads(block)
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
+def test_links_lead_somewhere(path: Path) -> None:
+    assert broken_links(path, path.read_text("utf-8")) == []
+
+
+def test_broken_links_are_noticed(tmp_path: Path) -> None:
+    here = tmp_path / "page.md"
+    assert broken_links(here, "[x](nowhere.md)")
+    assert broken_links(here, "# Title\n[x](#other)")
+    assert not broken_links(here, "# My title!\n[x](#my-title) [y](https:" + "//doi.org)")
+    assert anchors("## Two `commands`, here\n") == {"two-commands-here"}
+
+
+def test_every_page_is_reached_from_the_index() -> None:
+    index = (ROOT / "docs" / "index.md").read_text("utf-8")
+    pages = {path.relative_to(ROOT / "docs").as_posix() for path in PAGES if "docs" in path.parts}
+    assert {page for page in pages - {"index.md"} if f"({page})" not in index} == set()
+
+
+def test_glossary_is_the_table_of_quantities() -> None:
+    assert PAGE.read_text("utf-8") == page(), "run: python tests/docs/glossary.py"
+
+
+def commands() -> list[str]:
+    shown = "\n".join(blocks(README, "text"))
+    return sorted(set(re.findall(r"^tribodyn ([a-z]+)", shown, re.MULTILINE)))
+
+
+@pytest.mark.parametrize("command", commands())
+def test_commands_of_the_readme_exist(command: str) -> None:
+    code = "import sys; from tribodyn.cli import main; sys.exit(main())"
+    done = subprocess.run(
+        [sys.executable, "-c", code, command, "--help"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert command in done.stdout + done.stderr

@@ -1,0 +1,134 @@
+"""Checks of the shape of the code. Each takes a module and returns what is wrong with it."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+
+from source_tree import Module, listed_names
+
+__all__ = [
+    "broad_errors",
+    "exports",
+    "left_overs",
+    "long_file",
+    "long_functions",
+    "prints",
+    "star_imports",
+    "top_level_imports",
+]
+
+LONGEST_FILE = 400
+LONGEST_FUNCTION = 60
+
+#: Third-party package -> parts of tribodyn whose files may import it at their top.
+TOP_IMPORTS = {
+    "numpy": None,
+    "numba": None,
+    "llvmlite": {"dynamics"},
+    "pydantic": {"study"},
+    "pydantic_core": {"study"},
+    "cyclopts": {"cli"},
+    "rich": {"cli"},
+}
+
+
+def long_file(module: Module) -> list[str]:
+    """A file is a room that one can look over."""
+    lines = len(module.text.splitlines())
+    return [f"{module.path}: {lines} lines"] if lines > LONGEST_FILE else []
+
+
+def long_functions(module: Module) -> list[str]:
+    """A function is one thought; only compiled kernels may be long."""
+    return [
+        f"{module.path}:{function.node.lineno}: {function.name} has {function.code_lines} lines"
+        for function in module.functions()
+        if function.code_lines > LONGEST_FUNCTION and not function.compiled
+    ]
+
+
+def star_imports(module: Module) -> list[str]:
+    """Every name can be traced to where it is made."""
+    return [
+        f"{module.path}:{node.lineno}: star import"
+        for node in ast.walk(module.tree)
+        if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names)
+    ]
+
+
+def broad_errors(module: Module) -> list[str]:
+    """No bare except, no swallowed exception, no `raise Exception`."""
+    found = []
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.ExceptHandler):
+            caught = ast.unparse(node.type) if node.type else ""
+            idle = all(isinstance(step, ast.Pass | ast.Continue) for step in node.body)
+            ends = node.body[-1]
+            again = isinstance(ends, ast.Raise) and ends.exc is None  # cleans up, then goes on
+            broad = caught == "" or (caught == "BaseException" and not again)
+            if broad or (caught == "Exception" and idle):
+                found.append(f"{module.path}:{node.lineno}: except {caught or 'everything'}")
+        if isinstance(node, ast.Raise) and node.exc is not None:
+            raised = ast.unparse(node.exc).split("(")[0]
+            if raised in {"Exception", "BaseException", "NotImplementedError"}:
+                found.append(f"{module.path}:{node.lineno}: raise {raised}")
+    return found
+
+
+def left_overs(module: Module) -> list[str]:
+    """Nothing is left for later, and no commented-out code stays."""
+    marks = re.compile(r"#.*\b(TO" + r"DO|FIX" + r"ME|XX" + r"X|HACK)\b")
+    return [
+        f"{module.path}:{number}: {line.strip()}"
+        for number, line in enumerate(module.text.splitlines(), 1)
+        if marks.search(line)
+    ]
+
+
+def prints(module: Module) -> list[str]:
+    """Only the command line writes to the terminal."""
+    if module.package == "cli":
+        return []
+    return [
+        f"{module.path}:{node.lineno}: print"
+        for node in ast.walk(module.tree)
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id == "print"
+    ]
+
+
+def exports(module: Module) -> list[str]:
+    """`__all__` is there, names what exists, and holds every public function and class."""
+    listed = listed_names(module.tree)
+    if listed is None:
+        return [f"{module.path}: no __all__"]
+    defined = ast.FunctionDef | ast.ClassDef
+    missing = [
+        node.name
+        for node in module.tree.body
+        if isinstance(node, defined) and not node.name.startswith("_") and node.name not in listed
+    ]
+    return [f"{module.path}: {name} is public but not in __all__" for name in missing]
+
+
+def top_level_imports(module: Module) -> list[str]:
+    """Heavy packages are imported where they are needed, not when a module is loaded."""
+    found = []
+    for node in module.tree.body:
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            names = [node.module or ""]
+        else:
+            continue
+        for name in names:
+            package = name.split(".")[0]
+            if package in sys.stdlib_module_names or package == "tribodyn":
+                continue
+            allowed = TOP_IMPORTS.get(package, set())
+            if allowed is not None and module.package not in allowed:
+                found.append(f"{module.path}:{node.lineno}: imports {package} at its top")
+    return found

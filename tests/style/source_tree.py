@@ -1,0 +1,190 @@
+"""The repository as the style tests see it: modules as syntax trees, functions, docstrings."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+__all__ = [
+    "PACKAGE",
+    "ROOT",
+    "TESTS",
+    "Function",
+    "Module",
+    "listed_names",
+    "modules",
+    "parse_entries",
+    "read",
+    "text_files",
+]
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "src" / "tribodyn"
+TESTS = ROOT / "tests"
+
+#: Folders that are made, not written.
+_MADE = {"__pycache__", "build", "dist", "runs", "node_modules"}
+_TEXT = {".py", ".toml", ".md", ".cff", ".yml", ".yaml", ".j2", ".html", ".css", ".js", ".txt", ""}
+
+FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@dataclass(frozen=True)
+class Function:
+    """One function or method with what the checks ask of it."""
+
+    node: FunctionNode
+    name: str
+    owner: ast.ClassDef | None
+    nested: bool
+
+    @property
+    def public(self) -> bool:
+        """Whether a user may call it: no leading underscore anywhere, not inside a function."""
+        names = [self.node.name, *([self.owner.name] if self.owner else [])]
+        return not self.nested and not any(name.startswith("_") for name in names)
+
+    @property
+    def decorators(self) -> list[str]:
+        """Text of the decorators."""
+        return [ast.unparse(decorator) for decorator in self.node.decorator_list]
+
+    @property
+    def compiled(self) -> bool:
+        """Whether it is a compiled kernel."""
+        return any(
+            re.search(r"\b(njit|jit|guvectorize|vectorize|intrinsic)\b", d) for d in self.decorators
+        )
+
+    @property
+    def docstring(self) -> str:
+        """Cleaned docstring, empty if there is none."""
+        return ast.get_docstring(self.node) or ""
+
+    @property
+    def code_lines(self) -> int:
+        """Lines of the function without its docstring, decorators and the kernels that it makes."""
+        first = self.node.body[0]
+        has_docstring = ast.get_docstring(self.node, clean=False) is not None
+        documented = (first.end_lineno or 0) - first.lineno + 1 if has_docstring else 0
+        inner = (Function(node, node.name, None, nested=True) for node in self._inside())
+        kernels = sum(_length(function.node) for function in inner if function.compiled)
+        return _length(self.node) - documented - kernels
+
+    def _inside(self) -> list[FunctionNode]:
+        nodes = (node for statement in self.node.body for node in ast.walk(statement))
+        return [node for node in nodes if isinstance(node, FunctionNode)]
+
+    @property
+    def parameters(self) -> list[str]:
+        """Names of the parameters in order, without self and cls."""
+        arguments = self.node.args
+        named = [*arguments.posonlyargs, *arguments.args]
+        if self.owner and "staticmethod" not in self.decorators:
+            named = named[1:]
+        starred = [arguments.vararg] if arguments.vararg else []
+        last = [arguments.kwarg] if arguments.kwarg else []
+        return [argument.arg for argument in (*named, *starred, *arguments.kwonlyargs, *last)]
+
+
+def _length(node: FunctionNode) -> int:
+    return (node.end_lineno or 0) - node.lineno + 1
+
+
+@dataclass(frozen=True)
+class Module:
+    """One Python file."""
+
+    path: str
+    text: str
+    tree: ast.Module
+    surface: frozenset[str] = frozenset()  #: names on the page of public names of its part
+
+    @property
+    def package(self) -> str:
+        """Name of the part it belongs to: ``gear``, ``dynamics``, or its own for single files."""
+        parts = Path(self.path).parts
+        return parts[2] if len(parts) > 3 else Path(self.path).stem
+
+    def functions(self) -> Iterator[Function]:
+        """All functions with their qualified names."""
+        yield from _functions(self.tree, "", None, nested=False)
+
+    def classes(self) -> Iterator[ast.ClassDef]:
+        """Classes at the top level."""
+        return (node for node in self.tree.body if isinstance(node, ast.ClassDef))
+
+
+def _functions(
+    node: ast.AST, prefix: str, owner: ast.ClassDef | None, *, nested: bool
+) -> Iterator[Function]:
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, FunctionNode):
+            yield Function(child, f"{prefix}{child.name}", owner, nested)
+            yield from _functions(child, f"{prefix}{child.name}.", None, nested=True)
+        elif isinstance(child, ast.ClassDef):
+            yield from _functions(child, f"{prefix}{child.name}.", child, nested=nested)
+        else:
+            yield from _functions(child, prefix, owner, nested=nested)
+
+
+def read(text: str, path: str = "src/tribodyn/gear/example.py", page: str = "") -> Module:
+    """Make a module of text, so that each check can be shown to fail."""
+    return Module(path, text, ast.parse(text), frozenset(listed_names(ast.parse(page)) or ()))
+
+
+def listed_names(tree: ast.Module) -> list[str] | None:
+    """Return what ``__all__`` lists, None if there is none."""
+    for node in tree.body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        if any(isinstance(target, ast.Name) and target.id == "__all__" for target in targets):
+            leaves = ast.walk(node)
+            return [
+                leaf.value
+                for leaf in leaves
+                if isinstance(leaf, ast.Constant) and isinstance(leaf.value, str)
+            ]
+    return None
+
+
+@lru_cache(maxsize=4)
+def modules(folder: Path = PACKAGE) -> tuple[Module, ...]:
+    """All modules under a folder."""
+    found = []
+    for path in sorted(folder.rglob("*.py")):
+        page = path.parent / "__init__.py"
+        page_text = page.read_text("utf-8") if page.exists() else ""
+        found.append(read(path.read_text("utf-8"), path.relative_to(ROOT).as_posix(), page_text))
+    return tuple(found)
+
+
+def text_files() -> list[Path]:
+    """All files of the repository that somebody wrote and that hold text."""
+    found = []
+    for path in sorted(ROOT.rglob("*")):
+        parts = path.relative_to(ROOT).parts
+        made = any(part in _MADE or part.endswith(".egg-info") for part in parts)
+        hidden = parts[0].startswith(".") and parts[0] not in {".ci", ".importlinter", ".gitignore"}
+        if path.is_file() and not made and not hidden and path.suffix in _TEXT:
+            found.append(path)
+    return found
+
+
+def parse_entries(docstring: str, section: str) -> dict[str, str]:
+    """Return the entries of a NumPy-style section: name to the text of its entry."""
+    pattern = rf"^{section}\n-+\n(.*?)(?=^\S[^\n]*\n---+$|\Z)"
+    match = re.search(pattern, docstring, re.DOTALL | re.MULTILINE)
+    entries: dict[str, str] = {}
+    names: list[str] = []
+    for line in match.group(1).splitlines() if match else []:
+        head = re.match(r"^(\*{0,2}\w+(?:, \*{0,2}\w+)*)(?= :|$)", line)
+        if head:
+            names = [name.strip(" *") for name in head.group(1).split(",")]
+            line = line[head.end() :]
+        for name in names:
+            entries[name] = f"{entries.get(name, '')} {line.strip()}"
+    return entries

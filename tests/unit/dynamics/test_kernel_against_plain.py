@@ -1,0 +1,133 @@
+"""The compiled kernel against the readable one, and lanes against single runs."""
+
+import numpy as np
+import pytest
+
+from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
+from tribodyn.analysis import alternating_rms, extremes, mesh_harmonics, rms
+from tribodyn.dynamics import Contact, System, simulate, simulate_ensemble
+from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.plain import march_plain
+
+
+def _everything_varies():
+    """Two contacts, one with a dead zone, directions and loads that move with the phase."""
+
+    def turning(phase):
+        angle = 2 * np.pi * phase
+        return np.stack([1.0 + 0 * phase, 0.2 * np.sin(angle), 0.3 * np.cos(angle)], axis=1)
+
+    first = Contact(
+        turning,
+        stiffness=lambda phase: 40.0 + np.where(phase < 0.4, 20.0, 0.0),
+        damping=0.3,
+        error=lambda phase: 0.02 * np.sin(4 * np.pi * phase),
+        gap=lambda phase: 0.01 + 0.005 * np.cos(2 * np.pi * phase),
+        friction=lambda phase: np.where(phase < 0.55, 0.02, -0.02)[:, None] * [1.0, -1.0, 0.5],
+        events=(0.4, 0.55),
+    )
+    second = Contact([0.0, 1.0, -1.0], stiffness=25.0, damping=0.2, gap=0.02, damping_in_gap=True)
+    mass = np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 0.5]])
+    return System(
+        mass,
+        0.5 * np.eye(3),
+        np.array([[3.0, -1.0, 0.0], [-1.0, 4.0, -1.0], [0.0, -1.0, 2.0]]),
+        lambda phase: np.stack([np.sin(2 * np.pi * phase), 0 * phase, 1.0 + 0 * phase], axis=1),
+        [first, second],
+    )
+
+
+CASES = {
+    "linear": (reference_system(0.1), MESH_FREQUENCY, 1e-6),
+    "backlash": (reference_system(0.1, gap=1e-5), MESH_FREQUENCY, 2e-5),
+    "hysteresis": (hysteresis_system(), 0.14, 1.5),
+    "everything": (_everything_varies(), 0.4, 0.2),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_kernel_equals_plain(name):
+    system, frequency, size = CASES[name]
+    start = size * np.random.default_rng(3).standard_normal(2 * system.size)
+    compiled = compile_for(system, frequency, 176)
+    plain = march_plain(system, compiled.grid, compiled.nodes, frequency, 3, start)
+    half = system.size
+    motion = simulate(system, frequency, 3, (start[:half], start[half:]), steps=176)
+    scale = np.abs(plain).max(axis=0) + 1e-30
+    found = np.hstack([motion.position, motion.velocity])
+    assert np.abs((found - plain[:-1]) / scale).max() < 1e-12
+
+
+def test_the_cases_do_open_and_close_contacts():
+    for name in ("backlash", "hysteresis", "everything"):
+        system, frequency, size = CASES[name]
+        start = size * np.random.default_rng(3).standard_normal(2 * system.size)
+        half = system.size
+        motion = simulate(system, frequency, 3, (start[:half], start[half:]), steps=176)
+        gap = max(float(np.max(c.gap)) if not callable(c.gap) else 0.015 for c in system.contacts)
+        touching = np.abs(motion.deflection) > gap
+        assert touching.any(), name
+        assert not touching.all(), name
+
+
+@pytest.mark.parametrize("lanes", [3, 5, 40, 70])
+def test_lanes_equal_single_runs(lanes):
+    system = reference_system(0.1, gap=1e-5)
+    generator = np.random.default_rng(lanes)
+    frequency = generator.uniform(200.0, 3000.0, lanes)
+    position = 2e-5 * generator.standard_normal((lanes, 6))
+    velocity = np.zeros((lanes, 6))
+    extra = generator.standard_normal((lanes, 6))
+    many = simulate_ensemble(
+        system, frequency, 4, (position, velocity), steps=256, extra_force=extra, averaged=1
+    )
+    for lane in (0, lanes // 2, lanes - 1):
+        start = (position[lane], velocity[lane])
+        one = simulate(system, frequency[lane], 4, start, steps=256, extra_force=extra[lane])
+        fine = one.fine
+        end = np.concatenate([fine.position[-1], fine.velocity[-1]])
+        found = np.concatenate([many.position[lane], many.velocity[lane]])
+        np.testing.assert_allclose(found, end, rtol=1e-13, atol=1e-13 * np.abs(end).max())
+
+
+def test_statistics_in_the_kernel_equal_those_of_a_record():
+    system = reference_system(0.1, gap=1e-5)
+    start = (np.zeros(6), np.zeros(6))
+    outputs = np.hstack([system.stiffness, system.damping])[:2]
+    many = simulate_ensemble(
+        system, [240.0, 900.0, 2600.0, 3000.0], 3, start, steps=512, averaged=3, outputs=outputs
+    )
+    for lane, frequency in enumerate(many.mesh_frequency):
+        one = simulate(system, frequency, 3, start, steps=512)
+        fine = one.fine
+        for found, signal in (
+            (many.deflection, fine.deflection),
+            (many.contact_force, fine.contact_force),
+            (many.acceleration, fine.acceleration),
+            (many.output, fine.position @ outputs[:, :6].T + fine.velocity @ outputs[:, 6:].T),
+        ):
+            size = np.abs(signal).max(axis=0) * 1e-10
+            assert np.all(np.abs(found.mean[lane] - fine.mean(signal)) <= size)
+            assert np.all(np.abs(found.rms[lane] - rms(fine, signal)) <= size)
+            assert np.all(np.abs(found.minimum[lane] - signal.min(axis=0)) <= size)
+            assert np.all(np.abs(found.maximum[lane] - signal.max(axis=0)) <= size)
+        np.testing.assert_allclose(
+            found.alternating_rms[lane], alternating_rms(fine, signal), rtol=1e-6
+        )
+        waves = mesh_harmonics(one, fine.deflection[:, 0], 5)
+        scale = np.abs(waves).max() * 1e-10
+        np.testing.assert_allclose(many.deflection.harmonics[lane, 0], waves, atol=scale)
+        apart = fine.mean((fine.deflection[:, 0] <= 1e-5).astype(float))
+        assert many.contact_loss_share[lane, 0] == pytest.approx(apart, abs=1e-12)
+        assert extremes(fine.deflection[:, 0])[1] >= many.deflection.maximum[lane, 0] - 1e-15
+
+
+def test_threads_do_not_change_a_bit():
+    system = hysteresis_system()
+    frequency = np.linspace(0.1, 0.3, 200)
+    one, two = (
+        simulate_ensemble(system, frequency, 5, ([1.5], [0.0]), steps=64, threads=threads)
+        for threads in (1, 4)
+    )
+    np.testing.assert_array_equal(one.position, two.position)
+    np.testing.assert_array_equal(one.deflection.rms, two.deflection.rms)

@@ -1,0 +1,167 @@
+"""Friction laws by name: options, contacts, refusals; the trivial laws."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from tribodyn.errors import InputError
+from tribodyn.friction import LAWS, TribologicalContact, benedict_kelly, constant, none, xu_2007
+
+OPTIONS = {"constant": {"coefficient": 0.05}}
+
+
+def contact(**changes):
+    values = {
+        "load_per_width": np.array([150e3, 200e3, 150e3]),
+        "hertz_pressure": np.array([0.8e9, 0.9e9, 0.8e9]),
+        "sliding_speed": np.array([-1.0, 0.0, 1.2]),
+        "entrainment_speed": np.array([2.0, 2.2, 2.4]),
+        "slide_to_roll_ratio": np.array([-0.5, 0.0, 0.5]),
+        "equivalent_radius": np.array([7e-3, 8e-3, 8e-3]),
+        "dynamic_viscosity": 0.082,
+        "composite_roughness": 0.4e-6,
+    }
+    return TribologicalContact(**{**values, **changes})
+
+
+def test_names():
+    assert set(LAWS.names()) >= {"none", "constant", "benedict-kelly", "xu-2007"}
+
+
+@pytest.mark.parametrize("name", LAWS.names())
+def test_every_law_gives_a_coefficient_for_every_contact(name):
+    law = LAWS[name]
+    coefficient = law(contact(), **OPTIONS.get(name, {}))
+    assert coefficient.shape == (3,)
+    assert np.all((coefficient >= 0.0) & (coefficient < 0.3))
+    assert law.name == name
+    assert law.source
+
+
+@pytest.mark.parametrize("name", LAWS.names())
+def test_no_law_sees_the_direction_of_sliding(name):
+    here = contact()
+    mirrored = contact(
+        sliding_speed=-here.sliding_speed, slide_to_roll_ratio=-here.slide_to_roll_ratio
+    )
+    options = OPTIONS.get(name, {})
+    assert np.array_equal(LAWS[name](here, **options), LAWS[name](mirrored, **options))
+
+
+def test_none_and_constant():
+    assert np.array_equal(LAWS["none"](contact()), [0.0, 0.0, 0.0])
+    assert np.array_equal(LAWS["constant"](contact(), coefficient=0.05), [0.05] * 3)
+    assert none() == 0.0
+    assert constant(0.1) == 0.1
+    assert constant(0.1, (2, 2)).shape == (2, 2)
+
+
+@pytest.mark.parametrize("coefficient", [-0.01, 1.01, np.nan])
+def test_constant_must_be_a_friction_coefficient(coefficient):
+    with pytest.raises(InputError, match="coefficient"):
+        LAWS["constant"](contact(), coefficient=coefficient)
+
+
+def test_laws_hand_the_right_quantities_to_their_formulas():
+    c = contact()
+    assert np.array_equal(
+        LAWS["xu-2007"](c),
+        xu_2007(
+            slide_to_roll_ratio=c.slide_to_roll_ratio,
+            hertz_pressure=c.hertz_pressure,
+            dynamic_viscosity=c.dynamic_viscosity,
+            roughness_rms=c.composite_roughness,
+            entrainment_speed=c.entrainment_speed,
+            equivalent_radius=c.equivalent_radius,
+        ),
+    )
+    options = {"variant": "he-singh", "rolling_speed": "sum", "minimum_sliding_speed": 0.01}
+    assert np.array_equal(
+        LAWS["benedict-kelly"](c, **options),
+        benedict_kelly(
+            load_per_width=c.load_per_width,
+            sliding_speed=c.sliding_speed,
+            entrainment_speed=c.entrainment_speed,
+            dynamic_viscosity=c.dynamic_viscosity,
+            roughness=c.composite_roughness,
+            **options,
+        ),
+    )
+
+
+def test_options_are_declared():
+    assert dict(LAWS["none"].options) == {}
+    assert dict(LAWS["xu-2007"].options) == {}
+    assert dict(LAWS["constant"].options) == {"coefficient": None}
+    assert dict(LAWS["benedict-kelly"].options) == {
+        "variant": "benedict-kelly",
+        "rolling_speed": "mean",
+        "minimum_sliding_speed": 1e-3,
+    }
+    with pytest.raises(TypeError):
+        LAWS["constant"].options["coefficient"] = 0.1
+
+
+def test_unknown_and_missing_options_are_told_together():
+    with pytest.raises(InputError) as caught:
+        LAWS["constant"](contact(), coeficient=0.1, colour="red")
+    message = str(caught.value)
+    assert len(caught.value.problems) == 3
+    assert 'Did you mean "coefficient"' in message
+    assert 'unknown option "colour"' in message
+    assert 'option "coefficient" is missing' in message
+
+
+def test_misspelt_law_names_the_nearest():
+    with pytest.raises(InputError, match='Did you mean "benedict-kelly"'):
+        LAWS["benedict-kelley"]
+
+
+def test_unloaded_contacts_are_refused():
+    with pytest.raises(InputError, match=r"load_per_width = 0 N/m.*Leave unloaded pairs out"):
+        contact(load_per_width=np.array([150e3, 0.0, 150e3]))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("hertz_pressure", np.array([1e9, np.nan, 1e9])),
+        ("entrainment_speed", np.array([2.0, 0.0, 2.4])),
+        ("equivalent_radius", np.array([7e-3, -8e-3, 8e-3])),
+        ("dynamic_viscosity", 0.0),
+        ("composite_roughness", -1e-7),
+    ],
+)
+def test_impossible_contacts_are_refused(name, value):
+    with pytest.raises(InputError, match=name):
+        contact(**{name: value})
+
+
+def test_shapes_must_agree():
+    with pytest.raises(InputError, match=r"shapes differ.*hertz_pressure"):
+        contact(hertz_pressure=np.array([0.8e9]))
+
+
+def test_no_contact_at_all_is_refused():
+    empty = {
+        field.name: np.array([])
+        for field in dataclasses.fields(TribologicalContact)
+        if field.name not in {"dynamic_viscosity", "composite_roughness"}
+    }
+    with pytest.raises(InputError, match="no contact"):
+        contact(**empty)
+
+
+def test_sum_of_the_surface_speeds_is_noticed():
+    speed = contact().entrainment_speed
+    with pytest.raises(InputError, match="half the sum of the surface speeds"):
+        contact(entrainment_speed=2 * speed)
+
+
+def test_single_contact_as_numbers():
+    one = TribologicalContact(150e3, 0.8e9, -1.0, 2.0, -0.5, 7e-3, 0.082, 0.4e-6)
+    assert one.size == 1
+    assert LAWS["xu-2007"](one) == pytest.approx(LAWS["xu-2007"](contact())[0])

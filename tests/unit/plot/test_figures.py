@@ -1,0 +1,320 @@
+"""Every figure: it draws, its axes carry units, its curves are the numbers of the result."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+
+from tribodyn.errors import InputError
+from tribodyn.plot import FIGURES, Drawing
+
+NAMES = (
+    "gear_pair",
+    "path_of_contact",
+    "mesh_stiffness",
+    "friction",
+    "film",
+    "mesh_force",
+    "transmission_error",
+    "acceleration",
+    "spectrum",
+    "bearing_force",
+    "bearing_spectrum",
+)
+#: Axes that are pure numbers.
+UNITLESS = {"Mesh cycles", "Mesh harmonic", "Slide to roll ratio", "Friction coefficient"}
+
+
+@pytest.fixture(scope="module")
+def result(drawable: Any) -> Any:
+    return drawable(film_model="dowson-higginson")
+
+
+@pytest.fixture(scope="module")
+def drawn(result: Any) -> dict[str, go.Figure]:
+    return {name: FIGURES[name](result) for name in NAMES}
+
+
+def curve(figure: go.Figure, name: str, axis: str = "y") -> Any:
+    """The one curve of a name on an axis."""
+    (found,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
+    return found
+
+
+def caption(name: str, result: Any) -> str:
+    """What a figure says about a result."""
+    figure = FIGURES[name]
+    assert isinstance(figure, Drawing)
+    return figure.caption_of(result)
+
+
+def frictionless(result: Any) -> Any:
+    """The same result without a friction coefficient."""
+    result.mesh = replace(
+        result.mesh, friction_coefficient=np.zeros_like(result.mesh.friction_coefficient)
+    )
+    return result
+
+
+def test_all_figures_are_known() -> None:
+    # others may have registered their own
+    assert set(list(FIGURES)[: len(NAMES)]) == set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_axis_has_a_unit(drawn: dict[str, go.Figure], name: str) -> None:
+    layout = drawn[name].layout
+    labels = [layout[key].title.text for key in layout if key.startswith(("xaxis", "yaxis"))]
+    labels = [label for label in labels if label]
+    assert len(labels) >= 2
+    for label in labels:
+        assert label in UNITLESS or label.endswith("]")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_figure_is_finite_and_answers_in_its_title(
+    drawn: dict[str, go.Figure], name: str
+) -> None:
+    figure = drawn[name]
+    assert any(character.isdigit() for character in figure.layout.title.text)
+    assert "nan" not in figure.layout.title.text
+    for trace in figure.data:
+        assert len(trace.x) == len(trace.y) > 1
+        assert np.all(np.isfinite(np.asarray(trace.y, dtype=float)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_hovering_tells_the_unit(drawn: dict[str, go.Figure], name: str) -> None:
+    if name == "gear_pair":
+        return
+    for trace in drawn[name].data:
+        label = drawn[name].layout[trace.yaxis.replace("y", "yaxis")].title.text
+        unit = label[label.rindex("[") + 1 : -1] if "[" in label else ""
+        assert f" {unit}".rstrip() in trace.hovertemplate
+
+
+def test_mesh_force_is_that_of_the_response(drawn: dict[str, go.Figure], result: Any) -> None:
+    fine = result.response.fine
+    force = curve(drawn["mesh_force"], "dynamic")
+    for cycle in range(2):
+        at = np.interp(fine.phase + cycle, force.x, force.y)
+        np.testing.assert_allclose(at[::3], fine.contact_force[::3, 0], rtol=1e-12)
+    static = curve(drawn["mesh_force"], "static")
+    assert static.y[0] == pytest.approx(90.0 / result.case.gear_pair.pinion.base_radius)
+
+
+def test_transmission_error_counts_from_first_contact(
+    drawn: dict[str, go.Figure], result: Any
+) -> None:
+    error = curve(drawn["transmission_error"], "dynamic")
+    deflection = result.response.fine.deflection[0, 0]
+    assert error.y[0] == pytest.approx(1e6 * (deflection - result.half_backlash))
+
+
+def test_quasi_static_error_is_force_over_stiffness(
+    drawn: dict[str, go.Figure], result: Any
+) -> None:
+    # 2e8 N/m each: one pair alone bends twice as far as two together
+    error = curve(drawn["transmission_error"], "quasi-static")
+    alone = 1e6 * result.mesh.total_normal_force / 2e8
+    assert max(error.y) == pytest.approx(alone, rel=1e-12)
+    assert min(error.y) == pytest.approx(0.5 * alone, rel=1e-12)
+
+
+def test_bars_are_the_amplitudes(
+    drawn: dict[str, go.Figure], amplitudes: tuple[float, ...]
+) -> None:
+    bars = curve(drawn["spectrum"], "transmission error")
+    assert list(bars.x[:4]) == [1, 2, 3, 4]
+    assert bars.y[:4] == pytest.approx(amplitudes, abs=1e-4)
+    assert np.max(bars.y[4:12]) < 1e-3
+    assert bars.customdata[1] == pytest.approx(2.0 * bars.customdata[0])
+    # coordinates are scaled by powers of ten in the order of their names: pinion y is the second
+    along = curve(drawn["spectrum"], "pinion", "y2")
+    assert along.y[:4] == pytest.approx([10.0 * size for size in amplitudes], abs=1e-3)
+
+
+def test_bearing_force_is_spring_force(drawn: dict[str, go.Figure], result: Any) -> None:
+    across = curve(drawn["bearing_force"], "wheel", "y2")
+    position = result.response.fine.position[:, result.response.names.index("wheel_x")]
+    assert across.y[0] == pytest.approx(1e9 * position[0], rel=1e-12)
+    assert np.ptp(across.y) == pytest.approx(1e9 * np.ptp(position), rel=1e-2)
+
+
+def test_friction_force_turns_round_at_the_pitch_point(drawn: dict[str, go.Figure]) -> None:
+    figure = drawn["friction"]
+    (pitch_point,) = (note.x for note in figure.layout.annotations if note.text == "C")
+    force = curve(figure, "friction force", "y2")
+    angle, values = np.asarray(force.x), np.asarray(force.y)
+    assert np.all(values[angle < pitch_point - 1e-9] < 0.0)
+    assert np.all(values[angle > pitch_point + 1e-9] > 0.0)
+
+
+def test_mesh_table_alone_draws_its_own_figures(result: Any) -> None:
+    assert len(result.mesh.plot_stiffness().data) == 4
+    assert len(result.mesh.plot_friction().data) == 3
+
+
+def test_equal_scales_in_the_drawing_of_the_gears(drawn: dict[str, go.Figure]) -> None:
+    layout = drawn["gear_pair"].layout
+    assert (layout.yaxis.scaleanchor, layout.yaxis2.scaleanchor) == ("x", "x2")
+
+
+def test_drawing_shows_all_teeth(drawn: dict[str, go.Figure], result: Any) -> None:
+    pair = result.case.gear_pair
+    for gear, center, name in (
+        (pair.pinion, 0.0, "pinion, 16 teeth, drives"),
+        (pair.wheel, pair.center_distance, "wheel, 24 teeth, is driven"),
+    ):
+        outline = next(trace for trace in drawn["gear_pair"].data if trace.name == name)
+        radius = np.hypot(np.asarray(outline.x) - 1e3 * center, outline.y) * 1e-3
+        on_tip = np.abs(radius - gear.tip_radius) < 1e-9
+        tips = np.sum(np.diff(np.append(on_tip, on_tip[0]).astype(int)) == 1)
+        assert tips == gear.teeth
+        assert radius.min() == pytest.approx(gear.root_radius, abs=1e-6)
+
+
+def test_figures_without_meaning_say_why(drawable: Any) -> None:
+    plain = drawable(names=("pinion_theta", "wheel_theta"))
+    for name in ("acceleration", "bearing_force", "bearing_spectrum"):
+        figure = FIGURES[name]
+        assert isinstance(figure, Drawing)
+        assert "centres" in figure.missing(plain)
+        with pytest.raises(InputError, match="centres stay in place"):
+            figure(plain)
+    assert len(FIGURES["spectrum"](plain).data) == 1
+    with pytest.raises(InputError) as refused:
+        FIGURES["film"](plain)
+    assert str(refused.value) == (
+        'No film model was chosen, so no oil film was computed. Choose film.model = "moes".'
+    )
+
+
+def test_no_friction_is_told_instead_of_drawn(drawable: Any) -> None:
+    smooth = frictionless(drawable())
+    with pytest.raises(InputError, match=r"friction coefficient is zero.*friction\.law"):
+        FIGURES["friction"](smooth)
+    assert "friction" not in caption("transmission_error", smooth)
+    assert "friction" not in caption("mesh_force", smooth)
+    assert "without friction" in caption("transmission_error", drawable())
+    assert "Friction carries" in caption("mesh_force", drawable())
+
+
+def test_a_transient_is_drawn_over_time(drawable: Any) -> None:
+    transient = drawable(periods=60, steady=False)
+    figure = FIGURES["mesh_force"](transient)
+    force, fine = curve(figure, "dynamic"), transient.response.fine
+    assert figure.layout.xaxis.title.text == "Time [ms]"
+    assert max(force.x) == pytest.approx(1e3 * fine.time[-1])
+    assert len(force.x) <= 4000 < len(fine.time)
+    # the whole run at first, the last two of its 60 mesh cycles by a button
+    whole, zoom = figure.layout.updatemenus[0].buttons
+    end = 1e3 * fine.time[-1]
+    assert figure.layout.xaxis.range == pytest.approx((0.0, end))
+    assert whole.args[0]["xaxis.range"] == pytest.approx((0.0, end))
+    assert zoom.args[0]["xaxis.range"] == pytest.approx((end * 58 / 60, end))
+    # thinning keeps the peaks
+    assert max(force.y) == fine.contact_force.max()
+    assert min(force.y) == fine.contact_force.min()
+    with pytest.raises(InputError, match="steady state"):
+        FIGURES["spectrum"](transient)
+
+
+@pytest.mark.parametrize("name", ["mesh_force", "transmission_error", "acceleration"])
+def test_titles_of_a_transient_leave_its_first_half_out(drawable: Any, name: str) -> None:
+    transient = drawable(periods=60, steady=False)
+    title = FIGURES[name](transient).layout.title.text
+    assert title.endswith("in the last 30 of 60 mesh cycles")
+    fine = transient.response.fine
+    for values in (fine.contact_force, fine.deflection, fine.acceleration):
+        values[fine.phase < 29.0] *= 3.0
+    assert FIGURES[name](transient).layout.title.text == title
+
+
+def test_a_transient_tells_whether_it_has_settled(drawable: Any) -> None:
+    transient = drawable(periods=60, steady=False)
+    assert "has settled: " in caption("mesh_force", transient)
+    assert caption("mesh_force", transient).endswith("changes by less than 0.01 %.")
+    assert "dashed" not in caption("transmission_error", transient)
+    force = transient.response.fine.contact_force
+    mean = transient.mesh.total_normal_force
+    last = transient.response.fine.phase >= 45.0
+    force[last] = mean + 0.8 * (force[last] - mean)
+    assert "has not settled: " in caption("mesh_force", transient)
+    assert caption("mesh_force", transient).endswith("changes by 20 %.")
+    assert "too short" in caption("mesh_force", drawable(periods=3, steady=False))
+    assert "settled" not in caption("mesh_force", drawable())
+
+
+def test_negative_force_is_explained(drawable: Any) -> None:
+    result = drawable()
+    assert "negative" not in caption("mesh_force", result)
+    fine = result.response.fine
+    fine.contact_force[5] = -1.0
+    assert "damping of the contact pulls" in caption("mesh_force", result)
+    fine.deflection[5] = -2e-6
+    assert "back flanks touch" in caption("mesh_force", result)
+    result.half_backlash = 0.0
+    assert "no backlash" in caption("mesh_force", result)
+    assert FIGURES["mesh_force"](result).layout.yaxis.rangemode == "tozero"
+
+
+def test_captions_follow_the_contact_ratio(drawable: Any) -> None:
+    shared = SimpleNamespace(mesh=SimpleNamespace(transverse_contact_ratio=2.2))
+    for name in ("friction", "path_of_contact"):
+        assert "one carries it alone" in caption(name, drawable())
+        assert "Two or three pairs" in caption(name, shared)
+
+
+def test_spectra_end_where_the_lines_vanish(drawn: dict[str, go.Figure]) -> None:
+    # the known motion has four harmonics
+    assert tuple(drawn["spectrum"].layout.xaxis.range) == (0.4, 4.6)
+    menu = drawn["spectrum"].layout.updatemenus[0]
+    assert (menu.x, menu.xanchor) == (0.0, "left")
+
+
+@pytest.mark.parametrize(("driver", "senses"), [("pinion", [1, -1]), ("wheel", [-1, 1])])
+def test_arrows_turn_as_the_gears_do(drawable: Any, driver: str, senses: list[int]) -> None:
+    figure = FIGURES["gear_pair"](drawable(driver))
+    arcs = [trace for trace in figure.data if trace.name == "sense of rotation"]
+    assert [int(np.sign(arc.x[0] - arc.x[-1])) for arc in arcs] == senses
+    roles = [note.text for note in figure.layout.annotations if note.text.startswith("dri")]
+    assert roles == (["drives", "driven"] if driver == "pinion" else ["driven", "drives"])
+
+
+@pytest.mark.parametrize("driver", ["pinion", "wheel"])
+def test_letters_do_not_overlap_in_either_picture(drawable: Any, driver: str) -> None:
+    notes = FIGURES["gear_pair"](drawable(driver)).layout.annotations
+    for axis in ("x", "x2"):
+        letters = [note for note in notes if note.xref == axis and note.text in "ABCDE"]
+        assert sorted(note.text for note in letters) == list("ABCDE")
+        # both the points and their offsets on the screen rise, so the letters keep apart
+        assert np.all(np.diff([note.y for note in letters]) > 0.0)
+        assert np.all(np.diff([note.ay for note in letters]) <= -14)
+
+
+def test_a_subharmonic_orbit_is_drawn_once_and_whole(drawable: Any) -> None:
+    figure = FIGURES["mesh_force"](drawable(periods=3))
+    assert tuple(figure.layout.xaxis.range) == (0, 3)
+    assert max(curve(figure, "dynamic").x) == pytest.approx(3.0)
+    error = FIGURES["transmission_error"](drawable(periods=3))
+    assert max(curve(error, "quasi-static").x) == 3.0
+
+
+def test_a_subharmonic_shows_between_the_mesh_harmonics(drawable: Any) -> None:
+    result = drawable(periods=2)
+    fine = result.response.fine
+    fine.deflection[:, 0] += 2e-6 * np.cos(np.pi * fine.phase)
+    bars = curve(FIGURES["spectrum"](result), "transmission error")
+    assert list(bars.x[:3]) == [0.5, 1.0, 1.5]
+    assert bars.y[0] == pytest.approx(2.0, rel=1e-6)
+
+
+def test_an_unknown_figure_names_the_nearest() -> None:
+    with pytest.raises(InputError, match='"spectrum"'):
+        FIGURES["spectra"]

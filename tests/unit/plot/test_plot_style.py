@@ -1,0 +1,67 @@
+"""The common look: panels, legends, marks."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from tribodyn.plot.events import event_lines
+from tribodyn.plot.style import INK, Panel, line, stack
+
+
+def curves(count: int) -> list[dict[str, object]]:
+    return [line([0, 1], [0, number], f"curve {number}", INK) for number in range(count)]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_panels_fill_the_height_from_the_top_without_overlap(count: int) -> None:
+    heights = [1.0, 0.5, 2.0][:count]
+    made = stack("T", "x", [Panel(f"y{n}", curves(1), height=h) for n, h in enumerate(heights)])
+    axes = [made.layout[f"yaxis{'' if n == 0 else n + 1}"] for n in range(count)]
+    assert axes[0].domain[1] == pytest.approx(1.0)
+    assert axes[-1].domain[0] == pytest.approx(0.0, abs=1e-12)
+    for upper, lower in itertools.pairwise(axes):
+        assert upper.domain[0] > lower.domain[1]
+    spans = [axis.domain[1] - axis.domain[0] for axis in axes]
+    assert [span / spans[0] for span in spans] == pytest.approx(heights)
+    assert [axis.title.text for axis in axes] == [f"y{n}" for n in range(count)]
+    assert made.layout.xaxis.anchor == ("y" if count == 1 else f"y{count}")
+
+
+def test_panels_grow_the_figure() -> None:
+    one, two = (stack("T", "x", [Panel("y", curves(1))] * count) for count in (1, 2))
+    assert two.layout.height > 1.5 * one.layout.height
+
+
+def test_a_single_curve_has_no_legend_and_several_have_one_beside_their_panel() -> None:
+    made = stack("T", "x", [Panel("a", curves(1)), Panel("b", curves(2))])
+    assert [trace.showlegend for trace in made.data] == [False, True, True]
+    assert [trace.legend for trace in made.data] == ["legend", "legend2", "legend2"]
+    assert made.layout.legend2.y == pytest.approx(made.layout.yaxis2.domain[1])
+
+
+def test_layout_of_the_common_axis_is_merged() -> None:
+    made = stack("T", "x", [Panel("a", curves(1))], {"xaxis": {"range": [0, 3]}})
+    assert made.layout.xaxis.title.text == "x"
+    assert tuple(made.layout.xaxis.range) == (0, 3)
+
+
+def test_marks_at_one_place_share_a_line_and_a_name() -> None:
+    marks = event_lines([("A", 0.5), ("D", 0.5 + 1e-12), ("E", 1.0)])
+    assert [note["text"] for note in marks["annotations"]] == ["A, D", "E"]
+    assert [shape["x0"] for shape in marks["shapes"]] == [0.5, 1.0]
+
+
+def test_names_that_would_run_into_each_other_are_raised() -> None:
+    marks = event_lines([("enters", 0.0), ("C", 0.5), ("leaves", 0.52), ("enters", 1.0)])
+    assert [note["yshift"] > 0 for note in marks["annotations"]] == [False, False, True, False]
+
+
+def test_marks_need_not_be_sorted() -> None:
+    marks = event_lines([("E", 1.0), ("C", -0.2), ("A", 0.0)])
+    assert [note["text"] for note in marks["annotations"]] == ["C", "A", "E"]
+
+
+def test_no_marks() -> None:
+    assert event_lines([]) == {"shapes": [], "annotations": []}

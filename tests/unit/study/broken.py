@@ -1,0 +1,233 @@
+"""Broken case files: what is changed in a sound one, and what the message must say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["BROKEN", "SOUND", "Broken", "line_of"]
+
+SOUND = """\
+title = "A pair"
+[gears]
+normal_module = "4.5 mm"
+normal_pressure_angle = "20 deg"
+center_distance = "91.5 mm"
+driver = "pinion"
+composite_roughness = "0.53 um"
+[gears.pinion]
+teeth = 16
+profile_shift_coefficient = 0.8635
+face_width = "20 mm"
+[gears.wheel]
+teeth = 24
+profile_shift_coefficient = -0.5103
+[lubricant]
+name = "80W"
+[operation]
+speed = "900 rpm"
+torque = "90 N*m"
+[stiffness]
+model = "rectangular"
+pair_stiffness = "2e8 N/m"
+[friction]
+law = "constant"
+coefficient = 0.05
+[dynamics]
+bearing_stiffness = "3.5e9 N/m"
+[solver]
+method = "steady"
+"""
+
+
+@dataclass(frozen=True)
+class Broken:
+    """One fault.
+
+    ``old`` is replaced by ``new`` in the sound file; the message must hold every part of
+    ``says``, and ``at`` is the text of the line that it must name.
+    """
+
+    name: str
+    old: str
+    new: str
+    at: str
+    says: tuple[str, ...]
+
+
+def line_of(text: str, part: str) -> int:
+    """Line that first begins with a part, else that first holds it, counted from 1."""
+    at = text.find("\n" + part) + 1 or text.index(part)
+    return text.count("\n", 0, at) + 1
+
+
+_MODULE = 'normal_module = "4.5 mm"'
+_TEETH = "teeth = 16"
+_SPEED = 'speed = "900 rpm"'
+_DISTANCE = 'center_distance = "91.5 mm"'
+_PAIR = 'pair_stiffness = "2e8 N/m"'
+_DYNAMICS = 'bearing_stiffness = "3.5e9 N/m"'
+_SOLVER = 'method = "steady"'
+_LAW = 'law = "constant"\ncoefficient = 0.05'
+_OIL = 'name = "80W"'
+_ROUGH = 'composite_roughness = "0.53 um"'
+
+BROKEN = (
+    # units
+    Broken("no-unit", _MODULE, "normal_module = 4.5", "normal_module",
+           ("gears.normal_module", "4.5", "needs a unit", 'normal_module = "4.5 mm"')),
+    Broken("no-unit-in-text", _MODULE, 'normal_module = "4.5"', "normal_module",
+           ("gears.normal_module", '"4.5" has no unit', "4.5 mm")),
+    Broken("wrong-kind-of-unit", _MODULE, 'normal_module = "4.5 kg"', "normal_module",
+           ('normal_module = "4.5 kg"', "wrong kind of quantity", "4.5 mm")),
+    Broken("unknown-unit", _MODULE, 'normal_module = "4.5 furlongz"', "normal_module",
+           ("furlongz", "not a unit", "4.5 mm")),
+    Broken("metres-for-millimetres", _DISTANCE, 'center_distance = "91.5 m"', "center_distance",
+           ("91.5 m", "91500 mm", "0.1 mm to 10000 mm", "wrong unit", "Correct the value")),
+    Broken("no-number", _DISTANCE, 'center_distance = "wide"', "center_distance",
+           ('"wide"', "does not begin with a number", "91.5 mm")),
+    Broken("decimal-comma", _MODULE, 'normal_module = "4,5 mm"', "normal_module",
+           ("point, not a comma", 'normal_module = "4.5 mm"')),
+    Broken("unquoted-decimal-comma", "= 0.8635", "= 0,8635", "profile_shift_coefficient = 0,8635",
+           ("decimal point", "profile_shift_coefficient = 0.8635")),
+    Broken("frequency-for-speed", _SPEED, 'speed = "15 Hz"', "speed",
+           ("operation.speed", '"900 rpm" if turns per second')),
+    Broken("surface-speed-for-speed", _SPEED, 'speed = "3 m/s"', "speed",
+           ("operation.speed", "rotational speed in rpm")),
+    # types
+    Broken("table-for-number", _MODULE, "normal_module = {a = 1, b = [true]}", "normal_module",
+           ("normal_module = {a = 1, b = [true]}", "number with a unit")),
+    Broken("flag-for-number", "teeth = 16", "teeth = true", "teeth = true",
+           ("gears.pinion.teeth", "teeth = true", "whole number", "teeth = 16")),
+    Broken("text-for-whole-number", _TEETH, 'teeth = "16"', 'teeth = "16"',
+           ("gears.pinion.teeth", 'teeth = "16"', "whole number", "teeth = 16")),
+    Broken("fraction-of-a-tooth", _TEETH, "teeth = 16.5", "teeth = 16.5",
+           ("teeth = 16.5", "whole number", "teeth = 16")),
+    Broken("text-for-pure-number", "= 0.8635", '= "0.8635"', '= "0.8635"',
+           ("gears.pinion.profile_shift_coefficient", "pure number", "without quotes")),
+    Broken("flag-for-text", 'title = "A pair"', "title = true", "title = true",
+           ("title = true", "must be text", "in quotes")),
+    Broken("number-for-flag", _DYNAMICS, _DYNAMICS + "\ndamping_in_gap = 1", "damping_in_gap",
+           ("dynamics.damping_in_gap", "true or false")),
+    Broken("value-for-table", "[solver]\n" + _SOLVER, "[film]\nmodel = {}", "model = {}",
+           ("film.model", "This version has")),
+    Broken("text-for-list", _PAIR, 'values = "2e8 N/m"', "values",
+           ("stiffness.values", "must be a list", "[")),
+    Broken("not-finite", "= 0.8635", "= nan", "= nan",
+           ("profile_shift_coefficient = nan", "-3 to 3", "Correct the value")),
+    # ranges
+    Broken("too-few-teeth", _TEETH, "teeth = 3", "teeth = 3",
+           ("teeth = 3", "5 to 1000", "ISO 1328-1")),
+    Broken("negative-torque", '"90 N*m"', '"-90 N*m"', "torque",
+           ("operation.torque", "-90 N*m", "Correct the value or its unit")),
+    Broken("standstill", _SPEED, 'speed = "0 rpm"', "speed",
+           ("operation.speed", "0 rpm", "0.01 rpm to 200000 rpm")),
+    Broken("coefficient-above-one", "coefficient = 0.05", "coefficient = 5", "coefficient = 5",
+           ("friction.coefficient", "coefficient = 5", "0 to 1")),
+    Broken("too-few-steps", _SOLVER, _SOLVER + "\nsteps_per_mesh_cycle = 8", "steps_per_mesh",
+           ("steps_per_mesh_cycle = 8", "64 to 262144")),
+    # names
+    Broken("misspelt-key", _MODULE, 'normal_modul = "4.5 mm"', "normal_modul",
+           ("gears.normal_modul", "unknown key", 'Did you mean "normal_module"?',
+            "normal_module is missing")),
+    Broken("misspelt-table", "[operation]", "[operations]", "[operations]",
+           ("operations", "unknown key", 'Did you mean "operation"?')),
+    Broken("key-in-wrong-table", 'driver = "pinion"', 'driver = "pinion"\nface_width = "20 mm"',
+           'face_width = "20 mm"',
+           ("face_width", "unknown key", "[gears.pinion] or [gears.wheel]")),
+    Broken("misspelt-choice", 'driver = "pinion"', 'driver = "pinon"', "driver",
+           ('driver = "pinon"', "Allowed: pinion, wheel", 'Did you mean "pinion"?')),
+    Broken("later-kind", 'driver = "pinion"', 'driver = "pinion"\nkind = "hypoid"', "kind",
+           ('kind = "hypoid"', "later release", "spur")),
+    Broken("later-film", "[solver]", '[film]\nmodel = "newton"\n[solver]', 'model = "newton"',
+           ("film.model", "later release", "dowson-higginson", "moes")),
+    Broken("later-stiffness", 'model = "rectangular"', 'model = "fe2d"', 'model = "fe2d"',
+           ("stiffness.model", "later release", "potential-energy")),
+    Broken("later-table", "[gears.wheel]",
+           '[gears.pinion.modification]\ntip_relief = "10 um"\n[gears.wheel]', "modification",
+           ("gears.pinion.modification", "flank modifications", "later release")),
+    Broken("unknown-oil", _OIL, 'name = "80V"', 'name = "80V"',
+           ("lubricant.name", '"80V"', 'Did you mean "80W"?')),
+    # missing
+    Broken("missing-driver", 'driver = "pinion"\n', "", "[gears]",
+           ("gears.driver", "driver is missing", 'driver = "pinion"')),
+    Broken("missing-table", '[operation]\nspeed = "900 rpm"\ntorque = "90 N*m"\n', "", "",
+           ("operation", "the table [operation] is missing", "Add it with speed, torque")),
+    Broken("missing-face-width", 'face_width = "20 mm"\n', "", "[gears.pinion]",
+           ("face_width is missing", 'face_width = "20 mm"')),
+    Broken("missing-bearing", _DYNAMICS, "", "[dynamics]",
+           ("dynamics.bearing_stiffness", "spur-6dof", "torsional")),
+    Broken("missing-coefficient", _LAW, 'law = "constant"', "[friction]",
+           ("friction.coefficient", "constant", "coefficient = 0.05")),
+    Broken("missing-option", _PAIR, "", "[stiffness]",
+           ("stiffness.pair_stiffness", "rectangular", '"2e8 N/m"')),
+    Broken("missing-counterpart", _PAIR, 'single_pair_stiffness = "2e8 N/m"', "[stiffness]",
+           ("double_pair_stiffness is missing", '"2e8 N/m"')),
+    Broken("missing-oil", _OIL, 'density = "880 kg/m^3"', "[lubricant]",
+           ("dynamic_viscosity is missing", "pressure_viscosity_coefficient is missing", "80W")),
+    Broken("missing-mate", "[gears.wheel]\nteeth = 24\nprofile_shift_coefficient = -0.5103\n", "",
+           "[gears]", ("gears.wheel", "the table [gears.wheel] is missing")),
+    # contradictions
+    Broken("two-roughnesses", _TEETH, 'teeth = 16\nroughness_rms = "0.4 um"',
+           "composite_roughness",
+           ('"0.53 um"', '"0.4 um"', "two ways", "Keep one")),
+    Broken("one-roughness", _ROUGH + "\n[gears.pinion]",
+           '[gears.pinion]\nroughness_rms = "0.4 um"', "[gears.wheel]",
+           ("roughness_rms of the wheel is missing", '"0.4 um"')),
+    Broken("oil-twice", _OIL, _OIL + '\ndynamic_viscosity = "82 mPa*s"', _OIL,
+           ('"80W"', '"82 mPa*s"', "two ways", "Keep one")),
+    Broken("damping-twice", _DYNAMICS,
+           _DYNAMICS + '\nmesh_damping = "900 N*s/m"\nmesh_damping_ratio = 0.04', "mesh_damping",
+           ('"900 N*s/m"', "0.04", "two ways", "Keep one")),
+    Broken("stiffness-twice", _PAIR, _PAIR + '\nsingle_pair_stiffness = "1e8 N/m"',
+           "single_pair_stiffness", ('"2e8 N/m"', '"1e8 N/m"', "two ways")),
+    Broken("foreign-option", _PAIR, _PAIR + '\nreference = "rim"', "reference",
+           ('reference = "rim"', "does not belong", "rectangular", "pair_stiffness")),
+    Broken("foreign-friction-option", _LAW, 'law = "none"\ncoefficient = 0.05',
+           "coefficient = 0.05",
+           ("coefficient = 0.05", "does not belong", '"none"', "no options")),
+    Broken("bearing-of-torsional", _DYNAMICS, _DYNAMICS + '\nmodel = "torsional"',
+           "bearing_stiffness", ("3.5e9 N/m", "torsional", "spur-6dof")),
+    Broken("cycles-of-steady", _SOLVER, _SOLVER + "\ncycles = 50", "cycles",
+           ("cycles = 50", "steady", "transient")),
+    Broken("uneven-table", 'model = "rectangular"\n' + _PAIR,
+           'model = "table"\nphase = [0.0, 1.0]\nvalues = ["2e8 N/m"]', "phase",
+           ("phase has 2 entries, values has 1", "equal length")),
+    Broken("larger-pinion", _TEETH, "teeth = 30", "teeth = 30",
+           ("teeth = 30", "teeth = 24", "smaller gear", "Exchange")),
+    Broken("assumed-typo", "[solver]",
+           '[assumed]\n"gears.center_distanc" = "guessed"\n[solver]', "center_distanc\"",
+           ("gears.center_distanc", "no value is given", 'Did you mean "gears.center_distance"?')),
+    Broken("assumed-without-reason", "[solver]",
+           '[assumed]\n"gears.center_distance" = 3\n[solver]', "\"gears.center_distance\"",
+           ("assumed.gears.center_distance", "string")),
+    # physics
+    Broken("too-close", _DISTANCE, 'center_distance = "80 mm"', "center_distance",
+           ("gears.center_distance", "80 mm")),
+    Broken("pointed-tip", 'face_width = "20 mm"',
+           'face_width = "20 mm"\ntip_diameter = "95 mm"', "tip_diameter",
+           ("gears.pinion.tip_diameter", "pointed", "95 mm", "Reduce")),
+    Broken("bore-through-root", 'face_width = "20 mm"',
+           'face_width = "20 mm"\nbore_diameter = "80 mm"', "bore_diameter",
+           ("gears.pinion.bore_diameter", "80 mm", "root")),
+    Broken("no-contact", _DISTANCE, 'center_distance = "98 mm"', "[gears]",
+           ("contact ratio", "Below 1")),
+    # TOML
+    Broken("no-bore", '"rectangular"\n' + _PAIR, '"potential-energy"\nreference = "bore"',
+           "[gears.pinion]",
+           ("gears.pinion.bore_diameter", "gears.wheel.bore_diameter", 'reference = "rim"')),
+    Broken("no-toml-at-all", 'title = "A pair"', "<!DOCTYPE html>" * 50, "<!DOCTYPE",
+           ("not TOML", "...", "A line reads")),
+    Broken("too-deep", 'title = "A pair"', "title = " + "[" * 5000, "",
+           ("nested too deeply", "no case file")),
+    Broken("unquoted", _MODULE, "normal_module = 4.5 mm", "normal_module",
+           ("not TOML", 'Put the value in quotes: normal_module = "4.5 mm"')),
+    Broken("unquoted-word", 'driver = "pinion"', "driver = pinion", "driver",
+           ("not TOML", 'Put the word in quotes: driver = "pinion"')),
+    Broken("open-quotes", 'driver = "pinion"', 'driver = "pinion', "driver",
+           ("not TOML", "Close the quotes")),
+    Broken("open-bracket", "[solver]", "[solver", "[solver", ("not TOML", "Close the bracket")),
+    Broken("key-twice", _TEETH, "teeth = 16\nteeth = 17", "teeth = 17",
+           ("gears.pinion.teeth is given twice", "lines 9 and 10", "Remove one")),
+    Broken("table-twice", "[solver]", "[gears]\n[solver]", "[gears]\n[solver]",
+           ("gears is given twice", "Remove one")),
+)  # fmt: skip

@@ -1,0 +1,195 @@
+"""The case: reading, replacing, writing, and where every value comes from."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from broken import SOUND
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.study.citations import cite
+from tribodyn.study.provenance import assumptions, effective, provenance
+from tribodyn.study.read import read_case
+
+
+@pytest.fixture
+def case() -> Any:
+    return read_case(SOUND, "pair.toml")
+
+
+def test_values_are_si(case: Any) -> None:
+    assert case.gears.normal_module == pytest.approx(4.5e-3, rel=1e-15)
+    assert case.gears.normal_pressure_angle == pytest.approx(math.radians(20.0), rel=1e-15)
+    assert case.operation.speed == pytest.approx(30.0 * math.pi, rel=1e-14)
+
+
+def test_replace_reads_floats_as_si_text_and_quantities(case: Any) -> None:
+    import pint
+
+    quantity = pint.UnitRegistry().Quantity(100.0, "N*m")
+    changed = case.replace(
+        {"gears.center_distance": 0.0916, "operation.torque": quantity, "gears.pinion.teeth": 16}
+    )
+    assert changed.gears.center_distance == 0.0916
+    assert changed.operation.torque == pytest.approx(100.0)
+    assert case.gears.center_distance == pytest.approx(0.0915)
+
+
+def test_replace_checks_the_whole_case(case: Any) -> None:
+    with pytest.raises(InputError, match=r"replace: gears\.composite_roughness: .*0\.001"):
+        case.replace({"gears.composite_roughness": 1e-3})
+    with pytest.raises(InputError, match="unknown key"):
+        case.replace({"gears.modul": 1e-3})
+    with pytest.raises(InputError, match="wrong kind of quantity"):
+        case.replace({"operation.torque": "3 mm"})
+    with pytest.raises(InputError, match="is a value, not a table"):
+        case.replace({"title.text": "x"})
+
+
+def test_replace_with_none_returns_to_the_default(case: Any) -> None:
+    ratio = case.replace({"dynamics.mesh_damping_ratio": 0.1})
+    assert ratio.replace({"dynamics.mesh_damping_ratio": None}) == case
+
+
+def test_a_replaced_value_is_no_longer_assumed() -> None:
+    case = td.load_case("fzg-roughness")
+    key = "gears.composite_roughness"
+    assert provenance(case)[key].startswith("assumed")
+    assert provenance(case.replace({key: "0.991 um"}))[key] == "given"
+
+
+def test_case_is_frozen(case: Any) -> None:
+    with pytest.raises(ValueError, match="does not change"):
+        case.title = "other"
+    with pytest.raises(ValueError, match="does not change"):
+        case.gears.pinion.teeth = 17
+
+
+def test_case_from_python_takes_si() -> None:
+    case = td.Case(
+        title="made in Python",
+        gears={
+            "normal_module": 4.5e-3,
+            "normal_pressure_angle": math.radians(20.0),
+            "center_distance": 91.5e-3,
+            "driver": "wheel",
+            "pinion": {"teeth": 16, "profile_shift_coefficient": 0.8635, "face_width": "20 mm"},
+            "wheel": {"teeth": 24, "profile_shift_coefficient": -0.5103},
+        },
+        operation={"speed": 100.0, "torque": 90},
+        stiffness={"reference": "rim"},
+        dynamics={"model": "torsional"},
+    )
+    assert case.gears.driver == "wheel"
+    assert case.operation.torque == 90.0
+    with pytest.raises(InputError, match="the table \\[gears\\] is missing"):
+        td.Case(title="nothing")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"gears.pinion.tip_diameter": "3.4878 inch", "operation.speed": 94.1234567890123},
+        {"friction.law": "xu-2007", "friction.coefficient": None},
+        {"solver.method": "transient"},
+        {"film.model": "pan-hamrock", "lubricant.temperature": "40 degC"},
+        {
+            "stiffness.model": "fourier",
+            "stiffness.pair_stiffness": None,
+            "stiffness.mean_stiffness": "2.5e8 N/m",
+            "stiffness.cosine": ["3.3333333333333e7 N/m", 2.7e7],
+        },
+    ],
+)
+def test_written_case_reads_back_equal(case: Any, changes: dict[str, Any]) -> None:
+    changed = case.replace(changes)
+    again = read_case(changed.to_toml(), "again.toml")
+    assert again == changed
+    assert hash(again) == hash(changed)
+    assert provenance(again) == provenance(changed)
+    assert again.to_toml() == changed.to_toml()
+
+
+def test_every_line_of_a_written_case_is_commented() -> None:
+    text = td.load_case("fzg-roughness").to_toml()
+    lines = text[: text.index("[assumed]")].splitlines()
+    pairs = [line for line in lines if "=" in line]
+    assert len(pairs) > 50
+    assert all("  # " in line for line in pairs)
+    assert 'center_distance = "91.5 mm"  # a: distance between the two axes; 0.1 mm' in text
+
+
+def test_a_stale_default_is_told() -> None:
+    text = read_case(SOUND, "pair.toml").to_toml()
+    assert "mesh_damping_ratio = 0.04" in text
+    other = read_case(text.replace("mesh_damping_ratio = 0.04", "mesh_damping_ratio = 0.05"))
+    assert "while this version has 0.04" in provenance(other)["dynamics.mesh_damping_ratio"]
+
+
+def test_defaults_and_derived_values_are_listed(case: Any) -> None:
+    listed = {row.key: row for row in assumptions(case)}
+    assert listed["dynamics.mesh_damping_ratio"].value == "0.04"
+    assert listed["gears.wheel.tip_diameter"].value == "112.2285 mm"
+    assert "derived from" in listed["gears.wheel.mass"].reason
+    assert "gears.normal_module" not in listed
+    assert "solver.cycles" not in listed
+
+
+def test_a_given_damping_drops_the_default_ratio(case: Any) -> None:
+    values = effective(case.replace({"dynamics.mesh_damping": "900 N*s/m"}))
+    assert values["dynamics.mesh_damping"] == 900.0
+    assert values["dynamics.mesh_damping_ratio"] is None
+
+
+def test_repr_is_a_table_with_units(case: Any) -> None:
+    assert "gears.center_distance" in repr(case)
+    assert "91.5 mm" in repr(case)
+
+
+def test_a_deleted_default_line_needs_no_second_edit() -> None:
+    text = read_case(SOUND, "pair.toml").to_toml()
+    lines = [line for line in text.splitlines() if not line.startswith("dedendum_coefficient")]
+    assert read_case("\n".join(lines)) == read_case(text)
+
+
+def test_the_oil_of_the_library_brings_its_assumptions() -> None:
+    case = read_case(SOUND.replace('"80W"', '"75W90-A"'))
+    reasons = [row.reason for row in assumptions(case) if row.key == "lubricant"]
+    assert reasons == list(case.lubricant_properties.assumptions)
+    assert reasons
+
+
+def test_a_copied_and_a_pickled_case_are_equal(case: Any) -> None:
+    import copy
+    import pickle
+
+    assert copy.deepcopy(case) == case
+    again = pickle.loads(pickle.dumps(case))
+    assert again == case
+    assert again.replace({"operation.torque": 1.0}).operation.torque == 1.0
+
+
+def test_only_values_and_deeds_are_listed() -> None:
+    case = td.load_case("fzg-roughness")
+    listed = dir(case)
+    assert {"operation", "replace", "gear_pair", "to_toml"} <= set(listed)
+    assert not [name for name in listed if name.startswith(("model_", "_"))]
+    assert "teeth" in dir(case.gears.pinion)
+
+
+def test_a_value_that_is_set_names_replace() -> None:
+    case = td.load_case("fzg-roughness")
+    with pytest.raises(InputError, match=r"torque cannot be set.*case\.replace"):
+        case.operation.torque = 120.0
+    assert case.operation.torque == 90.0
+
+
+def test_the_document_behind_a_case_is_cited() -> None:
+    case = td.load_case("fzg-roughness")
+    assert "authors and year not known" in cite(case)
+    assert case.lubricant_properties.source.rstrip(".") in cite(case)
+    assert "Values of the case" not in cite(case.replace({"origin": None}))

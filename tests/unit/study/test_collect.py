@@ -1,0 +1,38 @@
+"""Warnings are collected once each, and nothing else is swallowed."""
+
+from __future__ import annotations
+
+import warnings
+
+import pytest
+
+from tribodyn.errors import warn
+from tribodyn.study.collect import collected
+
+
+def test_each_warning_once_in_order() -> None:
+    with collected() as found:
+        warn("a", "first")
+        warn("b", "second")
+        warn("a", "first")
+    assert [(w.code, w.message) for w in found] == [("a", "first"), ("b", "second")]
+
+
+def test_warnings_survive_an_error() -> None:
+    found = []
+
+    def fail() -> None:
+        nonlocal found
+        with collected() as found:
+            warn("a", "first")
+            raise ValueError
+
+    with pytest.raises(ValueError):
+        fail()
+    assert [w.code for w in found] == ["a"]
+
+
+def test_other_warnings_pass() -> None:
+    with pytest.warns(DeprecationWarning, match="old"), collected() as found:
+        warnings.warn("old", DeprecationWarning, stacklevel=1)
+    assert found == []

@@ -1,0 +1,105 @@
+"""Messages answer what, where, why and what next; validators let no bad number through."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+    ModelWarning,
+    OutputExistsError,
+    Problem,
+    TribodynError,
+    require_between,
+    require_positive,
+    warn,
+)
+
+
+def test_problem_reads_as_one_paragraph() -> None:
+    problem = Problem(
+        "teeth = 2", "case.toml:7: gears.pinion.teeth", "At least 5.", "Use more teeth"
+    )
+    assert str(problem) == (
+        "case.toml:7: gears.pinion.teeth: teeth = 2. At least 5. Use more teeth."
+    )
+
+
+def test_empty_parts_leave_no_trace() -> None:
+    assert str(Problem("no gears")) == "no gears."
+
+
+def test_one_error_carries_several_problems() -> None:
+    error = InputError([Problem("first"), Problem("second")])
+    assert [problem.what for problem in error.problems] == ["first", "second"]
+    assert str(error) == "first.\nsecond."
+
+
+def test_a_sentence_is_a_problem() -> None:
+    assert InputError("wrong").problems == (Problem("wrong"),)
+
+
+@pytest.mark.parametrize(
+    ("kind", "builtin", "code"),
+    [
+        (InputError, ValueError, 2),
+        (OutputExistsError, ValueError, 2),
+        (ComputationError, RuntimeError, 1),
+    ],
+)
+def test_kinds_and_exit_codes(
+    kind: type[TribodynError], builtin: type[Exception], code: int
+) -> None:
+    error = kind("x")
+    assert isinstance(error, builtin)
+    assert isinstance(error, TribodynError)
+    assert error.exit_code == code
+
+
+@pytest.mark.parametrize(
+    "bad", [0.0, -1.0, np.nan, np.inf, [1.0, -2.0], np.array([[1.0], [np.nan]])]
+)
+def test_require_positive_refuses(bad: object) -> None:
+    with pytest.raises(InputError) as caught:
+        require_positive("load", bad, "N", remedy="Give a load")
+    message = str(caught.value)
+    assert "argument load: load = " in message
+    assert " N." in message
+    assert "finite and greater than zero" in message
+    assert message.endswith("Give a load.")
+
+
+def test_require_positive_names_the_offending_element() -> None:
+    with pytest.raises(InputError, match="load = -2 N"):
+        require_positive("load", [3.0, -2.0, 5.0], "N")
+
+
+def test_require_positive_accepts() -> None:
+    require_positive("load", [1e-300, 1.0])
+
+
+@pytest.mark.parametrize("bad", [-0.01, 0.51, np.nan])
+def test_require_between_refuses(bad: float) -> None:
+    with pytest.raises(InputError, match=r"between 0 and 0\.5"):
+        require_between("poissons_ratio", bad, 0.0, 0.5)
+
+
+@pytest.mark.parametrize("good", [0.0, 0.5, [0.0, 0.3]])
+def test_limits_are_inclusive(good: object) -> None:
+    require_between("poissons_ratio", good, 0.0, 0.5)
+
+
+def test_warning_carries_code_and_the_place_of_the_caller() -> None:
+    def model() -> None:
+        warn("friction-range", "p = 3 GPa is above 2.5 GPa")
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        model()
+    (record,) = caught
+    assert isinstance(record.message, ModelWarning)
+    assert record.message.code == "friction-range"
+    assert str(record.message) == "[friction-range] p = 3 GPa is above 2.5 GPa"
+    assert record.filename == __file__

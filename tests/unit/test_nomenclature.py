@@ -1,0 +1,47 @@
+"""The table of quantities is consistent with itself and with the unit reader."""
+
+import pytest
+
+from tribodyn.nomenclature import QUANTITIES, find, lookup
+from tribodyn.units import convert
+
+
+@pytest.mark.parametrize("name", sorted(QUANTITIES))
+def test_every_row_is_complete(name: str) -> None:
+    quantity = QUANTITIES[name]
+    assert quantity.name == name
+    assert name.isidentifier()
+    assert name == name.lower()
+    assert quantity.meaning
+    assert bool(quantity.unit) == bool(quantity.display_unit)
+    convert(1.0, quantity.unit, quantity.display_unit)  # raises when the two are of different kinds
+
+
+def test_si_units_are_si() -> None:
+    for quantity in QUANTITIES.values():
+        if quantity.unit and quantity.unit != "rad":
+            base = {"kg", "m", "s", "N", "Pa", "Hz", "K", "W", "rad"}
+            words = set(
+                quantity.unit.replace("^2", "").replace("^3", "").replace("/", "*").split("*")
+            )
+            assert words <= base | {"1"}, quantity
+
+
+def test_label_shows_the_display_unit() -> None:
+    assert lookup("hertz_pressure").label == "Hertz pressure [GPa]"
+    assert lookup("transverse_contact_ratio").label == "Transverse contact ratio"
+
+
+def test_unknown_name_names_the_nearest() -> None:
+    with pytest.raises(KeyError, match='did you mean "base_radius"'):
+        lookup("base_radus")
+
+
+def test_find_prefers_exact_symbol_then_parts() -> None:
+    assert [quantity.name for quantity in find("epsilon_alpha")] == ["transverse_contact_ratio"]
+    assert [quantity.name for quantity in find("mass")] == ["mass"]
+    assert {"bearing_stiffness", "bearing_damping", "bearing_force"} <= {
+        quantity.name for quantity in find("bearing")
+    }
+    assert find("contact ratio")[0].name == "transverse_contact_ratio"
+    assert find("no such thing") == []
