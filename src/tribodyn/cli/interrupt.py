@@ -2,12 +2,13 @@
 
 Python drops an exception that arises inside a destructor or a callback, and Ctrl-C can arrive
 right there; the program would go on as if nothing had happened. A dropped interruption is asked
-for again a moment later.
+for again a moment later, by a real signal: only that wakes a program that waits in the system.
 """
 
 from __future__ import annotations
 
 import _thread
+import signal
 import sys
 import threading
 from collections.abc import Iterator
@@ -31,7 +32,7 @@ def interruptible() -> Iterator[None]:
 
     def again(dropped: sys.UnraisableHookArgs) -> None:
         if issubclass(dropped.exc_type, KeyboardInterrupt):
-            timer = threading.Timer(_MOMENT, _thread.interrupt_main)
+            timer = threading.Timer(_MOMENT, _interrupt)
             timer.daemon = True
             timer.start()
         else:
@@ -42,3 +43,13 @@ def interruptible() -> Iterator[None]:
         yield
     finally:
         sys.unraisablehook = previous
+
+
+def _interrupt() -> None:
+    """Interrupt the main thread, also out of a system call."""
+    if hasattr(signal, "pthread_kill"):
+        main = threading.main_thread().ident
+        if main is not None:
+            signal.pthread_kill(main, signal.SIGINT)
+    else:
+        _thread.interrupt_main()
