@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.compiled import source_digest
 from tribodyn.dynamics.crossing import find_sides, split_step
 from tribodyn.dynamics.kernel import I64, INNER, JIT, left_side, step
 from tribodyn.dynamics.lanes import address
@@ -82,17 +82,6 @@ def _set_up(lanes: Any, code: Index, period: Array, load: Array, state: Array, w
             w[(8 * n + contacts + j) * width + lane] = 1.0
         w[(steady + n) * width + lane] = 1.0
         w[(steady + n + 2) * width + lane] = 1.0 / period[lane]
-
-
-def _digest() -> str:
-    """Hash of the sources of all kernels.
-
-    Numba looks at the file of the cached function alone, and would load a stale one after a
-    change in a file that it calls. As a closure variable the hash is part of the cache key.
-    """
-    folder = Path(__file__).parent
-    content = [(folder / f"{name}.py").read_bytes() for name in _SOURCES]
-    return hashlib.sha256(b"".join(content)).hexdigest()
 
 
 def _build(digest: str) -> Any:
@@ -214,4 +203,4 @@ def _build(digest: str) -> Any:
     return march_block
 
 
-march_block = _build(_digest())
+march_block = _build(source_digest(Path(__file__).parent, _SOURCES))
