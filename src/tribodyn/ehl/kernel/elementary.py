@@ -71,7 +71,8 @@ def exp_(x: float) -> float:
     s = s * r + 1.0
     # The integer k sits in the lowest bits of the shifted number.
     power = (_bits(shifted) - 4843621399236968448 + 1023) << 52
-    return s * _double(power)
+    result: float = s * _double(power)
+    return result
 
 
 @nb.njit(**STRICT)
@@ -99,4 +100,5 @@ def log_(x: float) -> float:
     )
     half = 0.5 * f * f
     tail = s * (half + odd + even) + k * 1.90821492927058770002e-10
-    return k * 6.93147180369123816490e-01 - ((half - tail) - f)
+    result: float = k * 6.93147180369123816490e-01 - ((half - tail) - f)
+    return result
