@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tribodyn.cases import cases, load_case, run
     from tribodyn.errors import ComputationError, InputError, ModelWarning
-    from tribodyn.study import Case, Result
+    from tribodyn.study import Case, Result, film_over_operation
 
 __version__ = "0.1.0"
 
@@ -30,6 +30,7 @@ __all__ = [
     "Result",
     "__version__",
     "cases",
+    "film_over_operation",
     "load_case",
     "run",
 ]
@@ -40,6 +41,7 @@ _HOMES = {
     "InputError": "errors",
     "ModelWarning": "errors",
     "Result": "study",
+    "film_over_operation": "study",
     "load_case": "cases",
     "run": "cases",
 }

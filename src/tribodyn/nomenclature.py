@@ -77,6 +77,9 @@ effective_modulus | E' | Pa | GPa | 2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2 (Dowson-H
 dynamic_viscosity | eta_0 | Pa*s | mPa*s | absolute viscosity at ambient pressure and working temperature
 kinematic_viscosity | nu | m^2/s | mm^2/s | viscosity divided by density
 pressure_viscosity_coefficient | alpha | 1/Pa | 1/GPa | slope of ln(viscosity) over pressure at ambient pressure
+temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per kelvin at ambient pressure
+eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear
+thermal_conductivity | k | W/m/K | W/m/K | thermal conductivity of the oil
 temperature | theta | K | degC | working temperature
 speed | n | rad/s | rpm | rotational speed of the gear named by speed_of
 torque | T | N*m | N*m | torque on the gear named by speed_of
@@ -94,10 +97,13 @@ film_thickness | h | m | um | oil film thickness
 central_film | h_c | m | um | oil film thickness in the centre of the contact
 minimum_film | h_min | m | um | least oil film thickness
 film_ratio | Lambda | | | minimum film over composite roughness
+film_pressure | p_max | Pa | GPa | greatest pressure in the oil film
+film_stiffness | K_o | N/m | N/um | stiffness of the oil film of one tooth pair along the line of action
 composite_roughness | S | m | um | root of the sum of squares of the two rms roughnesses
 roughness_rms | S_q | m | um | rms roughness of one flank
 friction_coefficient | mu | | | friction force over normal force
 gear_loss_factor | H_V | | | mean sliding work over transmitted work at unit friction
+tooth_stiffness | k_t | N/m | N/um | stiffness of the teeth of one pair without their oil film
 pair_stiffness | k_i | N/m | N/um | stiffness of one tooth pair along the line of action
 mesh_stiffness | K_m | N/m | N/um | stiffness of all tooth pairs in contact
 mesh_force | N | N | N | dynamic force along the line of action

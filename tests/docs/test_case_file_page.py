@@ -6,11 +6,13 @@ import re
 from pathlib import Path
 
 from tribodyn.cli.app import COMMANDS
+from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
 from tribodyn.study.options import model_options
 from tribodyn.study.reference import case_keys, reference_tables
 
+_ROW = r"^\| `([\w-]+)` \| (.*) \|$"
 _DOCS = Path(__file__).parents[2] / "docs"
 
 
@@ -22,10 +24,17 @@ def test_all_keys_are_on_the_page_as_they_are_checked() -> None:
 
 def test_options_on_the_page_belong_to_their_models() -> None:
     page = (_DOCS / "case-file.md").read_text(encoding="utf-8")
-    rows = dict(re.findall(r"^\| `([\w-]+)` \| (.*) \|$", page.split("## All keys")[0], re.M))
-    for section, names in (("stiffness", MODELS.names()), ("friction", LAWS.names())):
+    sections = (
+        ("film", FILM_MODELS.names()),
+        ("stiffness", MODELS.names()),
+        ("friction", LAWS.names()),
+    )
+    parts = page.split("## All keys")[0].split("| law | options |")
+    rows = [dict(re.findall(_ROW, part, re.M)) for part in (parts[0], parts[0], parts[1])]
+    for (section, names), row in zip(sections, rows, strict=True):
+        # "none" is both a film model and a friction law
         for name in names:
-            assert set(re.findall(r"`(\w+)`", rows[name])) == set(model_options(section, name))
+            assert set(re.findall(r"`(\w+)`", row[name])) == set(model_options(section, name))
 
 
 def test_every_command_is_on_its_page() -> None:

@@ -1,17 +1,24 @@
-"""Film models by name: which formula gives the central and which the minimum film."""
+"""Film models by name: formulas by author, and the solved line contact."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import difflib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.ehl.dowson import dowson_1968_minimum
 from tribodyn.ehl.dowson_toyoda import dowson_toyoda_central
+from tribodyn.ehl.load_exponent import moes_load_exponent
 from tribodyn.ehl.moes import moes_central
 from tribodyn.ehl.pan_hamrock import pan_hamrock_central, pan_hamrock_minimum
+from tribodyn.ehl.solved_films import Films, solved_films
+from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.lubricant import Lubricant
+from tribodyn.progress import SILENT, Progress
 from tribodyn.registry import Registry
 
 __all__ = ["FILM_MODELS", "FilmFormula", "FilmModel"]
@@ -20,32 +27,191 @@ __all__ = ["FILM_MODELS", "FilmFormula", "FilmModel"]
 #: pressure-viscosity coefficient and effective modulus, in this order and in SI.
 FilmFormula = Callable[..., NDArray[np.float64]]
 
+#: Options of the solved films with their defaults.
+_SOLVED: Mapping[str, Any] = {
+    "stiffness": "none",
+    "nodes": 513,
+    "positions": 30,
+    "inlet": "flooded",
+    "domain": None,
+}
+
 
 @dataclass(frozen=True)
 class FilmModel:
-    """A film model: the formulas that it has.
+    """A film model: the formulas that it has, or the engine that solves the contact.
 
     Parameters
     ----------
     name : str
         Name in the registry.
     source : str
-        Papers behind the formulas.
+        Papers behind the model.
     central : callable, optional
         Formula of the central film; ``None`` where the model has none.
     minimum : callable, optional
         Formula of the minimum film; ``None`` where the model has none.
+    load_exponent : float or callable, optional
+        Slope of the logarithm of the central film over that of the load; a callable takes the
+        arguments of the formula.
+    method : str
+        Engine of :func:`tribodyn.ehl.solve_line_contacts`; empty for formulas.
 
     Examples
     --------
     >>> FILM_MODELS["moes"].minimum is None
     True
+    >>> FILM_MODELS["newton"].options["nodes"]
+    513
     """
 
     name: str
     source: str
     central: FilmFormula | None = None
     minimum: FilmFormula | None = None
+    load_exponent: float | FilmFormula | None = None
+    method: str = ""
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """Options that the model knows, with their defaults."""
+        return dict(_SOLVED) if self.method else {"stiffness": "none"}
+
+    @property
+    def stiffness_kinds(self) -> tuple[str, ...]:
+        """Stiffnesses of the film that the model can put in series with the teeth."""
+        if self.method:
+            return ("none", "tangent", "secant", "seed")
+        return ("none",) if self.load_exponent is None else ("none", "tangent")
+
+    def complete(self, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Options with the defaults filled in.
+
+        Parameters
+        ----------
+        options : mapping of str to object
+            What the user gave; ``None`` counts as not given.
+
+        Returns
+        -------
+        dict of str to object
+
+        Raises
+        ------
+        InputError
+            Listing every option that the model does not have, or a stiffness that it cannot give.
+
+        Examples
+        --------
+        >>> FILM_MODELS["moes"].complete({"stiffness": "tangent"})
+        {'stiffness': 'tangent'}
+        """
+        given = {name: value for name, value in options.items() if value is not None}
+        problems = [self._unknown(name) for name in given if name not in self.options]
+        kind = given.get("stiffness", "none")
+        if kind not in self.stiffness_kinds:
+            problems.append(
+                Problem(
+                    what=f'stiffness = "{kind}"',
+                    where=f'film model "{self.name}"',
+                    why=f"Its film has: {', '.join(self.stiffness_kinds)}",
+                    remedy='Choose one of these, or the film model "newton"',
+                )
+            )
+        if problems:
+            raise InputError(problems)
+        return {**self.options, **given}
+
+    def _unknown(self, name: str) -> Problem:
+        near = difflib.get_close_matches(name, self.options, n=1)
+        return Problem(
+            what=f'there is no option "{name}"',
+            where=f'film model "{self.name}"',
+            why=f"Its options are: {', '.join(self.options)}",
+            remedy=f'Did you mean "{near[0]}"?' if near else "Remove it",
+        )
+
+    def films(
+        self,
+        load_per_width: ArrayLike,
+        equivalent_radius: ArrayLike,
+        entrainment_speed: ArrayLike,
+        lubricant: Lubricant,
+        effective_modulus: float,
+        *,
+        length: float = 1.0,
+        progress: Progress = SILENT,
+        **options: Any,
+    ) -> Films:
+        """Films of loaded contacts.
+
+        Parameters
+        ----------
+        load_per_width : float or array [N/m]
+            Normal load per face width.
+        equivalent_radius : float or array [m]
+            Reduced radius of curvature.
+        entrainment_speed : float or array [m/s]
+            HALF the sum of the surface speeds.
+        lubricant : Lubricant
+            Oil at working temperature.
+        effective_modulus : float [Pa]
+            ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+        length : float [m]
+            Length of the contact line, for the film stiffness.
+        progress : Progress
+            Told how many contacts are solved.
+        **options : object
+            Options of this model; ``positions`` is for those who choose the contacts.
+
+        Returns
+        -------
+        Films
+            Of the common shape of the arguments; ``None`` where the model gives nothing. The film
+            stiffness is the tangent one where ``stiffness`` is ``"none"``.
+
+        Raises
+        ------
+        InputError
+            If a value is not positive or an option unknown.
+        ComputationError
+            If a contact cannot be solved.
+
+        Notes
+        -----
+        Range and source: those of the formulas, and of :func:`tribodyn.ehl.solve_line_contacts`.
+
+        Examples
+        --------
+        >>> oil = Lubricant(0.082, 880.0, 2.19e-8)
+        >>> films = FILM_MODELS["moes"].films(147802.0, 8e-3, 3.0722, oil, 2.2e11, length=0.02)
+        >>> print(f"{float(films.film_stiffness):.3g} N/m")
+        3.26e+10 N/m
+        """
+        chosen = self.complete(options)
+        require_positive("length", length, "m")
+        if self.method:
+            chosen.pop("positions")
+            return solved_films(
+                load_per_width, equivalent_radius, entrainment_speed, lubricant, effective_modulus,
+                length=length, method=self.method, progress=progress, **chosen,
+            )  # fmt: skip
+        arguments = (
+            load_per_width,
+            equivalent_radius,
+            entrainment_speed,
+            lubricant.dynamic_viscosity,
+            lubricant.pressure_viscosity_coefficient,
+            effective_modulus,
+        )
+        central = None if self.central is None else self.central(*arguments)
+        minimum = None if self.minimum is None else self.minimum(*arguments)
+        exponent = self.load_exponent
+        slope = exponent(*arguments) if callable(exponent) else exponent
+        stiffness = None
+        if central is not None and slope is not None:
+            stiffness = -length * np.asarray(load_per_width) / (slope * central)
+        return Films(central, minimum, None, stiffness)
 
 
 #: The film models by name; ``none`` computes no film.
@@ -54,17 +220,34 @@ FILM_MODELS: Registry[FilmModel] = Registry("film model", "tribodyn.film")
 for _model in (
     FilmModel("none", "no film is computed"),
     FilmModel(
+        "newton",
+        "solved line contact: multilevel Newton-Krylov",
+        method="newton",
+    ),
+    FilmModel(
+        "multigrid",
+        "solved line contact: full multigrid after Venner and Lubrecht",
+        method="multigrid",
+    ),
+    FilmModel(
         "dowson-higginson",
         "minimum film: Dowson (1968); central film: Dowson and Toyoda (1979)",
         central=dowson_toyoda_central,
         minimum=dowson_1968_minimum,
+        load_exponent=-0.10,
     ),
     FilmModel(
         "pan-hamrock",
         "Pan and Hamrock (1989)",
         central=pan_hamrock_central,
         minimum=pan_hamrock_minimum,
+        load_exponent=-0.166,
     ),
-    FilmModel("moes", "central film: Moes (1965, 2000)", central=moes_central),
+    FilmModel(
+        "moes",
+        "central film: Moes (1965, 2000)",
+        central=moes_central,
+        load_exponent=moes_load_exponent,
+    ),
 ):
     FILM_MODELS.register(_model.name)(_model)

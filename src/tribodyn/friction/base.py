@@ -6,13 +6,16 @@ import difflib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.registry import Registry
+
+if TYPE_CHECKING:
+    from tribodyn.ehl.film_state import FilmState
 
 __all__ = ["LAWS", "FrictionLaw", "TribologicalContact"]
 
@@ -48,12 +51,14 @@ class TribologicalContact:
         Viscosity of the oil at the inlet.
     composite_roughness : float [m]
         Root of the sum of squares of the two rms roughnesses.
+    film : FilmState, optional
+        Solved oil film of every contact, in flat order; ``None`` where none is solved.
 
     Raises
     ------
     InputError
-        If there is no contact, the shapes differ, a load, pressure, speed or radius is not
-        positive, or the sliding speed disagrees with the slide-to-roll ratio.
+        If there is no contact, the shapes or the number of films differ, a load, pressure, speed
+        or radius is not positive, or the sliding speed disagrees with the slide-to-roll ratio.
 
     Examples
     --------
@@ -73,6 +78,7 @@ class TribologicalContact:
     equivalent_radius: NDArray[np.float64]
     dynamic_viscosity: float
     composite_roughness: float
+    film: FilmState | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         """Refuse contacts without load, mixed shapes and contradicting speeds."""
@@ -97,6 +103,15 @@ class TribologicalContact:
         require_positive("dynamic_viscosity", self.dynamic_viscosity, "Pa*s")
         require_between("composite_roughness", self.composite_roughness, 0.0, np.inf, "m")
         self._require_consistent_sliding()
+        if self.film is not None and self.film.size != self.size:
+            raise InputError(
+                Problem(
+                    what=f"{self.film.size} films for {self.size} contacts",
+                    where="TribologicalContact",
+                    why="film i belongs to contact i, in flat order",
+                    remedy="Give the index of the film of each contact",
+                )
+            )
 
     def _require_consistent_sliding(self) -> None:
         """Refuse a slide-to-roll ratio that was formed with the sum of the speeds, say."""
@@ -134,6 +149,8 @@ class FrictionLaw:
         ``function(contact, **options)``.
     options : mapping of str to default
         Options that the law knows; ``None`` where the user must give a value.
+    needs_film : bool
+        Whether the contacts must have their solved ``film``.
 
     Examples
     --------
@@ -145,6 +162,7 @@ class FrictionLaw:
     source: str
     function: Callable[..., NDArray[np.float64]] = field(repr=False)
     options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    needs_film: bool = False
 
     def __call__(self, contact: TribologicalContact, **options: Any) -> NDArray[np.float64]:
         """Friction coefficient of every contact, never negative.

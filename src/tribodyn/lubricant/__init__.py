@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tribodyn.lubricant.agma_925 import BASE_OILS, agma_925_coefficient
-from tribodyn.lubricant.astm_d341 import walther_viscosity
+from tribodyn.lubricant.astm_d341 import walther_slope, walther_viscosity
 from tribodyn.lubricant.barus import barus_viscosity
 from tribodyn.lubricant.dowson_higginson import dowson_higginson_density
 from tribodyn.lubricant.iso_15144 import density_at_temperature
@@ -24,5 +24,6 @@ __all__ = [
     "library",
     "roelands_index",
     "roelands_viscosity",
+    "walther_slope",
     "walther_viscosity",
 ]

@@ -6,7 +6,7 @@ import math
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 
-__all__ = ["MARGIN", "TemperaturePoint", "walther_viscosity"]
+__all__ = ["MARGIN", "TemperaturePoint", "walther_slope", "walther_viscosity"]
 
 #: One measured point: temperature [K] and kinematic viscosity [m^2/s].
 TemperaturePoint = tuple[float, float]
@@ -98,3 +98,40 @@ def walther_viscosity(
     slope = (_ordinate(thin) - _ordinate(thick)) / math.log10(warm / cold)
     ordinate = _ordinate(thick) + slope * math.log10(temperature / cold)
     return float(10.0 ** (10.0**ordinate) - _SHIFT) * 1e-6
+
+
+def walther_slope(temperature: float, points: tuple[TemperaturePoint, TemperaturePoint]) -> float:
+    """Fall of ln(kinematic viscosity) per kelvin on the line of :func:`walther_viscosity`.
+
+    ``B (nu + 0.7) ln(nu + 0.7) / (nu T)`` with nu in mm^2/s and T in K.
+
+    Parameters
+    ----------
+    temperature : float [K]
+        Wanted temperature.
+    points : tuple of two (float [K], float [m^2/s])
+        Temperature and kinematic viscosity, the colder point first.
+
+    Returns
+    -------
+    float [1/K]
+        Positive.
+
+    Raises
+    ------
+    InputError
+        If the points make no falling line, or the temperature lies more than 30 K outside them.
+
+    Valid for liquid petroleum products above 2 mm^2/s. Source: Walther (1931); ASTM D341.
+
+    Examples
+    --------
+    >>> points = ((313.15, 100e-6), (373.15, 11.066e-6))
+    >>> round(walther_slope(313.15, points), 4)
+    0.053
+    """
+    viscosity = walther_viscosity(temperature, points) * 1e6
+    (cold, thick), (warm, thin) = points
+    slope = (_ordinate(thick) - _ordinate(thin)) / math.log10(warm / cold)
+    shifted = viscosity + _SHIFT
+    return slope * shifted * math.log(shifted) / (viscosity * temperature)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from tribodyn.errors import require_between
 
-__all__ = ["REFERENCE_TEMPERATURE", "density_at_temperature"]
+__all__ = ["DENSITY_FALL", "REFERENCE_TEMPERATURE", "density_at_temperature"]
 
 #: Temperature [K] at which data sheets state the density (15 degC).
 REFERENCE_TEMPERATURE = 288.15
 
-_FALL = 0.7  # [kg/(m^3 K)]
+#: Fall of the density per kelvin [kg/(m^3 K)].
+DENSITY_FALL = 0.7
 
 
 def density_at_temperature(temperature: float, density_at_15_degc: float) -> float:
@@ -41,4 +42,4 @@ def density_at_temperature(temperature: float, density_at_15_degc: float) -> flo
     """
     require_between("temperature", temperature, 223.15, 523.15, "K", remedy="0 degC is 273.15 K")
     require_between("density_at_15_degc", density_at_15_degc, 700.0, 1300.0, "kg/m^3")
-    return density_at_15_degc - _FALL * (temperature - REFERENCE_TEMPERATURE)
+    return density_at_15_degc - DENSITY_FALL * (temperature - REFERENCE_TEMPERATURE)

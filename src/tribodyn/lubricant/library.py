@@ -79,7 +79,7 @@ def from_library(name: str, temperature: float | None = None) -> Lubricant:
 
 
 def _common(name: str, record: dict[str, Any]) -> dict[str, Any]:
-    """Return the arguments that describe the origin of an oil."""
+    """Return the arguments that every oil of the library has."""
     quantities_of: dict[str, list[str]] = {}
     for key, value in record.items():
         for entry in value if isinstance(value, list) else [value]:
@@ -87,6 +87,7 @@ def _common(name: str, record: dict[str, Any]) -> dict[str, Any]:
                 quantities_of.setdefault(entry["source"], []).append(key.replace("_", " "))
     return {
         "name": name,
+        "thermal_conductivity": float(record["thermal_conductivity"]["value"]),
         "source": "; ".join(f"{', '.join(q)}: {source}" for source, q in quantities_of.items()),
         "assumptions": tuple(record.get("assumptions", ())),
     }
@@ -126,5 +127,8 @@ def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> L
         float(record["density"]["value"]),
         float(record["pressure_viscosity_coefficient"]["value"]),
         temperature=known,
+        temperature_viscosity_coefficient=float(
+            record["temperature_viscosity_coefficient"]["value"]
+        ),
         **_common(name, record),
     )

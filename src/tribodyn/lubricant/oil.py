@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.lubricant.agma_925 import agma_925_coefficient
-from tribodyn.lubricant.astm_d341 import TemperaturePoint, walther_viscosity
+from tribodyn.lubricant.astm_d341 import TemperaturePoint, walther_slope, walther_viscosity
 from tribodyn.lubricant.barus import barus_viscosity
 from tribodyn.lubricant.dowson_higginson import dowson_higginson_density
-from tribodyn.lubricant.iso_15144 import density_at_temperature
+from tribodyn.lubricant.iso_15144 import DENSITY_FALL, density_at_temperature
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
 from tribodyn.registry import Registry
 
@@ -43,6 +43,10 @@ class Lubricant:
         Name of the oil.
     temperature : float, optional [K]
         Temperature that the properties belong to; ``None`` when unknown.
+    temperature_viscosity_coefficient : float, optional [1/K]
+        Fall of ln(viscosity) per kelvin, positive; ``None`` when unknown.
+    thermal_conductivity : float, optional [W/m/K]
+        Thermal conductivity; ``None`` when unknown.
     source : str
         Where the properties come from.
     assumptions : tuple of str
@@ -66,6 +70,8 @@ class Lubricant:
     _: KW_ONLY
     name: str = ""
     temperature: float | None = None
+    temperature_viscosity_coefficient: float | None = field(default=None, repr=False)
+    thermal_conductivity: float | None = field(default=None, repr=False)
     source: str = field(default="", repr=False)
     assumptions: tuple[str, ...] = field(default=(), repr=False)
 
@@ -92,6 +98,28 @@ class Lubricant:
         )
         if self.temperature is not None:
             require_positive("temperature", self.temperature, "K")
+        self._require_thermal()
+
+    def _require_thermal(self) -> None:
+        """Refuse thermal properties that no oil has; unknown ones are allowed."""
+        if self.temperature_viscosity_coefficient is not None:
+            require_between(
+                "temperature_viscosity_coefficient",
+                self.temperature_viscosity_coefficient,
+                0.0,
+                0.3,
+                "1/K",
+                remedy="It is positive: gear oils lie between 0.02 and 0.07 1/K",
+            )
+        if self.thermal_conductivity is not None:
+            require_between(
+                "thermal_conductivity",
+                self.thermal_conductivity,
+                0.01,
+                2.0,
+                "W/m/K",
+                remedy="Mineral oil has about 0.13 W/(m*K)",
+            )
 
     @classmethod
     def from_temperature(
@@ -102,6 +130,7 @@ class Lubricant:
         pressure_viscosity_coefficient: float | None = None,
         *,
         base_oil: str | None = None,
+        thermal_conductivity: float | None = None,
         name: str = "",
         source: str = "",
         assumptions: tuple[str, ...] = (),
@@ -120,6 +149,8 @@ class Lubricant:
             Measured at the working temperature. Give this or ``base_oil``.
         base_oil : str, optional
             Base oil from which AGMA 925 estimates the coefficient.
+        thermal_conductivity : float, optional [W/m/K]
+            Thermal conductivity.
         name, source : str
             Name of the oil and origin of the data.
         assumptions : tuple of str
@@ -153,6 +184,9 @@ class Lubricant:
             coefficient,
             name=name,
             temperature=temperature,
+            temperature_viscosity_coefficient=walther_slope(temperature, points)
+            + DENSITY_FALL / density,
+            thermal_conductivity=thermal_conductivity,
             source=source,
             assumptions=assumptions + estimated,
         )

@@ -5,9 +5,11 @@ from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.film import film_columns
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid, phase_grid
+from tribodyn.mesh.operation import FilmOverOperation, film_over_operation
 from tribodyn.mesh.table import MeshTable
 
 __all__ = [
+    "FilmOverOperation",
     "MeshColumns",
     "MeshFunctions",
     "MeshTable",
@@ -15,5 +17,6 @@ __all__ = [
     "PhaseGrid",
     "build",
     "film_columns",
+    "film_over_operation",
     "phase_grid",
 ]

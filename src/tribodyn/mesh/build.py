@@ -9,14 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.contact import Kinematics, effective_modulus, hertz_line, path_of_contact
-from tribodyn.errors import ComputationError, Problem, require_between, require_positive
+from tribodyn.contact import Kinematics
+from tribodyn.ehl import FILM_MODELS
+from tribodyn.errors import require_between, require_positive
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.film import film_columns
-from tribodyn.mesh.grid import phase_grid
+from tribodyn.mesh.cycle import mesh_cycle
+from tribodyn.mesh.film import FILM_COLUMNS, as_columns
+from tribodyn.mesh.film_friction import film_friction
+from tribodyn.mesh.loads import Loads, quasi_static_loads, tribological_contact, usable_stiffness
+from tribodyn.mesh.path_film import SolvedPath, touching_pairs
 from tribodyn.mesh.table import MeshTable
+from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
 
 __all__ = ["build"]
@@ -40,9 +45,11 @@ def build(
     friction_options: Mapping[str, Any] = _NO_OPTIONS,
     composite_roughness: float,
     film_model: str = "none",
+    film_options: Mapping[str, Any] = _NO_OPTIONS,
     pinion_speed: float,
     pinion_torque: float,
     steps: int = 512,
+    progress: Progress = SILENT,
 ) -> MeshTable:
     """Compute everything that happens in the tooth contact over one mesh cycle.
 
@@ -66,12 +73,16 @@ def build(
         Root of the sum of squares of both roughnesses; zero for ideal flanks.
     film_model : str
         Name in ``tribodyn.ehl.FILM_MODELS``.
+    film_options : mapping
+        Options of the film model; its ``stiffness`` puts the film in series with the teeth.
     pinion_speed : float [rad/s]
         Speed of the pinion in the running sense.
     pinion_torque : float [N*m]
         Magnitude of the torque on the pinion.
     steps : int
         Wanted number of phase intervals, at least 16.
+    progress : Progress
+        Told how many oil films are solved.
 
     Returns
     -------
@@ -82,13 +93,15 @@ def build(
     InputError
         If a value is out of range or a model unknown.
     ComputationError
-        If the load share does not settle, or a pair in contact has no stiffness.
+        If the load share does not settle, a pair in contact has no stiffness, or its film cannot
+        be solved.
 
     Notes
     -----
     Loads are quasi-static: pairs deflect alike, so each carries a share in proportion to its
-    secant stiffness. Hertz pressure, film and friction of a pair come from its own share. Source:
-    the single laws, each named in its function.
+    secant stiffness. Hertz pressure, film and friction of a pair come from its own share. A film
+    that is solved is solved at some positions of the path of contact and interpolated between
+    them. Source: the single laws, each named in its function.
 
     Examples
     --------
@@ -105,35 +118,38 @@ def build(
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
     require_between("composite_roughness", composite_roughness, 0.0, _LARGEST_ROUGHNESS, "m")
-    contact = path_of_contact(pair)
-    grid = phase_grid(contact.event_phases(), steps)
-    middle, in_contact = contact.pair_paths(grid.middle)
-    # Advance from the middle of the segment, so that both of its ends keep its pairs.
-    path = middle + contact.direction * pair.base_pitch * (grid.phase - grid.middle)[:, None]
+    options = FILM_MODELS[film_model].complete(film_options)
+    cycle = mesh_cycle(pair, steps)
     total_force = pinion_torque / pair.pinion.base_radius
-    stiffness = MODELS[stiffness_model](
-        pair, material, path, in_contact, grid.phase, total_force, **stiffness_options
+    teeth = MODELS[stiffness_model](
+        pair, material, cycle.path, cycle.in_contact, cycle.grid.phase, total_force,
+        **stiffness_options,
+    )  # fmt: skip
+    teeth = usable_stiffness(teeth, cycle.in_contact, stiffness_model)
+    motion = cycle.motion(pinion_speed)
+    touching = touching_pairs(cycle, motion, lubricant, material)
+    total_load = total_force / pair.common_face_width
+    loads = quasi_static_loads(
+        cycle, teeth, total_load, touching, pinion_speed, film_model, options, progress
     )
-    share = _load_share(stiffness, in_contact, stiffness_model)
-    load = total_force * share[in_contact] / pair.common_face_width
-    motion = contact.kinematics(path[in_contact], pinion_speed)
-    tribology = _tribology(motion, load, material, lubricant, composite_roughness)
-    touching: dict[str, FloatArray] = {
+    load_per_width = total_load * loads.share[cycle.in_contact]
+    tribology = tribological_contact(motion, touching, load_per_width, composite_roughness)
+    columns: dict[str, FloatArray] = {
         **_motion_columns(motion),
-        # A pair slides one way throughout a segment; at the pitch point itself it would be 0.
-        "sliding_direction": contact.sliding_direction(middle[in_contact]),
+        "sliding_direction": cycle.sliding_direction,
         "load_per_width": tribology.load_per_width,
         "hertz_pressure": tribology.hertz_pressure,
-        "friction_coefficient": LAWS[friction_law](tribology, **friction_options),
-        **film_columns(film_model, tribology, material, lubricant),
+        "friction_coefficient": _friction(friction_law, friction_options, tribology, motion, loads),
+        **as_columns(loads.film_at(load_per_width), composite_roughness),
     }
     return MeshTable(
-        grid=grid,
-        path=path,
-        in_contact=in_contact,
-        stiffness=stiffness,
-        load_share=share,
-        normal_force=total_force * share,
+        grid=cycle.grid,
+        path=cycle.path,
+        in_contact=cycle.in_contact,
+        stiffness=loads.stiffness,
+        tooth_stiffness=teeth,
+        load_share=loads.share,
+        normal_force=total_force * loads.share,
         gear_pair=pair,
         pinion_speed=float(pinion_speed),
         pinion_torque=float(pinion_torque),
@@ -141,48 +157,22 @@ def build(
         stiffness_model=stiffness_model,
         friction_law=friction_law,
         film_model=film_model,
-        **_spread(touching, in_contact),
+        film_stiffness_kind=options.get("stiffness", "none"),
+        **_spread(columns, cycle.in_contact),
     )
 
 
-def _load_share(stiffness: FloatArray, in_contact: BoolArray, model: str) -> FloatArray:
-    """Share of each pair; models of third parties are checked here once for all."""
-    found = np.asarray(stiffness)
-    sound = found.shape == in_contact.shape and bool(
-        np.all(np.where(in_contact, np.isfinite(found) & (found > 0.0), found == 0.0))
-    )
-    if not sound:
-        raise ComputationError(
-            Problem(
-                what=f'the stiffness model "{model}" gave no usable pair stiffness',
-                where="stiffness of the tooth pairs",
-                why="It must be finite and positive where a pair is in contact, zero elsewhere",
-                remedy="Check the options of the model, or choose another",
-            )
-        )
-    share: FloatArray = found / found.sum(axis=1, keepdims=True)
-    return share
-
-
-def _tribology(
+def _friction(
+    law: str,
+    options: Mapping[str, Any],
+    contact: TribologicalContact,
     motion: Kinematics,
-    load_per_width: FloatArray,
-    material: Material,
-    lubricant: Lubricant,
-    composite_roughness: float,
-) -> TribologicalContact:
-    modulus = effective_modulus(material, material)
-    hertz = hertz_line(load_per_width, motion.equivalent_radius, modulus)
-    return TribologicalContact(
-        load_per_width=load_per_width,
-        hertz_pressure=hertz.maximum_pressure,
-        sliding_speed=motion.sliding_speed,
-        entrainment_speed=motion.entrainment_speed,
-        slide_to_roll_ratio=motion.slide_to_roll_ratio,
-        equivalent_radius=motion.equivalent_radius,
-        dynamic_viscosity=lubricant.dynamic_viscosity,
-        composite_roughness=composite_roughness,
-    )
+    loads: Loads,
+) -> FloatArray:
+    """Friction of every contact; a law of the solved film knows it at the positions first."""
+    if LAWS[law].needs_film and isinstance(loads.film_at, SolvedPath):
+        return film_friction(law, options, loads.film_at, motion, contact.composite_roughness)
+    return LAWS[law](contact, **options)
 
 
 def _motion_columns(motion: Kinematics) -> dict[str, FloatArray]:
@@ -198,7 +188,7 @@ def _motion_columns(motion: Kinematics) -> dict[str, FloatArray]:
 
 def _spread(touching: dict[str, FloatArray], in_contact: BoolArray) -> dict[str, Any]:
     """Put the values of the touching pairs in their places, with zeros elsewhere."""
-    columns: dict[str, Any] = dict.fromkeys(("central_film", "minimum_film", "film_ratio"))
+    columns: dict[str, Any] = dict.fromkeys(FILM_COLUMNS)
     for name, values in touching.items():
         columns[name] = np.zeros(in_contact.shape)
         columns[name][in_contact] = values

@@ -41,7 +41,10 @@ class MeshColumns:
     equivalent_radius, pinion_curvature_radius, wheel_curvature_radius : array (n, pairs) [m]
         Radii of curvature in the contact.
     stiffness : array (n, pairs) [N/m]
-        Secant stiffness of the pair at its quasi-static load.
+        Secant stiffness of the pair at its quasi-static load; teeth and film in series where the
+        film counts.
+    tooth_stiffness : array (n, pairs) [N/m]
+        Stiffness of the teeth of the pair alone.
     load_share : array (n, pairs)
         Part of the total normal force on the pair.
     normal_force : array (n, pairs) [N]
@@ -56,6 +59,11 @@ class MeshColumns:
         Oil film, where the film model gives it.
     film_ratio : array (n, pairs) or None
         Least known film over the composite roughness.
+    film_pressure : array (n, pairs) [Pa] or None
+        Greatest pressure in the film, where it is solved.
+    film_stiffness : array (n, pairs) [N/m] or None
+        Stiffness of the film of the pair: the tangent one, or the kind that is in series with the
+        teeth.
     gear_pair : SpurPair
         Both gears in their working position.
     pinion_speed : float [rad/s]
@@ -66,6 +74,8 @@ class MeshColumns:
         Root of the sum of squares of both roughnesses.
     stiffness_model, friction_law, film_model : str
         Which models made the table.
+    film_stiffness_kind : str
+        Film stiffness in series with the teeth; ``"none"`` where the film does not yield.
     """
 
     grid: PhaseGrid
@@ -79,6 +89,7 @@ class MeshColumns:
     pinion_curvature_radius: FloatArray
     wheel_curvature_radius: FloatArray
     stiffness: FloatArray
+    tooth_stiffness: FloatArray
     load_share: FloatArray
     normal_force: FloatArray
     load_per_width: FloatArray
@@ -87,6 +98,8 @@ class MeshColumns:
     central_film: FloatArray | None
     minimum_film: FloatArray | None
     film_ratio: FloatArray | None
+    film_pressure: FloatArray | None
+    film_stiffness: FloatArray | None
     gear_pair: SpurPair
     pinion_speed: float
     pinion_torque: float
@@ -94,6 +107,7 @@ class MeshColumns:
     stiffness_model: str
     friction_law: str
     film_model: str
+    film_stiffness_kind: str
 
     @property
     def driver(self) -> str:

@@ -1,25 +1,41 @@
-"""Oil film columns of the mesh table: central and minimum film, film ratio."""
+"""Oil film columns of the mesh table: films, their ratio to the roughness, pressure, stiffness."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS
+from tribodyn.ehl.solved_films import Films
 from tribodyn.friction import TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 
-__all__ = ["film_columns"]
+__all__ = ["FILM_COLUMNS", "as_columns", "film_columns"]
 
 FloatArray = NDArray[np.float64]
 
+_NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
+
+#: Columns that a film model may fill.
+FILM_COLUMNS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
+
 
 def film_columns(
-    film_model: str, contact: TribologicalContact, material: Material, lubricant: Lubricant
+    film_model: str,
+    contact: TribologicalContact,
+    material: Material,
+    lubricant: Lubricant,
+    *,
+    common_face_width: float = 1.0,
+    film_options: Mapping[str, Any] = _NO_OPTIONS,
 ) -> dict[str, FloatArray]:
-    """Films of the loaded contacts, as far as the model gives them.
+    """Films of the loaded contacts, as far as the model gives them; every contact on its own.
 
     Parameters
     ----------
@@ -31,22 +47,28 @@ def film_columns(
         Material of both gears.
     lubricant : Lubricant
         Oil at working temperature.
+    common_face_width : float [m]
+        Length of the contact line, for the film stiffness.
+    film_options : mapping
+        Options of the film model.
 
     Returns
     -------
     dict of str to array
-        ``central_film`` and ``minimum_film`` [m] where the model has them, and ``film_ratio``,
-        the smallest film known over the composite roughness where there is one. Empty for the
-        model ``none``.
+        ``central_film`` and ``minimum_film`` [m], ``film_pressure`` [Pa] and ``film_stiffness``
+        [N/m] where the model has them, and ``film_ratio``, the smallest film known over the
+        composite roughness where there is one. Empty for the model ``none``.
 
     Raises
     ------
     InputError
-        If the model is unknown.
+        If the model or an option is unknown.
+    ComputationError
+        If a contact cannot be solved.
 
     Notes
     -----
-    Range and source: those of the chosen formula.
+    Range and source: those of the chosen model.
 
     Examples
     --------
@@ -55,19 +77,37 @@ def film_columns(
     ...     1e5 * one, 8e8 * one, one, 2 * one, one / 2, 8e-3 * one, 0.08, 5e-7
     ... )
     >>> list(film_columns("moes", contact, Material(), Lubricant(0.08, 880.0, 2e-8)))
-    ['central_film', 'film_ratio']
+    ['central_film', 'film_ratio', 'film_stiffness']
     """
-    model = FILM_MODELS[film_model]
-    arguments = (
+    films = FILM_MODELS[film_model].films(
         contact.load_per_width,
         contact.equivalent_radius,
         contact.entrainment_speed,
-        lubricant.dynamic_viscosity,
-        lubricant.pressure_viscosity_coefficient,
+        lubricant,
         effective_modulus(material, material),
+        length=common_face_width,
+        **film_options,
     )
-    formulas = {"central_film": model.central, "minimum_film": model.minimum}
-    films = {name: film(*arguments) for name, film in formulas.items() if film is not None}
-    if films and contact.composite_roughness > 0.0:
-        films["film_ratio"] = np.min(list(films.values()), axis=0) / contact.composite_roughness
-    return films
+    return as_columns(films, contact.composite_roughness)
+
+
+def as_columns(films: Films, composite_roughness: float) -> dict[str, FloatArray]:
+    """Name the films as columns and add their ratio to the roughness.
+
+    Parameters
+    ----------
+    films : Films
+        Films of the touching pairs.
+    composite_roughness : float [m]
+        Root of the sum of squares of both roughnesses.
+
+    Returns
+    -------
+    dict of str to array
+        What is known of :data:`FILM_COLUMNS`.
+    """
+    known = {name: getattr(films, name, None) for name in FILM_COLUMNS}
+    thin = [film for film in (films.central_film, films.minimum_film) if film is not None]
+    if thin and composite_roughness > 0.0:
+        known["film_ratio"] = np.min(thin, axis=0) / composite_roughness
+    return {name: values for name, values in known.items() if values is not None}

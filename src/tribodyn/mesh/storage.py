@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["load", "save", "to_xarray"]
 
-_FORMAT = "tribodyn mesh table 1"
+_FORMAT = "tribodyn mesh table 2"
+#: Tables without a film in series with the teeth, as they were written before.
+_EARLIER = "tribodyn mesh table 1"
 #: Columns whose quantity has another name in the nomenclature.
 _QUANTITY = {
     "stiffness": "pair_stiffness",
@@ -123,7 +125,7 @@ def load(path: str | PathLike[str]) -> MeshTable:
             data = opened.load()
     except (OSError, ValueError) as error:
         raise _unreadable(path, str(error)) from error
-    if data.attrs.get("format") != _FORMAT:
+    if data.attrs.get("format") not in (_FORMAT, _EARLIER):
         raise _unreadable(path, f"its format is {data.attrs.get('format', 'not named')}")
     grid = PhaseGrid(
         tuple(float(value) for value in data["event_phase"].values),
@@ -135,6 +137,8 @@ def load(path: str | PathLike[str]) -> MeshTable:
             values[field.name] = data[field.name].values
         elif field.name not in values:
             values[field.name] = _plain(data.attrs.get(field.name))
+    if data.attrs["format"] == _EARLIER:
+        values |= {"tooth_stiffness": values["stiffness"], "film_stiffness_kind": "none"}
     return MeshTable(**values)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, Problem
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.functions import MeshFunctions
@@ -84,6 +85,34 @@ class MeshTable(MeshColumns):
         if values.dtype == np.bool_:
             return np.asarray(PhaseFunction(self.grid, values.astype(float))(phase) > 0.5)
         return PhaseFunction(self.grid, values)(phase)
+
+    def at_pitch_point(self, column: str) -> float | None:
+        """Value of a column for the tooth pair that is at the pitch point.
+
+        Parameters
+        ----------
+        column : str
+            Name of a column over knots and pairs.
+
+        Returns
+        -------
+        float or None
+            The pair carries its own part of the load at that phase. Where another pair enters or
+            leaves at the same time, the value after that; ``None`` where the pitch point is
+            outside of the contact, or there is no such column in this table.
+        """
+        contact = path_of_contact(self.gear_pair)
+        age = contact.direction * (contact.C - contact.A) / self.gear_pair.base_pitch
+        values = getattr(self, column, None)
+        if values is None or not 0.0 <= age < contact.contact_ratio:
+            return None
+        # The event that is nearest: its phase and this one may differ by rounding.
+        phases = np.array(self.event_phases)
+        apart = np.abs((phases - age + 0.5) % 1.0 - 0.5)
+        phase = float(phases[np.argmin(apart)])
+        number = round(age - phase)
+        touches = bool(self.at("in_contact", phase)[number])
+        return float(self.at(column, phase)[number]) if touches else None
 
     def _columns(self) -> list[str]:
         derived = ["mesh_stiffness", "friction_sum", "friction_moment_pinion"]

@@ -9,8 +9,14 @@ from tribodyn.plot.acceleration import acceleration
 from tribodyn.plot.bearing_force import bearing_force
 from tribodyn.plot.bearing_spectrum import bearing_spectrum
 from tribodyn.plot.film import film
+from tribodyn.plot.film_along_path import film_along_path, film_over_time
+from tribodyn.plot.film_comparison import compare_line_contacts
+from tribodyn.plot.film_dynamics import film_response, film_transient
+from tribodyn.plot.film_pressure import film_pressure
+from tribodyn.plot.film_stiffness import film_stiffness
 from tribodyn.plot.friction import friction
 from tribodyn.plot.gear_pair import gear_pair
+from tribodyn.plot.line_contact import line_contact
 from tribodyn.plot.mesh_force import mesh_force
 from tribodyn.plot.mesh_stiffness import mesh_stiffness
 from tribodyn.plot.path_of_contact import path_of_contact
@@ -24,10 +30,18 @@ __all__ = [
     "acceleration",
     "bearing_force",
     "bearing_spectrum",
+    "compare_line_contacts",
     "drawing",
     "film",
+    "film_along_path",
+    "film_over_time",
+    "film_pressure",
+    "film_response",
+    "film_stiffness",
+    "film_transient",
     "friction",
     "gear_pair",
+    "line_contact",
     "mesh_force",
     "mesh_stiffness",
     "path_of_contact",

@@ -14,13 +14,15 @@ __all__ = ["event_lines"]
 _CHARACTER, _LEVEL = 0.015, 14
 
 
-def event_lines(places: Iterable[tuple[str, float]]) -> dict[str, Any]:
+def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> dict[str, Any]:
     """Mark positions on the horizontal axis.
 
     Parameters
     ----------
     places : iterable of tuple
         Name and position. Names at one position are joined.
+    share : float
+        Part of the width of the figure that the axis takes.
 
     Returns
     -------
@@ -61,14 +63,14 @@ def event_lines(places: Iterable[tuple[str, float]]) -> dict[str, Any]:
             "font": {"size": 12, "color": MUTED},
             **common,
         }
-        for x, level in zip(names, _levels(names), strict=True)
+        for x, level in zip(names, _levels(names, share), strict=True)
     ]
     return {"shapes": shapes, "annotations": notes}
 
 
-def _levels(names: dict[float, str]) -> list[int]:
+def _levels(names: dict[float, str], share: float) -> list[int]:
     """Raise a name by one level where it would run into its left neighbour."""
-    span = max(names, default=0.0) - min(names, default=0.0)
+    span = (max(names, default=0.0) - min(names, default=0.0)) / share
     levels = [0] * bool(names)
     for (left, first), (right, second) in pairwise(names.items()):
         needed = _CHARACTER * (1 + 0.5 * (len(first) + len(second))) * span

@@ -1,4 +1,4 @@
-"""Oil film thickness along the path of contact, against the roughness."""
+"""Oil film thickness along the path of contact, and its ratio to the roughness."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 
-__all__ = ["film"]
+__all__ = ["film", "no_film"]
 
 #: Column of the mesh table, name in the legend, and colour.
 _FILMS = (
@@ -30,18 +30,52 @@ def _columns(mesh: Any) -> list[tuple[str, str, str]]:
     return [row for row in _FILMS if getattr(mesh, row[0], None) is not None]
 
 
-def _no_film(result: Any) -> str:
+def no_film(result: Any) -> str:
+    """Say why a result has no oil film.
+
+    Parameters
+    ----------
+    result : Result or MeshTable
+        Anything that has a mesh table.
+
+    Returns
+    -------
+    str
+        Empty if it has one.
+    """
     if _columns(result.mesh):
         return ""
-    return 'No film model was chosen, so no oil film was computed. Choose film.model = "moes".'
+    return 'No film model was chosen, so no oil film was computed. Choose film.model = "newton".'
+
+
+def _thickness(mesh: Any, angle: Any) -> Panel:
+    unit = display_unit("film_thickness")
+    traces = [
+        line(angle, displayed("film_thickness", pair_life(mesh, row)[1]), name, color, unit=unit)
+        for row, name, color in _columns(mesh)
+    ]
+    roughness = displayed("film_thickness", np.full_like(angle, mesh.composite_roughness))
+    traces.append(line(angle, roughness, "roughness", MUTED, unit=unit, dash="dot"))
+    return Panel(axis_label("film_thickness"), traces, {"rangemode": "tozero"}, height=1.3)
+
+
+def _ratio(mesh: Any, angle: Any) -> list[Panel]:
+    """Panel of the film ratio; none for ideal flanks."""
+    if mesh.film_ratio is None:
+        return []
+    traces = [
+        line(angle, pair_life(mesh, "film_ratio")[1], "film ratio", TOTAL),
+        line(angle, np.ones_like(angle), "asperities touch below", MUTED, dash="dot"),
+    ]
+    return [Panel(axis_label("film_ratio"), traces, {"rangemode": "tozero"}, height=0.8)]
 
 
 @drawing(
     "film",
     heading="Oil film",
-    caption="Thickness of the oil film between the flanks. Where it comes near the composite "
-    "roughness, the highest asperities touch.",
-    missing=_no_film,
+    caption="Thickness of the oil film between the flanks, and its ratio to the composite "
+    "roughness. Where the ratio comes near one, the highest asperities touch.",
+    missing=no_film,
 )
 def film(result: Any) -> Any:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear.
@@ -57,28 +91,11 @@ def film(result: Any) -> Any:
     """
     mesh = result.mesh
     angle = driving_roll_angle(mesh)
-    unit = display_unit("film_thickness")
-    columns = [(row, pair_life(mesh, row[0])[1]) for row in _columns(mesh)]
-    traces = [
-        line(angle, displayed("film_thickness", values), name, color, unit=unit)
-        for (_, name, color), values in columns
-    ]
-    roughness = np.full_like(angle, mesh.composite_roughness)
-    traces.append(
-        line(
-            angle,
-            displayed("film_thickness", roughness),
-            "roughness",
-            MUTED,
-            unit=unit,
-            dash="dot",
-        )
-    )
-    (_, place, _), thinnest = columns[-1]
-    least = rounded("film_thickness", float(np.min(thinnest)))
+    name, place, _ = _columns(mesh)[-1]
+    least = rounded("film_thickness", float(np.min(pair_life(mesh, name)[1])))
     return stack(
         f"The oil film {place} is never below {least}",
         roll_angle_label(mesh),
-        [Panel(axis_label("film_thickness"), traces, {"rangemode": "tozero"}, height=1.3)],
+        [_thickness(mesh, angle), *_ratio(mesh, angle)],
         event_lines(roll_angle_positions(mesh).items()),
     )

@@ -17,6 +17,8 @@ SECTIONS = (
     "mesh_stiffness",
     "friction",
     "film",
+    "film_pressure",
+    "film_stiffness",
     "mesh_force",
     "transmission_error",
     "acceleration",

@@ -23,6 +23,10 @@ HEADLINES = (
     "rms_bearing_force_loa_pinion",
     "mean_friction_coefficient",
     "contact_loss_share",
+    "central_film_pitch_point",
+    "minimum_film_over_path",
+    "minimum_film_ratio",
+    "oil_film_stiffness_pitch_point",
 )
 
 _STATISTICS = {
@@ -36,6 +40,7 @@ _STATISTICS = {
 #: Names whose words do not follow from their parts.
 _WORDS = {
     "omega_max_dt": "omega_max dt",
+    "minimum_film_over_path": "Minimum film over the path of contact",
     "line_of_action_indicator": "Bearing force across over along the line of action",
 }
 _START = re.compile(rf"^({'|'.join(_STATISTICS)})_")
@@ -45,6 +50,7 @@ _ENDINGS = (
     (re.compile(r"_(loa)$"), "along the line of action"),
     (re.compile(r"_(oloa)$"), "across the line of action"),
     (re.compile(r"_([A-E])$"), "at {}"),
+    (re.compile(r"_(pitch_point)$"), "at the pitch point"),
 )
 
 

@@ -55,6 +55,7 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
         ("Speed", f"{_shown('speed', operation.speed)} ({operation.speed_of})"),
         ("Torque", f"{_shown('torque', operation.torque)} ({operation.speed_of})"),
         ("Driver", pair.driver),
+        ("Film model", case.film.model),
         ("Friction law", case.friction.law),
         ("Stiffness model", case.stiffness.model),
         ("Structure", case.dynamics.model),

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
+    from tribodyn.study.films import film_over_operation
     from tribodyn.study.pipeline import run
     from tribodyn.study.read import read_case
     from tribodyn.study.result import Result
     from tribodyn.study.summary_names import SUMMARY
 
-__all__ = ["SUMMARY", "Case", "Result", "read_case", "run"]
+__all__ = ["SUMMARY", "Case", "Result", "film_over_operation", "read_case", "run"]
 
 _HOMES = {
     "Case": "case",
+    "film_over_operation": "films",
     "read_case": "read",
     "run": "pipeline",
     "Result": "result",

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["Case"]
 
 #: Keys whose choice decides which other keys of their table are allowed.
-_SELECTORS = ("stiffness.model", "friction.law", "dynamics.model", "solver.method")
+_SELECTORS = ("film.model", "stiffness.model", "friction.law", "dynamics.model", "solver.method")
 
 
 class Case(Section):

@@ -1,4 +1,4 @@
-"""What runs but deserves a second look: gear bodies, pressure and contact loss of a case."""
+"""What runs but deserves a second look: gear bodies, oil film, pressure and contact loss."""
 
 from __future__ import annotations
 
@@ -46,7 +46,17 @@ def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
     found = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         found += [*_rim(case, name, gear), *_mass(case, name, gear)]
-    return tuple(found)
+    return (*found, *_starved(case))
+
+
+def _starved(case: Case) -> Iterator[ModelWarning]:
+    if case.film.inlet == "zero" and case.film.domain is not None:
+        yield ModelWarning(
+            "starved-inlet",
+            f"the oil of every contact begins {-case.film.domain[0]:g} Hertzian half widths before "
+            "its centre: a starved contact, whose film may rise with the load and is thinner than "
+            'a flooded one, which film.inlet = "flooded" gives',
+        )
 
 
 def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
@@ -85,7 +95,7 @@ def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
 
 
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
-    """Find a load that no gear stands.
+    """Find a load that no gear stands, and flanks that the film does not keep apart.
 
     Parameters
     ----------
@@ -96,14 +106,32 @@ def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
     -------
     tuple of ModelWarning
     """
+    return (*_pressure(mesh), *_mixed(mesh))
+
+
+def _pressure(mesh: MeshTable) -> Iterator[ModelWarning]:
     greatest = float(mesh.hertz_pressure.max())
-    if greatest <= _STEEL:
-        return ()
-    message = (
-        f"the Hertzian pressure reaches {greatest * 1e-9:.4g} GPa; gear steel stands no more than "
-        f"{_STEEL * 1e-9:g} GPa. Check torque and face width"
-    )
-    return (ModelWarning("hertz-pressure", message),)
+    if greatest > _STEEL:
+        yield ModelWarning(
+            "hertz-pressure",
+            f"the Hertzian pressure reaches {greatest * 1e-9:.4g} GPa; gear steel stands no more "
+            f"than {_STEEL * 1e-9:g} GPa. Check torque and face width",
+        )
+
+
+def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
+    """A film below the roughness carries only a part of the load; the models give it the whole."""
+    if mesh.film_ratio is None:
+        return
+    least = float(mesh.film_ratio[mesh.in_contact].min())
+    if least < 1.0:
+        yield ModelWarning(
+            "mixed-lubrication",
+            f"the film ratio falls to {least:.3g}: below 1 asperities touch and carry a part of "
+            "the load, while the film model gives the whole of it to the oil. Film and film "
+            "stiffness are those of smooth flanks; take a thicker oil, smoother flanks or more "
+            "speed",
+        )
 
 
 def motion_cautions(case: Case, response: Response) -> tuple[ModelWarning, ...]:

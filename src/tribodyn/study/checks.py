@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from tribodyn.errors import Problem
 from tribodyn.study.given import Given
-from tribodyn.study.options import friction_problems, stiffness_problems
+from tribodyn.study.options import film_problems, friction_problems, stiffness_problems
 
 __all__ = ["DEFAULT_MARK", "cross_problems"]
 
@@ -17,6 +18,9 @@ DEFAULT_MARK = "default"
 Found = Iterator[tuple[str, Problem]]
 
 _PROPERTIES = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient")
+#: Options of the friction of the film, and the properties that only they need.
+_HEAT = ("inlet_heating", "flash_temperature")
+_THERMAL = ("temperature_viscosity_coefficient", "thermal_conductivity")
 _SAME = "They are two ways of saying the same thing"
 
 
@@ -61,7 +65,7 @@ def _size(given: Given) -> Found:
 def _lubricant(given: Given) -> Found:
     if "lubricant" not in given:
         return
-    present = [name for name in _PROPERTIES if f"lubricant.{name}" in given]
+    present = [name for name in (*_PROPERTIES, *_THERMAL) if f"lubricant.{name}" in given]
     if "lubricant.name" in given:
         for name in present:
             yield _both(given, "lubricant.name", f"lubricant.{name}")
@@ -74,7 +78,7 @@ def _lubricant(given: Given) -> Found:
 
 
 def _needs(given: Given) -> Found:
-    """What the friction law and the film formula need to know."""
+    """What the friction law and the film model need to know."""
     law = given.value("friction.law", "none")
     film = given.value("film.model", "none")
     tribological = law not in ("none", "constant")
@@ -85,10 +89,41 @@ def _needs(given: Given) -> Found:
         remedy = 'Add [lubricant] with for example name = "80W"'
         yield "lubricant", Problem("the table [lubricant] is missing", "", why, remedy)
     rough = ("composite_roughness", "pinion.roughness_rms", "wheel.roughness_rms")
-    if tribological and not any(f"gears.{name}" in given for name in rough):
+    if (
+        tribological
+        and not _shears_film(law)
+        and not any(f"gears.{name}" in given for name in rough)
+    ):
         why, remedy = f"{users[0]} needs it", 'Add composite_roughness = "0.5 um" to [gears]'
         what = "composite_roughness is missing"
         yield "gears.composite_roughness", Problem(what, "", why, remedy)
+
+
+def _shears_film(law: Any) -> bool:
+    """Whether a friction law works on the solved film, and knows no roughness."""
+    from tribodyn.friction import LAWS
+
+    return law in LAWS and LAWS[law].needs_film
+
+
+def _film_of_friction(given: Given) -> Found:
+    """What a law that shears the solved film needs besides an oil."""
+    from tribodyn.ehl import FILM_MODELS
+
+    law, film = given.value("friction.law", "none"), given.value("film.model", "none")
+    if not _shears_film(law) or film not in FILM_MODELS:
+        return
+    if not FILM_MODELS[film].method:
+        what = f'law = "{law}" and film model = "{film}"'
+        why = "That law shears the solved film, and this model gives no pressure"
+        yield "friction.law", Problem(what, "", why, 'Set model = "newton" in [film]')
+    heated = [key for key in _HEAT if given.value(f"friction.{key}")]
+    if heated and "lubricant" in given and "lubricant.name" not in given:
+        for name in _THERMAL:
+            if f"lubricant.{name}" not in given:
+                remedy = f"Add {name}, or set {heated[0]} = false in [friction]"
+                why = f"{heated[0]} = true needs it"
+                yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
 
 
 def _dynamics(given: Given) -> Found:
@@ -130,7 +165,7 @@ def _assumed(given: Given, faulty: set[str]) -> Found:
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _roughness, _face_width, _size, _lubricant, _needs, _dynamics, _solver,
+    _roughness, _face_width, _size, _lubricant, _needs, _film_of_friction, _dynamics, _solver,
 )  # fmt: skip
 
 
@@ -153,6 +188,8 @@ def cross_problems(given: Given, faulty: set[str]) -> list[tuple[str, Problem]]:
     found += _assumed(given, faulty)
     if "stiffness.model" not in faulty:
         found += stiffness_problems(given, given.value("stiffness.model", "potential-energy"))
+    if "film.model" not in faulty:
+        found += film_problems(given, given.value("film.model", "none"), faulty)
     if "friction.law" not in faulty:
         found += friction_problems(given, given.value("friction.law", "none"))
     return [(key, problem) for key, problem in found if key not in faulty]

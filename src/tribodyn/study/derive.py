@@ -158,7 +158,14 @@ def lubricant(data: LubricantData) -> Lubricant:
         return from_library(data.name, data.temperature)
     properties = (data.dynamic_viscosity, data.density, data.pressure_viscosity_coefficient)
     viscosity, density, coefficient = (float(value or 0.0) for value in properties)
-    return Lubricant(viscosity, density, coefficient, temperature=data.temperature)
+    return Lubricant(
+        viscosity,
+        density,
+        coefficient,
+        temperature=data.temperature,
+        temperature_viscosity_coefficient=data.temperature_viscosity_coefficient,
+        thermal_conductivity=data.thermal_conductivity,
+    )
 
 
 def unused_lubricant() -> Lubricant:

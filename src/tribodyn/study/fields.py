@@ -95,7 +95,8 @@ _EXAMPLES = {
     "pair_stiffness": '"2e8 N/m"', "mesh_stiffness": '"2.5e8 N/m"', "roll_angle": '"0.5 rad"',
     "sliding_speed": '"0.001 m/s"', "bearing_stiffness": '"3.5e9 N/m"', "backlash": '"0.05 mm"',
     "bearing_damping": '"4000 N*s/m"', "mesh_damping": '"900 N*s/m"',
-    "transmission_error": '"2 um"', "friction_coefficient": "0.05",
+    "transmission_error": '"2 um"', "friction_coefficient": "0.05", "eyring_stress": '"5 MPa"',
+    "temperature_viscosity_coefficient": '"0.04 1/K"', "thermal_conductivity": '"0.13 W/m/K"',
 }  # fmt: skip
 
 
@@ -113,6 +114,7 @@ def number(
     meaning: str = "",
     positive: bool = False,
     several: bool = False,
+    example: str = "",
 ) -> Any:
     """Declare a real field; ``of`` names its quantity in the nomenclature, ranges are SI."""
     quantity = QUANTITIES.get(of)
@@ -126,14 +128,16 @@ def number(
         high=high,
         positive=positive,
         origin=origin,
-        example=_EXAMPLES.get(of, "1.0"),
+        example=example or _EXAMPLES.get(of, "1.0"),
     )
     return _field(default, spec)
 
 
-def numbers(low: float, high: float, origin: str, *, of: str = "", meaning: str) -> Any:
+def numbers(
+    low: float, high: float, origin: str, *, of: str = "", meaning: str, example: str = ""
+) -> Any:
     """Declare an optional list of real values; arguments as for :func:`number`."""
-    return number(None, low, high, origin, of=of, meaning=meaning, several=True)
+    return number(None, low, high, origin, of=of, meaning=meaning, several=True, example=example)
 
 
 def integer(
@@ -153,7 +157,7 @@ def choice(
     return _field(default, Spec("choice", meaning, names=look_up, later=later, example=example))
 
 
-def flag(default: bool, *, meaning: str) -> Any:
+def flag(default: bool | None, *, meaning: str) -> Any:
     """Declare a field that is true or false."""
     return _field(default, Spec("flag", meaning))
 

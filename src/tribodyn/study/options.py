@@ -1,4 +1,4 @@
-"""Which options belong to the chosen stiffness model and friction law, and what they default to."""
+"""Which options belong to the chosen film, stiffness and friction models, and their defaults."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from tribodyn.study.given import Given
 
 __all__ = [
     "TABLE_FORMS",
+    "film_problems",
     "friction_problems",
     "left_behind",
     "model_options",
@@ -25,15 +26,24 @@ _RECTANGULAR = ("single_pair_stiffness", "double_pair_stiffness")
 
 
 def model_options(section: str, name: str) -> Mapping[str, Any]:
-    """Options of a stiffness model or friction law as the case file writes them, with defaults.
+    """Options of a film model, stiffness model or friction law, with their defaults.
 
     Parameters
     ----------
     section : str
-        ``"stiffness"`` or ``"friction"``.
+        ``"film"``, ``"stiffness"`` or ``"friction"``.
     name : str
         Name of a known model or law.
+
+    Returns
+    -------
+    mapping of str to object
+        Names as the case file writes them.
     """
+    if section == "film":
+        from tribodyn.ehl import FILM_MODELS
+
+        return FILM_MODELS[name].options
     if section == "friction":
         from tribodyn.friction import LAWS
 
@@ -66,12 +76,14 @@ def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, 
         key
         for selector, name in choices.items()
         for key in given.keys(selector.partition(".")[0])
-        if key not in changes and key != selector and not _takes(selector, name, key)
+        if key not in changes and key != selector and not _takes(given, selector, name, key)
     }
 
 
-def _takes(selector: str, name: str, key: str) -> bool:
+def _takes(given: Given, selector: str, name: str, key: str) -> bool:
     section, _, option = key.rpartition(".")
+    if key == "film.stiffness":
+        return given.value(key) in _film_stiffnesses(name)
     if selector == "dynamics.model":
         return name != "torsional" or not option.startswith("bearing_")
     if selector == "solver.method":
@@ -88,6 +100,60 @@ def _foreign(given: Given, section: str, selector: str, name: str) -> Found:
         if option != selector and option not in known:
             what = f'{given.show(key)} does not belong to {selector} = "{name}"'
             yield key, Problem(what, "", listing, f"Remove it, or choose another {selector}")
+
+
+def _film_stiffnesses(name: str) -> tuple[str, ...]:
+    from tribodyn.ehl import FILM_MODELS
+
+    return FILM_MODELS[name].stiffness_kinds
+
+
+def film_problems(given: Given, name: str, faulty: set[str]) -> Found:
+    """Check the options of the film model.
+
+    Parameters
+    ----------
+    given : Given
+        What the user gave.
+    name : str
+        Name of a known model.
+    faulty : set of str
+        Keys already found faulty.
+    """
+    yield from _foreign(given, "film", "model", name)
+    key, kinds = "film.stiffness", _film_stiffnesses(name)
+    if given.value(key, "none") not in kinds:
+        why = f"It has: {', '.join(kinds)}"
+        remedy = 'Choose one of these, or model = "newton", which has all'
+        what = f'{given.show(key)} does not belong to model = "{name}"'
+        yield key, Problem(what, "", why, remedy)
+    if "nodes" in model_options("film", name) and not faulty & {"film.nodes", "film.domain"}:
+        yield from _grid(given)
+
+
+def _grid(given: Given) -> Found:
+    """Check what nodes, inlet and domain of a solved contact say together."""
+    nodes = given.value("film.nodes", 513)
+    if nodes - 1 != 1 << (nodes - 1).bit_length() - 1:
+        below = 1 << (nodes - 1).bit_length() - 1
+        why = "Grids are halved: nodes are a power of two plus one"
+        remedy = f"Write nodes = {below + 1} or nodes = {2 * below + 1}"
+        yield "film.nodes", Problem(f"nodes = {nodes}", "", why, remedy)
+    starved, key = given.value("film.inlet", "flooded") == "zero", "film.domain"
+    if starved and key not in given:
+        why = 'inlet = "zero" starves the contact from the beginning of a stated domain on'
+        remedy = "Add domain = [-2.5, 1.5], in Hertzian half widths"
+        yield key, Problem('domain is missing for inlet = "zero"', "", why, remedy)
+    if key not in given:
+        return
+    if not starved:
+        what = f'{given.show(key)} does not belong to inlet = "flooded"'
+        why = "A flooded contact has the domain that its film demands"
+        yield key, Problem(what, "", why, 'Remove it, or add inlet = "zero"')
+    ends = given.value(key)
+    if len(ends) != 2 or not (ends[0] <= -1.5 and ends[1] >= 1.1):
+        why = "It is two numbers in Hertzian half widths: -1.5 or less, and 1.1 or more"
+        yield key, Problem(given.show(key), "", why, "Write for example domain = [-2.5, 1.5]")
 
 
 def _both(given: Given, one: str, other: str) -> Problem:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case import Case
 
-__all__ = ["run"]
+__all__ = ["model_settings", "run"]
 
 
 def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Result:
@@ -60,7 +60,7 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     """
     with placed(case), collected() as found:
         progress.start("tooth contact")
-        mesh = _mesh(case)
+        mesh = _mesh(case, progress)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping)
         progress.finish()
@@ -74,7 +74,7 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
 
 
 def _options(case: Case, section: str, name: str) -> dict[str, Any]:
-    """Options in force of a stiffness model or friction law, as the model calls them."""
+    """Options in force of a film model, stiffness model or friction law, as the model has them."""
     values = effective(case)
     found = {key: values[f"{section}.{key}"] for key in model_options(section, name)}
     given = {key: value for key, value in found.items() if value is not None}
@@ -84,20 +84,40 @@ def _options(case: Case, section: str, name: str) -> dict[str, Any]:
     return given
 
 
-def _mesh(case: Case) -> MeshTable:
+def model_settings(case: Case) -> dict[str, Any]:
+    """Material, oil, stiffness and film of a case, as the mesh asks for them.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    dict of str to object
+        Keywords of :func:`tribodyn.mesh.build`.
+    """
+    return {
+        "material": case.material_properties,
+        "stiffness_model": case.stiffness.model,
+        "stiffness_options": _options(case, "stiffness", case.stiffness.model),
+        "lubricant": case.lubricant_properties or derive.unused_lubricant(),
+        "composite_roughness": case.composite_roughness or 0.0,
+        "film_model": case.film.model,
+        "film_options": _options(case, "film", case.film.model),
+    }
+
+
+def _mesh(case: Case, progress: Progress = SILENT) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle."""
     from tribodyn.mesh import build
 
     return build(
         case.gear_pair,
-        material=case.material_properties,
-        stiffness_model=case.stiffness.model,
-        stiffness_options=_options(case, "stiffness", case.stiffness.model),
-        lubricant=case.lubricant_properties or derive.unused_lubricant(),
         friction_law=case.friction.law,
         friction_options=_options(case, "friction", case.friction.law),
-        composite_roughness=case.composite_roughness or 0.0,
-        film_model=case.film.model,
         pinion_speed=case.pinion_speed,
         pinion_torque=case.pinion_torque,
+        progress=progress,
+        **model_settings(case),
     )

@@ -21,6 +21,12 @@ _KEYS = {
     "pinion_speed": "operation.speed",
     "pinion_torque": "operation.torque",
     "minimum_sliding_speed": "friction.minimum_sliding_speed",
+    "lubricant": "lubricant.name",
+    "eyring_stress": "friction.eyring_stress",
+    "positions": "film.positions",
+    "nodes": "film.nodes",
+    "domain": "film.domain",
+    "inlet": "film.inlet",
 }
 
 

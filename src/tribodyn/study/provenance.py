@@ -62,13 +62,15 @@ def spec_of(case: Case, key: str) -> Spec | None:
 
 
 def _option_default(case: Case, key: str) -> Any:
-    """Default of an option of the chosen stiffness model or friction law."""
+    """Default of an option of the chosen film model, stiffness model or friction law."""
     section, _, name = key.rpartition(".")
     if key == "stiffness.reference" and case.stiffness.model == "potential-energy":
         # A gear without a bore has no shaft seat to measure against.
         bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
         return "bore" if all(bores) else "rim"
-    chosen = {"stiffness": case.stiffness.model, "friction": case.friction.law}.get(section)
+    chosen = {
+        "film": case.film.model, "stiffness": case.stiffness.model, "friction": case.friction.law,
+    }.get(section)  # fmt: skip
     return model_options(section, chosen).get(name) if chosen else None
 
 

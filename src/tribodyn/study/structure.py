@@ -23,6 +23,12 @@ def _friction_laws() -> list[str]:
     return LAWS.names()
 
 
+def _shear_models() -> list[str]:
+    from tribodyn.ehl.shear_models import SHEAR_MODELS
+
+    return list(SHEAR_MODELS)
+
+
 class Stiffness(Section):
     """The ``[stiffness]`` table: a model and its options; None where the model does not use one."""
 
@@ -87,6 +93,19 @@ class Friction(Section):
     minimum_sliding_speed: float | None = number(
         None, 1e-9, 10.0, _GUARD, of="sliding_speed", meaning="floor that keeps the law finite"
     )
+    shear_model: str | None = choice(
+        None, _shear_models, meaning="how the oil film shears under the solved pressure"
+    )
+    eyring_stress: float | None = number(
+        None, 1e5, 1e8, "oils lie between 2 and 10 MPa", of="eyring_stress"
+    )
+    inlet_heating: bool | None = flag(
+        None, meaning="thin the film by the heat that shear makes in the inlet"
+    )
+    flash_temperature: bool | None = flag(
+        None, meaning="take the viscosity at the mean temperature of the film"
+    )
+    rolling: bool | None = flag(None, meaning="add the rolling traction to the sliding one")
 
 
 class Dynamics(Section):

@@ -46,6 +46,7 @@ def summarize(result: Result) -> dict[str, float]:
     values: dict[str, Any] = {
         **geometry(result.case),
         **_mesh_figures(result.mesh),
+        **_film_figures(result.mesh),
         **_force_figures(result, samples),
         **_error_figures(result, samples),
         **_friction_figures(result.mesh, samples),
@@ -60,18 +61,32 @@ def summarize(result: Result) -> dict[str, float]:
 
 
 def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
-    figures = {
+    return {
         "mesh_frequency": mesh.mesh_frequency,
         "static_mesh_force": mesh.total_normal_force,
         "mean_mesh_stiffness": mesh.mean_mesh_stiffness,
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
         "maximum_hertz_pressure": mesh.hertz_pressure.max(),
     }
-    for name in ("minimum_film", "central_film"):
-        film = getattr(mesh, name)
-        if film is not None:
-            figures[name] = film[mesh.in_contact].min()
-    return figures
+
+
+def _film_figures(mesh: MeshTable) -> dict[str, Any]:
+    """What the film model gives: least values over the path, and the pair at the pitch point."""
+    least = {
+        "central_film": mesh.central_film,
+        "minimum_film_over_path": mesh.minimum_film,
+        "minimum_film_ratio": mesh.film_ratio,
+    }
+    figures: dict[str, Any] = {
+        name: column[mesh.in_contact].min() for name, column in least.items() if column is not None
+    }
+    if mesh.film_pressure is not None:
+        figures["maximum_film_pressure"] = mesh.film_pressure.max()
+    at_pitch_point = {
+        "central_film_pitch_point": mesh.at_pitch_point("central_film"),
+        "oil_film_stiffness_pitch_point": mesh.at_pitch_point("film_stiffness"),
+    }
+    return figures | {name: value for name, value in at_pitch_point.items() if value is not None}
 
 
 def _force_figures(result: Result, samples: FineSamples) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tribodyn.study.fields import choice, number
+from tribodyn.study.fields import choice, integer, number, numbers
 from tribodyn.study.section import Section
 
 __all__ = ["Film", "LubricantData", "MaterialData", "Operation"]
@@ -44,6 +44,13 @@ class LubricantData(Section):
     pressure_viscosity_coefficient: float | None = number(
         None, 1e-10, 1e-7, "oils lie between 5 and 40 1/GPa", of="pressure_viscosity_coefficient"
     )
+    temperature_viscosity_coefficient: float | None = number(
+        None, 0.001, 0.3, "gear oils lie between 0.02 and 0.07 1/K",
+        of="temperature_viscosity_coefficient",
+    )  # fmt: skip
+    thermal_conductivity: float | None = number(
+        None, 0.01, 2.0, "mineral oil has about 0.13 W/m/K", of="thermal_conductivity"
+    )
     temperature: float | None = number(
         None, 233.15, 473.15, "gear oils work between -40 and 200 degC", of="temperature"
     )
@@ -65,11 +72,25 @@ class Operation(Section):
 
 
 class Film(Section):
-    """The ``[film]`` table: which formula gives the oil film."""
+    """The ``[film]`` table: how the oil film is found; None where the model does not use a key."""
 
-    model: str = choice(
-        "none", _film_models, later=("newton", "multigrid"), meaning="film thickness formula"
-    )
+    model: str = choice("none", _film_models, meaning="how the oil film is found")
     stiffness: str = choice(
-        "none", ("none",), later=("tangent", "secant"), meaning="stiffness of the oil film"
+        "none", ("none", "tangent", "secant", "seed"),
+        meaning="stiffness of the oil film in series with the teeth",
+    )  # fmt: skip
+    nodes: int | None = integer(
+        None, 65, 16385, "a power of two plus one", example="513",
+        meaning="nodes of each solved contact",
+    )  # fmt: skip
+    positions: int | None = integer(
+        None, 8, 200, "fewer miss how the film changes, more only cost time", example="30",
+        meaning="positions on the path of contact at which the film is solved",
+    )  # fmt: skip
+    inlet: str | None = choice(
+        None, ("flooded", "zero"), meaning="oil supply: plenty, or none before the domain begins"
     )
+    domain: tuple[float, ...] | None = numbers(
+        -100.0, 10.0, "a contact is wetted over 1.5 to 20 half widths", example="-2.5, 1.5",
+        meaning="first and last position of each solved contact in Hertzian half widths",
+    )  # fmt: skip

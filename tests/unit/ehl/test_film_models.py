@@ -157,8 +157,10 @@ def test_groups_of_moes_follow_from_those_of_dowson_and_higginson():
 
 
 def test_models_by_name():
-    assert FILM_MODELS.names() == ["none", "dowson-higginson", "pan-hamrock", "moes"]
-    none, dowson, pan, moes = (FILM_MODELS[name] for name in FILM_MODELS)
+    formulas = ["dowson-higginson", "pan-hamrock", "moes"]
+    assert FILM_MODELS.names() == ["none", "newton", "multigrid", *formulas]
+    none, newton, multigrid, dowson, pan, moes = (FILM_MODELS[name] for name in FILM_MODELS)
+    assert (newton.method, multigrid.method, moes.method) == ("newton", "multigrid", "")
     assert (none.central, none.minimum) == (None, None)
     assert (dowson.central, dowson.minimum) == (dowson_toyoda_central, dowson_1968_minimum)
     assert (pan.central, pan.minimum) == (pan_hamrock_central, pan_hamrock_minimum)

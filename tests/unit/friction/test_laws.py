@@ -7,10 +7,25 @@ import dataclasses
 import numpy as np
 import pytest
 
+from tribodyn.ehl import FilmState
 from tribodyn.errors import InputError
 from tribodyn.friction import LAWS, TribologicalContact, benedict_kelly, constant, none, xu_2007
+from tribodyn.lubricant import Lubricant
 
 OPTIONS = {"constant": {"coefficient": 0.05}}
+
+
+def hertz_film():
+    """Three contacts with flat gaps under the Hertz pressure."""
+    x = np.linspace(-1.0, 1.0, 201)
+    pressures = np.array([[0.8e9], [0.9e9], [0.8e9]])
+    return FilmState(
+        1.2e-4 * x * np.ones((3, 1)),
+        pressures * np.sqrt(1.0 - x**2),
+        np.full((3, 201), 1e-6),
+        Lubricant(0.082, 880.0, 2.19e-8),
+        2.2e11,
+    )
 
 
 def contact(**changes):
@@ -23,12 +38,13 @@ def contact(**changes):
         "equivalent_radius": np.array([7e-3, 8e-3, 8e-3]),
         "dynamic_viscosity": 0.082,
         "composite_roughness": 0.4e-6,
+        "film": hertz_film(),
     }
     return TribologicalContact(**{**values, **changes})
 
 
 def test_names():
-    assert set(LAWS.names()) >= {"none", "constant", "benedict-kelly", "xu-2007"}
+    assert set(LAWS.names()) >= {"none", "constant", "benedict-kelly", "xu-2007", "ehl"}
 
 
 @pytest.mark.parametrize("name", LAWS.names())

@@ -10,7 +10,13 @@ import numpy as np
 import pytest
 
 from tribodyn.errors import InputError
-from tribodyn.lubricant import agma_925_coefficient, from_library, library
+from tribodyn.lubricant import (
+    agma_925_coefficient,
+    from_library,
+    library,
+    walther_slope,
+    walther_viscosity,
+)
 
 GRADES = (32, 46, 68, 100, 150, 220, 320, 460)
 UNITS = {
@@ -19,6 +25,8 @@ UNITS = {
     "kinematic_viscosity": "m^2/s",
     "density": "kg/m^3",
     "pressure_viscosity_coefficient": "1/Pa",
+    "temperature_viscosity_coefficient": "1/K",
+    "thermal_conductivity": "W/m/K",
 }
 
 
@@ -49,7 +57,8 @@ def test_80w_is_as_printed():
     assert oil.pressure_viscosity_coefficient == 2.19e-8
     assert oil.temperature == pytest.approx(40 + 273.15)
     assert "table 1" in oil.source
-    assert oil.assumptions == ()
+    assert len(oil.assumptions) == 1
+    assert "temperature-viscosity coefficient" in oil.assumptions[0]
 
 
 def test_75w90_says_how_far_its_two_viscosities_are_apart():
@@ -62,6 +71,57 @@ def test_75w90_says_how_far_its_two_viscosities_are_apart():
     assert any("3.6 %" in assumption for assumption in oil.assumptions)
     estimate = agma_925_coefficient(0.0298, "polyalphaolefin")
     assert oil.pressure_viscosity_coefficient == pytest.approx(estimate, rel=1e-3)
+
+
+def line_through_index(index, known):
+    """Viscosity at 40 and 100 degC of a line of this viscosity index through one known point."""
+    temperature, viscosity = known
+
+    def ends(at_100):
+        rows = np.array([INDEX_TABLE[grade][0] for grade in GRADES])
+        low, high = (np.interp(at_100, rows[:, 0], rows[:, column]) for column in (1, 2))
+        at_40 = low - index / 100.0 * (low - high)
+        if index > 100:
+            at_40 = high * (1.0 + 0.00715 * (index - 100.0)) ** (-math.log10(at_100))
+        return (313.15, at_40 * 1e-6), (373.15, at_100 * 1e-6)
+
+    low, high = 9.0, 18.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        above = walther_viscosity(temperature, ends(middle)) > viscosity
+        low, high = (low, middle) if above else (middle, high)
+    return ends(low)
+
+
+@pytest.mark.parametrize(
+    ("name", "index", "kinematic", "expansion"),
+    [("80W", 95.0, 82e-3 / 880.0, 7.7e-4), ("75W90-A", 147.0, 36.7e-6, 5.8e-4)],
+)
+def test_fall_of_viscosity_over_temperature_follows_from_the_index(
+    name, index, kinematic, expansion
+):
+    oil = from_library(name)
+    points = line_through_index(index, (oil.temperature, kinematic))
+    slope = walther_slope(oil.temperature, points) + expansion
+    assert oil.temperature_viscosity_coefficient == pytest.approx(slope, rel=0.02)
+
+
+@pytest.mark.parametrize("temperature", [313.15, 353.15])
+def test_iso_grade_knows_its_slope_over_temperature(temperature):
+    oil = from_library("ISO VG 100", temperature)
+    logarithms = [
+        math.log(from_library("ISO VG 100", temperature + step).dynamic_viscosity)
+        for step in (-0.01, 0.01)
+    ]
+    slope = (logarithms[0] - logarithms[1]) / 0.02
+    assert oil.temperature_viscosity_coefficient == pytest.approx(slope, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", library())
+def test_every_oil_knows_what_a_heated_film_needs(name):
+    oil = from_library(name)
+    assert 0.02 < oil.temperature_viscosity_coefficient < 0.08
+    assert 0.1 < oil.thermal_conductivity < 0.2
 
 
 @pytest.mark.parametrize("grade", GRADES)

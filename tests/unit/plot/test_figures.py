@@ -19,6 +19,7 @@ NAMES = (
     "mesh_stiffness",
     "friction",
     "film",
+    "film_stiffness",
     "mesh_force",
     "transmission_error",
     "acceleration",
@@ -27,7 +28,13 @@ NAMES = (
     "bearing_spectrum",
 )
 #: Axes that are pure numbers.
-UNITLESS = {"Mesh cycles", "Mesh harmonic", "Slide to roll ratio", "Friction coefficient"}
+UNITLESS = {
+    "Mesh cycles",
+    "Mesh harmonic",
+    "Slide to roll ratio",
+    "Friction coefficient",
+    "Film ratio",
+}
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +70,7 @@ def frictionless(result: Any) -> Any:
 
 def test_all_figures_are_known() -> None:
     # others may have registered their own
-    assert set(list(FIGURES)[: len(NAMES)]) == set(NAMES)
+    assert set(list(FIGURES)[: len(NAMES) + 1]) == {*NAMES, "film_pressure"}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -191,7 +198,7 @@ def test_figures_without_meaning_say_why(drawable: Any) -> None:
     with pytest.raises(InputError) as refused:
         FIGURES["film"](plain)
     assert str(refused.value) == (
-        'No film model was chosen, so no oil film was computed. Choose film.model = "moes".'
+        'No film model was chosen, so no oil film was computed. Choose film.model = "newton".'
     )
 
 

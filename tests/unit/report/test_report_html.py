@@ -105,7 +105,7 @@ def test_every_drawn_figure_has_its_place_and_its_data(page: str, outline: Outli
     found = re.search(r"const figures = (\{.*?\n\});", page, re.DOTALL)
     assert found
     figures = json.loads(found.group(1))
-    assert set(figures) == set(SECTIONS) - {"film"}
+    assert set(figures) == set(SECTIONS) - {"film", "film_pressure", "film_stiffness"}
     for name, figure in figures.items():
         assert f"figure-{name}" in outline.ids
         assert figure["data"]
@@ -134,6 +134,7 @@ def test_chips_name_the_method_and_the_models(page: str, drawable: Any) -> None:
     assert "<span>Method</span> steady" in page
     assert "<span>Composite roughness</span> 0.53 µm" in page
     assert "<span>Friction law</span> benedict-kelly" in page
+    assert "<span>Film model</span> newton" in page
     assert "<span>Stiffness model</span> potential-energy" in page
     chips = dict(operating_point(case))
     assert (chips["Method"], chips["Friction law"]) == ("transient", "none")

@@ -1,0 +1,46 @@
+"""One tooth pair from where it enters to where it leaves: pressure and film move along.
+
+Every position has its own load, radius of curvature and speed. The figure has a slider and a play
+button, and needs no network.
+
+Run it with a folder to keep the figure: ``python examples/07_film_along_path.py figures``.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import tribodyn as td
+from tribodyn.contact import effective_modulus, path_of_contact
+from tribodyn.ehl import solve_line_contacts
+from tribodyn.plot import film_along_path
+
+case = td.load_case("fzg-roughness")
+mesh, pair = td.run(case).mesh, case.gear_pair
+
+# The table counts pairs by the mesh cycles since they entered: its transpose is the life of a pair.
+life = mesh.in_contact.T
+kept = np.unique(np.linspace(0, life.sum() - 1, 31).round().astype(int))
+path, load, radius, speed = (
+    getattr(mesh, column).T[life][kept]
+    for column in ("path", "load_per_width", "equivalent_radius", "entrainment_speed")
+)
+steel, oil = case.material_properties, case.lubricant_properties
+films = solve_line_contacts(
+    load, radius, speed, oil, effective_modulus(steel, steel), nodes=513, keep_solutions=True
+)
+
+print("   path [mm]   load [N/mm]   radius [mm]   speed [m/s]   film [um]   thinnest [um]")
+for row in zip(path, load, radius, speed, films.central_film, films.minimum_film, strict=True):
+    print("{:12.3f}  {:12.1f}  {:12.3f}  {:12.3f}  {:10.4f}  {:14.4f}".format(
+        *np.array(row) * (1e3, 1e-3, 1e3, 1.0, 1e6, 1e6)))  # fmt: skip
+print(f"thinnest of all         {films.minimum_film.min() * 1e6:.4f} um")
+
+figure = film_along_path(films, path, path_of_contact=path_of_contact(pair))
+with tempfile.TemporaryDirectory() as scratch:
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.write_html(folder / "film-along-path.html", auto_play=False)
+    print("figures:", *sorted(found.name for found in folder.glob("film-along-*.html")))

@@ -1,0 +1,259 @@
+"""A line contact as the user gives it, checked and brought to one form."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.ehl.scales import ContactScales, contact_scales, moes_numbers
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+
+if TYPE_CHECKING:
+    from tribodyn.lubricant import Lubricant
+
+__all__ = ["ContactCase", "moes_case", "si_case"]
+
+#: Hertz pressure [Pa] up to which the viscosity laws are carried on, far above their data.
+_HIGHEST_PRESSURE = 4.05e9
+#: ln(viscosity ratio) at the Hertz pressure beyond which the law of Barus overflows at the spike.
+_GREATEST_GROWTH = 450.0
+#: Load numbers that the solvers were tried on, with room.
+_LOADS = (1e-4, 5e3)
+#: Film over radius beyond which the film is no thin film.
+_THICKEST = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class ContactCase:
+    """A checked contact: its numbers, its units and its oil.
+
+    Parameters
+    ----------
+    scales : ContactScales
+        Numbers of the equations.
+    hertz_pressure, half_width : float [Pa], [m]
+        Units of pressure and position; 1 in the dimensionless form.
+    load_per_width, equivalent_radius, entrainment_speed, effective_modulus : float
+        As given [N/m, m, m/s, Pa], or the natural units of the dimensionless form.
+    lubricant : Lubricant, optional
+        ``None`` in the dimensionless form.
+    compressible : bool
+        Whether the density rises with pressure.
+    """
+
+    scales: ContactScales
+    hertz_pressure: float
+    half_width: float
+    load_per_width: float
+    equivalent_radius: float
+    entrainment_speed: float
+    effective_modulus: float
+    lubricant: Lubricant | None
+    compressible: bool
+
+
+def _scalar(name: str, value: Any, unit: str) -> float:
+    """One finite number, or a message that names the field."""
+    try:
+        number = np.asarray(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            Problem(
+                what=f"{name} = {value!r}",
+                where=f"argument {name}",
+                why=f"it must be a number {unit}".rstrip(),
+            )
+        ) from error
+    if number.ndim:
+        raise InputError(
+            Problem(
+                what=f"{name} has the shape {number.shape}",
+                where=f"argument {name}",
+                why="one contact takes single numbers",
+                remedy="Use solve_line_contacts for arrays",
+            )
+        )
+    return float(number)
+
+
+def si_case(
+    load_per_width: Any,
+    equivalent_radius: Any,
+    entrainment_speed: Any,
+    lubricant: Any,
+    effective_modulus: Any,
+    viscosity_law: str,
+    compressible: bool,
+) -> ContactCase:
+    """Check a contact in SI.
+
+    Parameters
+    ----------
+    load_per_width : float [N/m]
+        Normal load per face width.
+    equivalent_radius : float [m]
+        Reduced radius of curvature.
+    entrainment_speed : float [m/s]
+        HALF the sum of the surface speeds.
+    lubricant : Lubricant
+        Oil at the temperature of the inlet.
+    effective_modulus : float [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+    viscosity_law : str
+        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
+    compressible : bool
+        Whether the density rises with pressure.
+
+    Returns
+    -------
+    ContactCase
+
+    Raises
+    ------
+    InputError
+        If a value is out of range; the message names it.
+    """
+    from tribodyn.lubricant import Lubricant
+
+    load = _scalar("load_per_width", load_per_width, "[N/m]")
+    radius = _scalar("equivalent_radius", equivalent_radius, "[m]")
+    speed = _scalar("entrainment_speed", entrainment_speed, "[m/s]")
+    modulus = _scalar("effective_modulus", effective_modulus, "[Pa]")
+    require_positive("load_per_width", load, "N/m", remedy="1 N/mm is 1000 N/m")
+    require_positive("equivalent_radius", radius, "m", remedy="8 mm are 8e-3 m")
+    require_positive(
+        "entrainment_speed",
+        speed,
+        "m/s",
+        remedy="A film needs a rolling motion: give half the sum of the surface speeds",
+    )
+    require_between("effective_modulus", modulus, 1e5, 1e13, "Pa", remedy="220 GPa are 2.2e11 Pa")
+    if not isinstance(lubricant, Lubricant):
+        raise InputError(
+            Problem(
+                what=f"lubricant is of the type {type(lubricant).__name__}",
+                where="argument lubricant",
+                why="the viscosity, its rise with pressure and the density are needed",
+                remedy="Give tribodyn.lubricant.Lubricant(dynamic_viscosity, density, "
+                "pressure_viscosity_coefficient), or one of tribodyn.lubricant.library()",
+            )
+        )
+    M, L = moes_numbers(load, radius, speed, lubricant, modulus)
+    if viscosity_law == "isoviscous":
+        L = 0.0
+    pressure = math.sqrt(load * modulus / (2.0 * math.pi * radius))
+    half_width = math.sqrt(8.0 * load * radius / (math.pi * modulus))
+    _check_pressure(pressure, load, modulus, radius)
+    _check_numbers(M, L, "load_per_width, equivalent_radius, entrainment_speed")
+    # Everything dimensionless follows from M, L, z and alpha, so that contacts with equal
+    # numbers have equal films to the last digit.
+    alpha = lubricant.pressure_viscosity_coefficient
+    scaled = L * math.sqrt(M / (2.0 * math.pi)) / alpha if L > 0.0 else pressure
+    scales = contact_scales(
+        M, L, scaled, alpha, lubricant.roelands_index, viscosity_law, compressible
+    )
+    _check_growth(scales, pressure)
+    if half_width > radius:
+        raise InputError(
+            Problem(
+                what=f"the dry contact is {2e3 * half_width:.4g} mm wide on bodies with an "
+                f"equivalent radius of {1e3 * radius:.4g} mm",
+                where="arguments load_per_width, equivalent_radius",
+                why="the contact must be narrow against the radius",
+                remedy="Check the units: load in N/m, radius in m, modulus in Pa",
+            )
+        )
+    return ContactCase(
+        scales, pressure, half_width, load, radius, speed, modulus, lubricant, bool(compressible)
+    )
+
+
+def moes_case(
+    M: Any,
+    L: Any,
+    pressure_viscosity_index: Any,
+    pressure_viscosity_coefficient: Any,
+    viscosity_law: str,
+    compressible: bool,
+) -> ContactCase:
+    """Check a contact that is given by the numbers of Moes.
+
+    Parameters
+    ----------
+    M, L : float
+        Numbers of Moes.
+    pressure_viscosity_index : float
+        Index z of Roelands.
+    pressure_viscosity_coefficient : float [1/Pa]
+        With L and M it gives the Hertz pressure, on which the density depends.
+    viscosity_law : str
+        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
+    compressible : bool
+        Whether the density rises with pressure.
+
+    Returns
+    -------
+    ContactCase
+
+    Raises
+    ------
+    InputError
+        If a value is out of range; the message names it.
+    """
+    load, viscosity = _scalar("M", M, ""), _scalar("L", L, "")
+    index = _scalar("pressure_viscosity_index", pressure_viscosity_index, "")
+    alpha = _scalar("pressure_viscosity_coefficient", pressure_viscosity_coefficient, "[1/Pa]")
+    require_between("pressure_viscosity_index", index, 0.05, 2.0)
+    require_between(
+        "pressure_viscosity_coefficient", alpha, 1e-9, 1e-7, "1/Pa",
+        remedy="22 1/GPa are 2.2e-8 1/Pa",
+    )  # fmt: skip
+    _check_numbers(load, viscosity, "M, L")
+    pressure = viscosity * math.sqrt(load / (2.0 * math.pi)) / alpha
+    if viscosity_law == "isoviscous":
+        viscosity = 0.0
+    scales = contact_scales(load, viscosity, pressure, alpha, index, viscosity_law, compressible)
+    _check_growth(scales, pressure)
+    return ContactCase(
+        scales, 1.0, 1.0, 0.5 * math.pi, 1.0, 1.0, 4.0, None, bool(compressible)
+    )
+
+
+def _check_pressure(pressure: float, load: float, modulus: float, radius: float) -> None:
+    if pressure > _HIGHEST_PRESSURE:
+        raise InputError(
+            Problem(
+                what=f"the Hertz pressure is {pressure * 1e-9:.4g} GPa at {load:.4g} N/m, "
+                f"a modulus of {modulus:.4g} Pa and a radius of {radius:.4g} m",
+                where="arguments load_per_width, equivalent_radius, effective_modulus",
+                why="the laws of viscosity are carried on to 4 GPa at most, measured to about 1",
+                remedy="Check the units: load in N/m, radius in m, modulus in Pa",
+            )
+        )
+
+
+def _check_numbers(M: float, L: float, where: str) -> None:
+    require_between(
+        "M",
+        M,
+        *_LOADS,
+        remedy=f"The load number follows from {where}: check their units",
+    )
+    require_between("L", L, 0.0, 60.0, remedy=f"The number follows from {where}: check the units")
+
+
+def _check_growth(scales: ContactScales, pressure: float) -> None:
+    growth = scales.oil[1] if scales.viscosity_law == "barus" else 0.0
+    if growth > _GREATEST_GROWTH:
+        raise InputError(
+            Problem(
+                what=f"at the Hertz pressure of {pressure * 1e-9:.4g} GPa the law of Barus raises "
+                f"the viscosity by exp({growth:.4g})",
+                where="argument viscosity_law",
+                why=f"computable up to exp({_GREATEST_GROWTH:g}), and measured to 0.1 GPa",
+                remedy='Use viscosity_law = "roelands"',
+            )
+        )

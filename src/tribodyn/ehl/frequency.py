@@ -1,0 +1,256 @@
+"""Stiffness and damping of the oil film against small vibrations, over the frequency.
+
+The transient equations are linearized about the steady state, with the squeeze term as
+``i omega``: one complex linear system a frequency, dense, on at most 512 intervals.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import ComputationError, InputError, Problem, require_between, require_positive
+
+if TYPE_CHECKING:
+    from tribodyn.ehl.discrete import DiscreteContact
+    from tribodyn.ehl.solution import LineContactSolution
+
+__all__ = ["film_compliance", "frequency_response"]
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+#: Intervals of the grid of the linearized equations.
+_INTERVALS = 512
+#: A vibration this slow, in u_e/b, stands for the limit of the damping at frequency zero.
+_SLOW = 1e-5
+
+
+def frequency_response(
+    solution: LineContactSolution,
+    frequencies: ArrayLike,
+    length: float = 1.0,
+    *,
+    deflection: Literal["approach", "central"] = "approach",
+) -> tuple[Array, Array]:
+    """Stiffness and damping of the oil film against small vibrations.
+
+    ``K + i omega C`` is the inverse of :func:`film_compliance`, see there for what counts as
+    deflection. At frequency zero K is the tangent stiffness of the film, and C the damping of
+    the slow limit.
+
+    Parameters
+    ----------
+    solution : LineContactSolution
+        Converged contact.
+    frequencies : float or array [Hz]
+        Frequencies, zero or positive; in ``u_e/b`` where the contact has no units.
+    length : float [m]
+        Length of the contact line.
+    deflection : {"approach", "central"}
+        What the load is compared with.
+
+    Returns
+    -------
+    (stiffness, damping) : arrays [N/m], [N*s/m]
+        Of the shape of the frequencies.
+
+    Raises
+    ------
+    InputError
+        If a frequency is negative or not finite, the length is not positive, or the deflection
+        is unknown.
+    ComputationError
+        If the steady state is not found again on the coarser grid.
+
+    Valid for amplitudes small against the film. Beyond about a third of ``u_e/2b`` the film
+    follows with a delay of more than a quarter of a period, and its stiffness turns negative:
+    then use the compliance, which stays bounded. Source: linearized transient Reynolds equation.
+    """
+    values = np.asarray(frequencies, dtype=float)
+    _, rate = _units(solution, length)
+    slow = _SLOW / (2.0 * np.pi) * rate
+    compliance = film_compliance(
+        solution, np.maximum(values, slow), length, deflection=deflection
+    )
+    at_rest = film_compliance(solution, 0.0, length, deflection=deflection)
+    stiffness = np.where(values > 0.0, (1.0 / compliance).real, (1.0 / at_rest).real)
+    damping = (1.0 / compliance).imag / (2.0 * np.pi * np.maximum(values, slow))
+    return np.asarray(stiffness)[()], np.asarray(damping)[()]
+
+
+def film_compliance(
+    solution: LineContactSolution,
+    frequencies: ArrayLike,
+    length: float = 1.0,
+    *,
+    deflection: Literal["approach", "central"] = "approach",
+) -> Complex:
+    """Complex compliance of the oil film against a load ``w + dw exp(i omega t)``.
+
+    Parameters
+    ----------
+    solution : LineContactSolution
+        Converged contact.
+    frequencies : float or array [Hz]
+        Frequencies, zero or positive; in ``u_e/b`` where the contact has no units.
+    length : float [m]
+        Length of the contact line.
+    deflection : {"approach", "central"}
+        ``"approach"``: what the film adds to the mutual approach of the bodies. The approach
+        does work with the load, so that this is what the mesh sees in series with the static
+        compliance of the dry contact: ``-dh_c/dw`` at rest plus the change of the whole
+        compliance, ``d(approach)/dw``, from rest to the frequency. ``"central"``: ``-dh_c/dw``,
+        the film in the centre, which also shows the waves that travel through the contact.
+
+    Returns
+    -------
+    complex or array of complex [m/N]
+        Of the shape of the frequencies; a negative imaginary part dissipates.
+
+    Raises
+    ------
+    InputError
+        If a frequency is negative or not finite, the length is not positive, or the deflection
+        is unknown.
+    ComputationError
+        If the steady state is not found again on the coarser grid.
+
+    Valid for amplitudes small against the film. Above ``u_e/2b`` the oil in the contact is
+    trapped: the compliance of the centre falls to that of the oil's volume,
+    ``h_c rho'/rho dp_c/dw``. The pressure of the inlet before the first node follows at once.
+    Source: linearized transient Reynolds equation.
+    """
+    values = np.asarray(frequencies, dtype=float)
+    require_between("frequencies", values, 0.0, 1e12, "Hz")
+    require_positive("length", length, "m")
+    if deflection not in ("approach", "central"):
+        raise InputError(
+            Problem(
+                what=f'deflection = "{deflection}"',
+                where="argument deflection",
+                why="Known: approach, central",
+            )
+        )
+    unit, rate = _units(solution, length)
+    linear = _linearize(_on_coarse_grid(solution._grid))
+    central, offset = linear.answer(0.0)
+    result = np.empty(values.size, dtype=complex)
+    for i, frequency in enumerate(values.reshape(-1)):
+        film, rigid = linear.answer(2.0 * np.pi * frequency / rate)
+        result[i] = -film if deflection == "central" else -central - (rigid - offset)
+    return np.asarray(unit * result.reshape(values.shape))[()]
+
+
+def _units(solution: LineContactSolution, length: float) -> tuple[float, float]:
+    """Deflection over load at a unit change of film over ln(w), and ``u_e/b``."""
+    load = 0.5 * np.pi * solution.hertz_pressure * solution.half_width
+    return (
+        solution.film_unit / (load * length),
+        solution.entrainment_speed / solution.half_width,
+    )
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """Linearized equations: unknowns P_0, the free pressures and the offset.
+
+    ``steady + i omega squeeze`` times the unknowns is zero in the rows of the mass balance;
+    ``film`` gives the central film; ``inlet`` holds the slopes of the inlet's pressure and load
+    by the central film and by ln(w).
+    """
+
+    steady: Array
+    squeeze: Array
+    film: Array
+    inlet: tuple[float, float, float, float]
+    load: float
+    dx: float
+
+    def answer(self, omega: float) -> tuple[complex, complex]:
+        """Change of central film and offset at a unit change of ln(w)."""
+        pressure_film, load_film, pressure_load, load_load = self.inlet
+        matrix = self.steady + 1j * omega * self.squeeze
+        size = matrix.shape[0]
+        right = np.zeros((size, 2))
+        # First column: unit change of ln(w); second: of the film in the law of the inlet.
+        right[0] = pressure_load, pressure_film
+        right[-1] = self.load - load_load, -load_film
+        scale = np.abs(matrix).max(axis=1)
+        direct, back = np.linalg.solve(matrix / scale[:, None], right / scale[:, None]).T
+        change = direct + back * (self.film @ direct) / (1.0 - self.film @ back)
+        return complex(self.film @ change), complex(change[-1])
+
+
+def _linearize(grid: DiscreteContact) -> _Linear:
+    from tribodyn.ehl.kernel.film_sum import influence
+    from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
+    from tribodyn.ehl.kernel.oil import oil_state
+    from tribodyn.ehl.kernel.reynolds import coefficients, mobility
+    from tribodyn.ehl.kernel.transfer import central
+
+    n, k, dx, start = grid.n, grid.free, grid.dx, float(grid.X[0])
+    lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
+    cH, cP = np.empty((2, n + 1, 4))
+    oil_state(n, grid.P, grid.oil, lneta, dlneta, rho, drho)
+    mobility(n, grid.H, grid.lam, lneta, rho, eps)
+    coefficients(n, dx, grid.lam, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
+    node = np.arange(n + 1)
+    # Film at every node by the pressures at 0..k and by the offset.
+    pressed = influence(n, dx)[np.abs(node[:, None] - node[: k + 1])]
+    film = np.column_stack((pressed, np.ones(n + 1)))
+    rows = np.arange(1, k + 1)
+    steady, squeeze = np.zeros((2, k + 2, k + 2))
+    for s in range(4):
+        at = np.maximum(rows - 2 + s, 0)  # node -1 has coefficient zero
+        steady[1:-1] += cH[rows, s, None] * film[at]
+        inner = (rows - 2 + s >= 0) & (at <= k)
+        steady[rows[inner], at[inner]] += cP[rows[inner], s]
+    squeeze[1:-1] = dx * rho[rows, None] * film[rows]
+    squeeze[rows, rows] += dx * (drho * grid.H)[rows]
+    steady[0, 0] = 1.0
+    steady[-1, : k + 1] = dx
+    steady[-1, 0] = 0.5 * dx
+    load = dx * (0.5 * grid.P[0] + float(np.sum(grid.P[1:])))
+    middle = np.array([central(n, start, dx, column.copy()) for column in film.T])
+    inlet = (0.0, 0.0, 0.0, 0.0)
+    if grid.tail > 0.0:
+        thickness = central(n, start, dx, grid.H)
+        _, outside, *inlet = flooded_inlet(start, thickness, grid.lam, 1.0, 1.0)
+        load += outside
+    return _Linear(steady, squeeze, middle, tuple(inlet), load, dx)
+
+
+def _on_coarse_grid(grid: DiscreteContact) -> DiscreteContact:
+    """Steady state on a grid of at most 512 intervals."""
+    from dataclasses import replace
+
+    from tribodyn.ehl.kernel.march_entry import level_contact
+
+    if grid.n <= _INTERVALS:
+        return grid
+    n = _INTERVALS
+    X = np.linspace(grid.X[0], grid.X[-1], n + 1)
+    P, H = np.interp(X, grid.X, grid.P), np.empty(n + 1)
+    dx = float(X[1] - X[0])
+    state = np.zeros(8)
+    state[0], state[1] = grid.H0, np.floor(grid.free * n / grid.n)
+    shape = np.interp(X, grid.X, grid.shape)
+    status = level_contact(
+        n, dx, grid.lam, 1.0, grid.load, grid.tail, grid.oil, shape,
+        np.array([1e-9, 1e-9, 40.0, 1e-2, 0.3, 0.0]), P, H, state,
+    )  # fmt: skip
+    if status != 0:
+        raise ComputationError(
+            Problem(
+                what=f"The steady state was not found on {n} intervals (status {status})",
+                why=f"it was solved on {grid.n}, and the vibration needs a dense matrix",
+                remedy=f"Solve the contact with nodes = {n + 1} or less",
+            )
+        )
+    return replace(
+        grid, n=n, dx=dx, X=X, P=P, H=H, H0=float(state[0]), free=int(state[1]), shape=shape
+    )

@@ -1,0 +1,114 @@
+"""How the central film of a converged steady contact follows the load: the exact tangent."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.ehl.kernel.coarse import no_coarse
+from tribodyn.ehl.kernel.film_sum import film_sum
+from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
+from tribodyn.ehl.kernel.krylov import linear_solve, prepare
+from tribodyn.ehl.kernel.oil import oil_state
+from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.reynolds import coefficients, mobility
+from tribodyn.ehl.kernel.transfer import central
+
+__all__ = ["film_tangent"]
+
+Array = NDArray[np.float64]
+
+#: Tolerance of the linear solver: far below the discretisation error of the film.
+_TOLERANCE = 1e-8
+
+
+@nb.njit(**INNER)
+def _film_change(
+    n: int, start: float, dx: float, k: int, tail: float, load: float, K: Array, plan: Array,
+    work: Any, cH: Array, cP: Array, rhs: Array, x: Array,
+) -> tuple[float, int]:  # fmt: skip
+    """Change of the central film under a change of the load and of the pressure at the inlet."""
+    for i in range(k + 1):
+        rhs[i] = 0.0
+    # The pressure of the first node is given: its column of the tangent goes to the right.
+    for i in range(1, k + 1):
+        for s in range(4):
+            if i - 2 + s >= 0:
+                rhs[i - 1] -= cH[i, s] * K[i - 2 + s] * tail
+    rhs[0] -= cP[1, 1] * tail
+    rhs[1] -= cP[2, 0] * tail
+    rhs[k] = load - 0.5 * dx * tail
+    products = linear_solve(
+        n, dx, k, True, K, plan, cH, cP, _TOLERANCE, no_coarse(), work, rhs, x
+    )
+    change, film = np.zeros(n + 1), np.empty(n + 1)
+    change[0] = tail
+    for i in range(k):
+        change[i + 1] = x[i]
+    film_sum(n, K, plan, change, work[5], film)
+    for i in range(n + 1):
+        film[i] += x[k]
+    return central(n, start, dx, film), products
+
+
+@nb.njit(**INNER)
+def film_tangent(
+    n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float, K: Array,
+    plan: Array, work: Any, P: Array, H: Array,
+) -> tuple[float, int]:  # fmt: skip
+    """Slope ``dH_c/d ln(w)`` of the central film over the load, the bodies and the oil held.
+
+    Parameters
+    ----------
+    n, start, dx : int, float, float
+        Grid.
+    lam, oil : float, array
+        Factor of the equation and oil.
+    k : int
+        Last free node.
+    tail : float
+        Pressure at the first node; where there is one, it and the load before the first node
+        follow the load and the central film as in
+        :func:`~tribodyn.ehl.kernel.flooded_inlet.flooded_inlet`.
+    K, plan, work
+        Influence, and room from :func:`~tribodyn.ehl.kernel.krylov.newton_work`.
+    P, H : (n + 1,) arrays
+        Converged pressure and film.
+
+    Returns
+    -------
+    (float, int)
+        Slope in the unit b^2/R of the film, and the products with the tangent that it took;
+        negative if the linear system could not be solved.
+    """
+    lneta, dlneta, rho, drho = np.empty((4, n + 1))
+    eps, rhs, x = np.empty(n + 1), np.empty(n + 2), np.empty(n + 2)
+    cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))
+    oil_state(n, P, oil, lneta, dlneta, rho, drho)
+    mobility(n, H, lam, lneta, rho, eps)
+    coefficients(n, dx, lam, 1.0, 0.0, P, H, dlneta, rho, drho, eps, cH, cP)
+    if not prepare(n, dx, k, True, K, cH, cP, work):
+        return 0.0, -1
+    load = 0.5 * P[0]
+    for i in range(1, k + 1):
+        load += P[i]
+    load *= dx
+    if tail == 0.0:
+        return _film_change(n, start, dx, k, 0.0, load, K, plan, work, cH, cP, rhs, x)
+    film = central(n, start, dx, H)
+    _, outside, by_film, outside_by_film, by_load, outside_by_load = flooded_inlet(
+        start, film, lam, 1.0, 1.0
+    )
+    # Film under the load, and under a unit change of the film in the law of the inlet.
+    direct, first = _film_change(
+        n, start, dx, k, by_load, load + outside - outside_by_load, K, plan, work, cH, cP, rhs, x
+    )
+    back, second = _film_change(
+        n, start, dx, k, by_film, -outside_by_film, K, plan, work, cH, cP, rhs, x
+    )
+    if first < 0 or second < 0:
+        return 0.0, min(first, second)
+    return direct / (1.0 - back), first + second

@@ -1,0 +1,153 @@
+"""Nested iteration: a start on a coarse grid, carried to ever finer ones, as one compiled call."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.compiled import source_digest
+from tribodyn.ehl.kernel.coarse import coarse_tangent, no_coarse
+from tribodyn.ehl.kernel.film_sum import film_plan, influence
+from tribodyn.ehl.kernel.krylov import newton_work
+from tribodyn.ehl.kernel.newton import CONVERGED, newton_level
+from tribodyn.ehl.kernel.options import INNER, JIT
+from tribodyn.ehl.kernel.start import cold_start, free_nodes
+from tribodyn.ehl.kernel.transfer import central, refine
+
+__all__ = ["newton_solve"]
+
+Array = NDArray[np.float64]
+
+#: Every file whose code ends up in the compiled kernel.
+_SOURCES = (
+    "options", "elementary", "transform", "film_sum", "oil", "reynolds", "band", "dense",
+    "outlet", "transfer", "start", "coarse", "krylov", "newton", "nested",
+)  # fmt: skip
+
+#: Intervals from which on the linear solver has a coarse grid, and about how many that has.
+_TWO_GRIDS, _COARSE = 2048, 128
+#: Flux tolerance of the grids that only lead to the next one.
+_PASSING_FLUX = 1e-2
+
+
+@nb.njit(**INNER)
+def _gap(n: int, start: float, dx: float, factor: int, profile: Array) -> Array:
+    """Undeformed gap on a grid ``factor`` times as wide: the profile by its local mean."""
+    shape = np.empty(n + 1)
+    for i in range(n + 1):
+        x = start + i * dx
+        total, weight, at = 0.0, 0.0, i * factor
+        for j in range(max(0, at - factor + 1), min(n * factor, at + factor - 1) + 1):
+            share = 1.0 - abs(j - at) / factor
+            total += share * profile[j]
+            weight += share
+        shape[i] = 0.5 * x * x + total / weight
+    return shape
+
+
+def _build(digest: str) -> Any:
+    @nb.njit(cache=True, **JIT)
+    def newton_solve(
+        n: int,
+        first: int,
+        warm: bool,
+        start: float,
+        end: float,
+        lam: float,
+        oil: Array,
+        film: float,
+        load: float,
+        tail: float,
+        profile: Array,
+        limits: Array,
+        film_tolerance: float,
+        P: Array,
+        H: Array,
+        state: Array,
+        films: Array,
+    ) -> int:
+        """Solve a steady contact on all grids from ``first`` to ``n`` intervals.
+
+        Parameters
+        ----------
+        n, first : int
+            Intervals of the finest and of the first grid, their ratio a power of two.
+        warm : bool
+            Whether ``P`` and the state hold a start on the first grid.
+        start, end : float
+            First and last position.
+        lam, oil, load, tail, limits
+            As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
+        film : float
+            Estimate of the central film, for a cold start.
+        profile : (n + 1,) array
+            Heights added to the gap.
+        film_tolerance : float
+            Relative error of the central film at which finer grids are left out; zero for none.
+        P, H : (n + 1,) arrays
+            Receive the solution in their first nodes.
+        state : (12,) array
+            As for one grid; then the intervals of the last grid, those of the first grid after
+            all failed starts, and the number of grids.
+        films : (20,) array
+            Receives the central films of the grids.
+
+        Returns
+        -------
+        int
+            As for one grid. If the first grid fails from a cold start, the next finer one is
+            tried.
+        """
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        m, level, last = np.int64(first), np.int64(0), np.int64(0)
+        before, film_before, coarse = np.empty(0), np.empty(0), no_coarse()
+        while True:
+            dx = (end - start) / m
+            K = influence(m, dx)
+            plan = film_plan(m, K)
+            work = newton_work(m)
+            shape, history = _gap(m, start, dx, n // m, profile), np.zeros(m + 1)
+            p, h, final = P[: m + 1], H[: m + 1], limits.copy()
+            if level > 0:
+                if m >= _TWO_GRIDS and coarse[0].size == 0:
+                    ratio = np.int64(1)
+                    while m // (4 * ratio) >= _COARSE and m % (4 * ratio) == 0:
+                        ratio *= 2
+                    coarse = coarse_tangent(
+                        m // 2, 2.0 * dx, last, ratio, lam, 1.0, 0.0, True, oil, before,
+                        film_before,
+                    )  # fmt: skip
+                state[1] = refine(m // 2, 2.0 * dx, before, last, load, tail, p)
+            elif not warm:
+                state[0] = cold_start(
+                    m, start, dx, lam, oil, film, load, tail, shape, K, plan, work, p, h
+                )
+                state[1] = free_nodes(m, p)
+            if m < n and film_tolerance == 0.0:
+                final[1] = max(final[1], _PASSING_FLUX)
+            status = newton_level(
+                m, dx, lam, 1.0, 0.0, load, True, tail, oil, shape, history, K, plan, final,
+                coarse, work, p, h, state,
+            )  # fmt: skip
+            state[8], state[9], state[10] = m, first, level + 1
+            if status != CONVERGED:
+                if level > 0 or warm or m >= n:
+                    return status
+                first = m = 2 * m
+                continue
+            films[level] = central(m, start, dx, h)
+            error = abs(films[level] - films[level - 1]) / 3.0 if level > 0 else np.inf
+            if m >= n or error < film_tolerance * films[level]:
+                return status
+            before, film_before, last = p.copy(), h.copy(), int(state[1])
+            m *= 2
+            level += 1
+
+    return newton_solve
+
+
+newton_solve = _build(source_digest(Path(__file__).parent, _SOURCES))

@@ -1,0 +1,220 @@
+"""Newton's method for the pressure on one grid, with the free outlet."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.ehl.kernel.film_sum import film_sum
+from tribodyn.ehl.kernel.krylov import linear_solve, newton_work, prepare
+from tribodyn.ehl.kernel.oil import oil_state
+from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.outlet import cut_negative, extend
+from tribodyn.ehl.kernel.reynolds import coefficients, mobility, residual
+
+__all__ = [
+    "CONVERGED", "GAP", "NOT_FINITE", "ROUNDED", "SINGULAR", "STALLED", "flux_error",
+    "newton_level", "newton_work",
+]  # fmt: skip
+
+Array = NDArray[np.float64]
+
+CONVERGED, STALLED, GAP, SINGULAR, NOT_FINITE, ROUNDED = 0, 1, 2, 3, 4, 5
+
+# Rows of the scratch array; 8 to 12 and those from 16 on belong to the linear solver, which
+# leaves 10 and 11 to others between its calls.
+_LNETA, _DLNETA, _RHO, _DRHO, _EPS, _F, _G, _RHS = 0, 1, 2, 3, 4, 5, 6, 7
+_VECTOR, _RISE, _DELTA, _VISITS = 10, 11, 13, 14
+
+#: A change of the pressure that rounding alone makes.
+_ROUNDING = 1e-13
+
+
+@nb.njit(**INNER)
+def flux_error(k: int, H: Array, work: Any) -> float:
+    """Greatest deviation of the summed mass balance from its mean, over the mean flux.
+
+    In the steady state this is the deviation of the flux from its mean.
+    """
+    rows = work[0]
+    F, G, rho = rows[_F], rows[_G], rows[_RHO]
+    total, mean, flux, through = 0.0, 0.0, 0.0, 0.0
+    for i in range(k + 1):
+        total += G[i]
+        mean += total
+        flux += F[i]
+        through += rho[i] * H[i]
+    mean /= k + 1
+    # A contact that is only squeezed has no mean flux.
+    unit = max(abs(flux), 1e-3 * abs(through)) / (k + 1)
+    total, worst = 0.0, 0.0
+    for i in range(k + 1):
+        total += G[i]
+        worst = max(worst, abs(total - mean))
+    return worst / unit
+
+
+@nb.njit(**INNER)
+def _step_length(n: int, k: int, cap: float, H: Array, work: Any) -> float:
+    """Greatest step that changes no pressure by more than ``cap`` and keeps the gap open."""
+    rows = work[0]
+    delta, rise = rows[_DELTA], rows[_RISE]
+    largest, least = 0.0, H[0]
+    for i in range(k):
+        largest = max(largest, abs(delta[i]))
+    for i in range(n + 1):
+        least = min(least, H[i])
+    step = 1.0 if largest <= cap else cap / largest
+    for _ in range(12):
+        thinnest = H[0] + step * rise[0]
+        for i in range(n + 1):
+            thinnest = min(thinnest, H[i] + step * rise[i])
+        if thinnest > 0.3 * least:
+            return step
+        step *= 0.5
+    return 0.0
+
+
+@nb.njit(**INNER)
+def newton_level(
+    n: int, dx: float, lam: float, u: float, squeeze: float, load: float, imposed: bool,
+    tail: float, oil: Array, shape: Array, history: Array, K: Array, plan: Array, limits: Array,
+    coarse: Any, work: Any, P: Array, H: Array, state: Array,
+) -> int:  # fmt: skip
+    """Solve one grid from a given pressure.
+
+    Parameters
+    ----------
+    n, dx : int, float
+        Grid.
+    lam, u, squeeze : float
+        Factors of the equation, see :mod:`tribodyn.ehl.kernel.reynolds`.
+    load, imposed : float, bool
+        Load, and whether it is imposed; else the offset ``state[0]`` is.
+    tail : float
+        Pressure at the first node.
+    oil, shape, history : array
+        Oil, undeformed gap and the part of earlier times.
+    K, plan : array
+        From :mod:`tribodyn.ehl.kernel.film_sum`.
+    limits : (6,) array
+        Tolerance of pressure and of flux, Newton steps, tolerance of the linear solver, greatest
+        change of pressure in a step; the last is not used here.
+    coarse : tuple
+        Coarse grid of the linear solver, see :mod:`tribodyn.ehl.kernel.coarse`.
+    work : tuple
+        From :func:`newton_work`.
+    P, H : (n + 1,) arrays
+        Pressure to start from, and solution; receives the film.
+    state : (8,) array
+        Offset and last free node, in and out; receives steps, relative change of the pressure,
+        flux error and load; counts products with the tangent and film sums on.
+
+    Returns
+    -------
+    int
+        ``CONVERGED``; ``STALLED`` after all steps; ``GAP`` where no step keeps the gap open;
+        ``SINGULAR``; ``NOT_FINITE``; ``ROUNDED`` where the pressure stands still and rounding
+        keeps the flux above its tolerance.
+
+    Notes
+    -----
+    Replaces, and is tested against, :mod:`tribodyn.ehl.plain_newton`.
+    """
+    rows, cH, cP = work[0], work[1], work[2]
+    F, G, rhs, delta = rows[_F], rows[_G], rows[_RHS], rows[_DELTA]
+    vector, rise, visits = rows[_VECTOR], rows[_RISE], rows[_VISITS]
+    H0, k = state[0], min(max(int(state[1]), 2), n - 1)
+    P[0] = tail
+    for i in range(k + 1, n + 1):
+        P[i] = 0.0
+    for i in range(n + 1):
+        visits[i] = 0.0
+    streak, moved, change, step, status = 0, False, 1.0, 1.0, STALLED
+    fresh = True
+    for steps in range(int(limits[2]) + 1):
+        if fresh:
+            film_sum(n, K, plan, P, work[5], H)
+            state[7] += 1.0
+            for i in range(n + 1):
+                H[i] += H0 + shape[i]
+        oil_state(n, P, oil, rows[_LNETA], rows[_DLNETA], rows[_RHO], rows[_DRHO])
+        mobility(n, H, lam, rows[_LNETA], rows[_RHO], rows[_EPS])
+        residual(n, dx, u, squeeze, history, P, H, rows[_RHO], rows[_EPS], F, G)
+        if steps > 0:
+            # No growth on to a node from which the outlet has already come back twice.
+            if not moved and change < 0.1 and k < n - 1 and G[k + 1] < 0.0:
+                further = extend(n, k, streak)
+                if visits[further] < 2.0:
+                    k, moved = further, True
+                    streak += 1
+            visits[k] += 1.0 if moved else 0.0
+            state[3], state[4] = change, flux_error(k, H, work)
+            if step == 1.0 and not moved and change < limits[0]:
+                if state[4] < limits[1]:
+                    status = CONVERGED
+                    break
+                if change < _ROUNDING:
+                    status = ROUNDED
+                    break
+        if steps == int(limits[2]):
+            break
+        state[2] = steps + 1.0
+        coefficients(
+            n, dx, lam, u, squeeze, P, H, rows[_DLNETA], rows[_RHO], rows[_DRHO], rows[_EPS],
+            cH, cP,
+        )  # fmt: skip
+        if not prepare(n, dx, k, imposed, K, cH, cP, work):
+            status = SINGULAR
+            break
+        total = 0.5 * P[0]
+        for i in range(k):
+            rhs[i] = -G[i + 1]
+            total += P[i + 1]
+        rhs[k] = load - dx * total
+        products = linear_solve(
+            n, dx, k, imposed, K, plan, cH, cP, limits[3], coarse, work, rhs, delta
+        )
+        # Film of the whole step: the line search and the next film need no further sum.
+        vector[0] = 0.0
+        for i in range(k):
+            vector[i + 1] = delta[i]
+        for i in range(k + 1, n + 1):
+            vector[i] = 0.0
+        film_sum(n, K, plan, vector, work[5], rise)
+        state[6] += abs(products)
+        state[7] += abs(products) + 1.0
+        if imposed:
+            for i in range(n + 1):
+                rise[i] += delta[k]
+        step = _step_length(n, k, limits[4], H, work)
+        if step == 0.0:
+            status = GAP
+            break
+        change, total = 0.0, abs(P[0])
+        for i in range(k):
+            P[i + 1] += step * delta[i]
+            change += abs(step * delta[i])
+            total += abs(P[i + 1])
+        change /= total
+        if not np.isfinite(change):
+            status = NOT_FINITE
+            break
+        if imposed:
+            H0 += step * delta[k]
+        before = k
+        k = cut_negative(n, k, change, P)
+        moved = fresh = k < before
+        if moved:
+            streak = 0
+        else:
+            for i in range(n + 1):
+                H[i] += step * rise[i]
+    total = 0.5 * P[0]
+    for i in range(1, k + 1):
+        total += P[i]
+    state[0], state[1], state[5] = H0, float(k), dx * total
+    return status

@@ -1,0 +1,247 @@
+"""A line contact over time: the squeeze term by a backward formula of second order.
+
+Inputs are rows of a table over time, linear in between. The steps are those of the table; one that
+fails is halved. The first step is of first order, which keeps the second order of the whole.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.ehl.kernel.coarse import no_coarse
+from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
+from tribodyn.ehl.kernel.krylov import newton_work
+from tribodyn.ehl.kernel.newton import CONVERGED, ROUNDED, newton_level
+from tribodyn.ehl.kernel.oil import oil_state
+from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.profile import add_profile
+from tribodyn.ehl.kernel.transfer import central
+
+__all__ = [
+    "CURVATURE", "FIRST_SHIFT", "HEIGHT", "INPUTS", "LOAD", "OFFSET", "RECORD", "SECOND_SHIFT",
+    "SPEED", "march", "settle",
+]  # fmt: skip
+
+Array = NDArray[np.float64]
+
+#: Columns of the table of inputs: load over that of the reference, offset, speed over that of the
+#: reference, reference radius over radius, distances travelled by the two surfaces, factor of
+#: the heights of both.
+LOAD, OFFSET, SPEED, CURVATURE, FIRST_SHIFT, SECOND_SHIFT, HEIGHT = 0, 1, 2, 3, 4, 5, 6
+#: Columns of the table.
+INPUTS = 7
+#: Columns of the record: offset, sum of the pressures, load with that of the inlet, central and
+#: minimum film, last free node, Newton steps, flux error, parts of the step, highest pressure.
+RECORD = 10
+#: Load of the reference, in b p_h.
+_FULL = 0.5 * np.pi
+#: Flux error that is accepted where rounding keeps it above its tolerance.
+_ROUNDED_FLUX = 1e-4
+
+
+@nb.njit(**INNER)
+def _gap(n: int, start: float, dx: float, row: Array, rough: Any, shape: Array) -> None:
+    """Gap of the undeformed bodies at one instant."""
+    for i in range(n + 1):
+        x = start + i * dx
+        shape[i] = 0.5 * row[CURVATURE] * x * x
+    ends = rough[2]
+    for side in range(2):
+        heights = rough[0] if side == 0 else rough[1]
+        add_profile(
+            n, start, dx, row[FIRST_SHIFT + side], row[HEIGHT], heights, ends[side, 0],
+            ends[side, 1], ends[side, 2] > 0.0, shape,
+        )  # fmt: skip
+
+
+@nb.njit(**INNER)
+def _inlet(
+    start: float, film: float, carried: float, lam: float, flooded: bool, row: Array
+) -> tuple[float, float]:
+    """Pressure at the first node, and the load before it, at a film and load of the contact."""
+    if not flooded or row[SPEED] == 0.0:
+        return 0.0, 0.0
+    s = np.sqrt(max(carried, 0.0) / row[CURVATURE])
+    s = min(s, 0.99 * abs(start))
+    pressure, outside, _, _, _, _ = flooded_inlet(
+        start, max(film, 0.0), lam * row[SPEED], row[CURVATURE], s
+    )
+    return pressure, outside
+
+
+@nb.njit(**INNER)
+def _solve(
+    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
+    imposed: bool, flooded: bool, row: Array, film: float, load: float, squeeze: float,
+    history: Array, shape: Array, work: Any, P: Array, H: Array, state: Array,
+) -> int:  # fmt: skip
+    """Solve one instant; ``state[5]`` receives the load with that of the inlet.
+
+    Film and, where it is not imposed, load are estimates that the inlet goes by.
+    """
+    carried = row[LOAD] if imposed else load / _FULL
+    tail, outside = _inlet(start, film, carried, lam, flooded, row)
+    if not imposed:
+        state[0] = row[OFFSET]
+    status = newton_level(
+        n, dx, lam, row[SPEED], squeeze, _FULL * row[LOAD] - outside, imposed, tail, oil, shape,
+        history, K, plan, limits, no_coarse(), work, P, H, state,
+    )  # fmt: skip
+    state[5] += outside
+    if status == ROUNDED and state[4] < _ROUNDED_FLUX:
+        return CONVERGED
+    return status
+
+
+@nb.njit(**INNER)
+def settle(
+    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
+    imposed: bool, flooded: bool, row: Array, rough: Any, work: Any, P: Array, H: Array,
+    state: Array,
+) -> int:  # fmt: skip
+    """Steady state under the inputs of one row, from a state nearby.
+
+    The pressure of the inlet follows from the central film and is found by iteration.
+    """
+    shape, history = np.empty(n + 1), np.zeros(n + 1)
+    _gap(n, start, dx, row, rough, shape)
+    film = central(n, start, dx, H)
+    for _ in range(40):
+        status = _solve(
+            n, start, dx, lam, oil, K, plan, limits, imposed, flooded, row, film, state[5], 0.0,
+            history, shape, work, P, H, state,
+        )  # fmt: skip
+        if status != CONVERGED:
+            return status
+        now = central(n, start, dx, H)
+        change = abs(now - film)
+        film = now
+        if not flooded or change < 1e-13 * abs(film):
+            break
+    return status
+
+
+@nb.njit(**INNER)
+def _keep(
+    n: int, start: float, dx: float, P: Array, H: Array, state: Array, parts: int, record: Array
+) -> None:
+    k = int(state[1])
+    total, highest = 0.0, 0.0
+    for i in range(k + 1):
+        total += P[i]
+        highest = max(highest, P[i])
+    least = H[0]
+    for i in range(min(k + 2, n + 1)):
+        least = min(least, H[i])
+    record[0], record[1], record[2] = state[0], dx * total, state[5]
+    record[3], record[4] = central(n, start, dx, H), least
+    record[5], record[6], record[7] = state[1], state[2], state[4]
+    record[8], record[9] = parts, highest
+
+
+@nb.njit(**INNER)
+def march(
+    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
+    imposed: bool, flooded: bool, time: Array, table: Array, rough: Any, halvings: int, every: int,
+    P: Array, H: Array, state: Array, records: Array, pressures: Array, films: Array,
+) -> tuple[int, int]:  # fmt: skip
+    """March a contact over time, from the state of the first instant.
+
+    Parameters
+    ----------
+    n, start, dx : int, float, float
+        Grid.
+    lam, oil, K, plan, limits
+        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
+    imposed : bool
+        Whether the load is imposed, else the offset.
+    flooded : bool
+        Whether the first node carries the pressure of the inlet before it.
+    time : (m,) array
+        Time, in ``b/u`` of the reference.
+    table : (m, INPUTS) array
+        Inputs.
+    rough : (array, array, (2, 3) array)
+        Heights added to the gap by the two surfaces, and of each the first position, the spacing
+        and whether it is periodic (1) or not (0).
+    halvings : int
+        How often a step may be halved.
+    every : int
+        Steps from one kept pressure to the next; zero to keep none.
+    P, H, state
+        State at the first instant, in and out.
+    records : (m, RECORD) array
+        Receives the figures of every instant.
+    pressures, films : (kept, n + 1) arrays
+        Receive pressure and film.
+
+    Returns
+    -------
+    (int, int)
+        Status of the solver and the instant that it belongs to.
+    """
+    work = newton_work(n)
+    shape, history = np.empty(n + 1), np.empty(n + 1)
+    lneta, dlneta, rho, drho = np.empty((4, n + 1))
+    before, earlier = np.empty(n + 1), np.empty(n + 1)
+    p, h, trial = np.empty(n + 1), np.empty(n + 1), np.empty(state.size)
+    row = np.empty(table.shape[1])
+    oil_state(n, P, oil, lneta, dlneta, rho, drho)
+    for i in range(n + 1):
+        before[i] = rho[i] * H[i]
+    film, film_before = central(n, start, dx, H), 0.0
+    load, load_before = state[5], 0.0
+    last = 0.0
+    _keep(n, start, dx, P, H, state, 0, records[0])
+    if every > 0:
+        pressures[0], films[0] = P, H
+    for m in range(1, time.size):
+        whole = time[m] - time[m - 1]
+        done, part, parts, steps = 0.0, 1.0, 0, 0.0
+        while done < 1.0:
+            width = part * whole
+            reached = done + part
+            for c in range(row.size):
+                row[c] = table[m - 1, c] + reached * (table[m, c] - table[m - 1, c])
+            _gap(n, start, dx, row, rough, shape)
+            if last == 0.0:
+                squeeze, expected, expected_load = dx / width, film, load
+                for i in range(n + 1):
+                    history[i] = squeeze * before[i]
+            else:
+                r = width / last
+                squeeze = dx / width * (1.0 + 2.0 * r) / (1.0 + r)
+                near, far = dx / width * (1.0 + r), dx / width * r * r / (1.0 + r)
+                for i in range(n + 1):
+                    history[i] = near * before[i] - far * earlier[i]
+                expected = film + r * (film - film_before)
+                expected_load = load + r * (load - load_before)
+            p[:], h[:], trial[:] = P, H, state
+            status = _solve(
+                n, start, dx, lam, oil, K, plan, limits, imposed, flooded, row, expected,
+                expected_load, squeeze, history, shape, work, p, h, trial,
+            )  # fmt: skip
+            if status != CONVERGED:
+                part *= 0.5
+                if part < 0.5**halvings:
+                    return status, m
+                continue
+            P[:], H[:], state[:] = p, h, trial
+            oil_state(n, P, oil, lneta, dlneta, rho, drho)
+            for i in range(n + 1):
+                earlier[i] = before[i]
+                before[i] = rho[i] * H[i]
+            film_before, film = film, central(n, start, dx, H)
+            load_before, load = load, state[5]
+            last, done = width, reached
+            parts += 1
+            steps += state[2]
+        state[2] = steps
+        _keep(n, start, dx, P, H, state, parts, records[m])
+        if every > 0 and m % every == 0:
+            pressures[m // every], films[m // every] = P, H
+    return CONVERGED, time.size - 1

@@ -1,0 +1,146 @@
+"""Where a solver starts: film of a formula, pressure of the dry contact with an inlet of Grubin."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.ehl.kernel.film_sum import film_sum
+from tribodyn.ehl.kernel.oil import BARUS, ROELANDS
+from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.transfer import scale_to_load
+
+__all__ = ["cold_start", "dry_gap", "free_nodes", "piezoviscosity"]
+
+Array = NDArray[np.float64]
+
+#: Film of Grubin: the reduced pressure reaches this part of its bound at the edge of the contact.
+_GRUBIN = 0.97
+#: Part of the bound at which the pressure of the inlet is cut, and the greatest such pressure.
+_BOUND, _HIGHEST = 0.985, 0.5
+#: Position where the inlet pressure has faded under that of the dry contact.
+_FADED = -0.5
+
+
+@nb.njit(**INNER)
+def dry_gap(x: float) -> float:
+    """Gap of the dry contact outside of it, in b^2/R."""
+    a = abs(x)
+    if a <= 1.0:
+        return 0.0
+    root = np.sqrt(a * a - 1.0)
+    return 0.5 * (a * root - np.log(a + root))
+
+
+@nb.njit(**INNER)
+def piezoviscosity(oil: Array) -> float:
+    """Slope of ln(viscosity) over the dimensionless pressure at ambient pressure."""
+    if oil[0] == ROELANDS:
+        return oil[1] * oil[3] / oil[2]
+    return oil[1] if oil[0] == BARUS else 0.0
+
+
+@nb.njit(**INNER)
+def free_nodes(n: int, P: Array) -> int:
+    """Last node with pressure."""
+    k = n - 1
+    while k > 2 and not P[k] > 0.0:
+        k -= 1
+    return k
+
+
+@nb.njit(**INNER)
+def _reduced_pressure(
+    n: int, start: float, dx: float, lam: float, film: float, tail: float, q: Array
+) -> float:
+    """Isoviscous pressure of the inlet wedge at X <= -1, and its value at the edge."""
+    q[0] = tail
+    before = lam * dry_gap(start) / (film + dry_gap(start)) ** 3
+    last = tail
+    for i in range(1, n + 1):
+        x = start + i * dx
+        if x > -1.0:
+            break
+        d = dry_gap(x)
+        here = lam * d / (film + d) ** 3
+        last += 0.5 * dx * (before + here)
+        q[i] = last
+        before = here
+    return last
+
+
+@nb.njit(**INNER)
+def _thickened(q: float, slope: float) -> float:
+    """Pressure of the reduced pressure ``q`` under Barus' law."""
+    if slope > 2.0:
+        q = -np.log(1.0 - min(slope * q, _BOUND)) / slope
+    return min(q, _HIGHEST)
+
+
+@nb.njit(inline="always", **INNER)
+def cold_start(
+    n: int, start: float, dx: float, lam: float, oil: Array, film: float, load: float,
+    tail: float, shape: Array, K: Array, plan: Array, work: Any, P: Array, H: Array,
+) -> float:  # fmt: skip
+    """Pressure and film to start from without an earlier solution.
+
+    Parameters
+    ----------
+    n, start, dx : int, float, float
+        Grid.
+    lam, oil, load, tail, shape
+        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
+    film : float
+        Estimate of the central film.
+    K, plan, work
+        Influence, and room from :func:`~tribodyn.ehl.kernel.newton.newton_work`.
+    P, H : (n + 1,) arrays
+        Receive pressure and film.
+
+    Returns
+    -------
+    float
+        Rigid offset of the film.
+
+    Notes
+    -----
+    Grubin (1949): the oil thickens until the reduced pressure of the inlet wedge nears 1/alpha
+    at the edge of the contact; bisected for the film where the oil is piezoviscous.
+    """
+    q = work[0][0]
+    slope = piezoviscosity(oil)
+    wedge = film
+    if slope > 2.0:
+        low, high = 1e-3 * film, 10.0 * film
+        for _ in range(20):
+            wedge = np.sqrt(low * high)
+            if slope * _reduced_pressure(n, start, dx, lam, wedge, tail, q) > _GRUBIN:
+                low = wedge
+            else:
+                high = wedge
+    edge = _reduced_pressure(n, start, dx, lam, wedge, tail, q)
+    edge = _thickened(edge, slope)
+    for i in range(n + 1):
+        x = start + i * dx
+        if x <= -1.0:
+            P[i] = _thickened(q[i], slope)
+        else:
+            inside = np.sqrt(max(1.0 - x * x, 0.0))
+            faded = edge * max(_FADED - x, 0.0) / (_FADED + 1.0)
+            P[i] = max(inside, faded)
+    P[n] = 0.0
+    k = free_nodes(n, P)
+    scale_to_load(n, dx, k, load, tail, P)
+    film_sum(n, K, plan, P, work[5], H)
+    least = np.inf
+    for i in range(n + 1):
+        H[i] += shape[i]
+        if abs(start + i * dx) < 0.9:
+            least = min(least, H[i])
+    offset = film - least
+    for i in range(n + 1):
+        H[i] += offset
+    return offset

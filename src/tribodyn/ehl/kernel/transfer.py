@@ -1,0 +1,89 @@
+"""A solution carried to the grid of half the interval."""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.outlet import outlet_position
+
+__all__ = ["central", "refine", "scale_to_load"]
+
+Array = NDArray[np.float64]
+
+
+@nb.njit(**INNER)
+def scale_to_load(n: int, dx: float, k: int, load: float, tail: float, P: Array) -> None:
+    """Scale the pressure behind the first node to the load, the first node counted half."""
+    total = 0.0
+    for i in range(1, k + 1):
+        total += P[i]
+    P[0] = tail
+    if total > 0.0:
+        factor = (load / dx - 0.5 * tail) / total
+        for i in range(1, k + 1):
+            P[i] *= factor
+
+
+@nb.njit(**INNER)
+def refine(n: int, dx: float, P: Array, k: int, load: float, tail: float, fine: Array) -> int:
+    """Interpolate a pressure to the grid of half the interval.
+
+    Parameters
+    ----------
+    n, dx : int, float
+        Coarse grid.
+    P : (n + 1,) array
+        Pressure.
+    k : int
+        Last free node.
+    load, tail : float
+        Load and pressure at the first node.
+    fine : (2 n + 1,) array
+        Receives the pressure, scaled to the load.
+
+    Returns
+    -------
+    int
+        Last free node of the fine grid.
+
+    Notes
+    -----
+    Cubic inside, linear at the ends; behind the last free node the square root of the pressure
+    is continued linearly to the outlet.
+    """
+    m = 2 * n
+    out = 2.0 * outlet_position(k, n, P)
+    last = min(max(int(np.ceil(out)) - 1, 2), m - 1)
+    for i in range(k + 1):
+        fine[2 * i] = P[i]
+    for i in range(k):
+        if 1 <= i < k - 1:
+            middle = (9.0 * (P[i] + P[i + 1]) - P[i - 1] - P[i + 2]) / 16.0
+            fine[2 * i + 1] = max(middle, 0.0)
+        else:
+            fine[2 * i + 1] = 0.5 * (P[i] + P[i + 1])
+    for j in range(2 * k + 1, m + 1):
+        share = (out - j) / (out - 2 * k) if j <= last else 0.0
+        fine[j] = P[k] * share * share
+    for j in range(last + 1, m + 1):
+        fine[j] = 0.0
+    scale_to_load(m, 0.5 * dx, last, load, tail, fine)
+    return last
+
+
+@nb.njit(**INNER)
+def central(n: int, start: float, dx: float, H: Array) -> float:
+    """Film at X = 0 by cubic interpolation on a grid that begins at ``start``."""
+    t = -start / dx
+    i = min(max(int(np.floor(t)), 1), n - 2)
+    t -= i
+    a, b, c, d = H[i - 1], H[i], H[i + 1], H[i + 2]
+    return (
+        -t * (t - 1.0) * (t - 2.0) / 6.0 * a
+        + (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * b
+        - (t + 1.0) * t * (t - 2.0) / 2.0 * c
+        + (t + 1.0) * t * (t - 1.0) / 6.0 * d
+    )

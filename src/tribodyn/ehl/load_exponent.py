@@ -1,0 +1,88 @@
+"""How fast the film of a formula falls with the load: its tangent stiffness follows from that."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.ehl.groups import line_contact_groups
+from tribodyn.ehl.regimes import (
+    elastic_isoviscous,
+    elastic_piezoviscous,
+    rigid_isoviscous,
+    rigid_piezoviscous,
+)
+
+__all__ = ["moes_load_exponent"]
+
+
+def moes_load_exponent(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> NDArray[np.float64]:
+    """Slope ``d ln(h)/d ln(w)`` of the central film of :func:`tribodyn.ehl.moes_central`.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load per face width.
+    equivalent_radius : float or array [m]
+        Reduced radius of curvature.
+    entrainment_speed : float or array [m/s]
+        HALF the sum of the surface speeds.
+    dynamic_viscosity : float or array [Pa*s]
+        Viscosity at ambient pressure.
+    pressure_viscosity_coefficient : float or array [1/Pa]
+        Slope of ln(viscosity) over pressure.
+    effective_modulus : float or array [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+
+    Returns
+    -------
+    float or array
+        Between -1 (rigid, isoviscous) and 0 (rigid, piezoviscous), of the common shape of the
+        arguments.
+
+    Raises
+    ------
+    InputError
+        If any value is not finite and positive.
+
+    Valid in all regimes. Source: derivative of the formula of Moes (1965, 2000).
+
+    Examples
+    --------
+    >>> slope = moes_load_exponent(147802.0, 8e-3, 3.0722, 0.082, 2.19e-8, 2.2e11)
+    >>> round(float(slope), 4)
+    -0.0764
+    """
+    groups = line_contact_groups(
+        load_per_width,
+        equivalent_radius,
+        entrainment_speed,
+        dynamic_viscosity,
+        pressure_viscosity_coefficient,
+        effective_modulus,
+    )
+    load, material = groups.moes_load, groups.moes_material
+    rigid, elastic = rigid_isoviscous(load), elastic_isoviscous(load)
+    rigid_thick, elastic_thick = rigid_piezoviscous(material), elastic_piezoviscous(load, material)
+    # Both branches with their slopes over ln(M), then the exponent that joins them.
+    parts = rigid ** (7 / 3), elastic ** (7 / 3)
+    isoviscous = (parts[0] + parts[1]) ** (3 / 7)
+    slope = -(parts[0] + 0.2 * parts[1]) / (parts[0] + parts[1])
+    thick = rigid_thick**-3.5, elastic_thick**-3.5
+    piezoviscous = (thick[0] + thick[1]) ** (-2 / 7)
+    thick_slope = -0.125 * thick[1] / (thick[0] + thick[1])
+    decay = np.exp(-2.0 * elastic / rigid)
+    s = (7.0 + 8.0 * decay) / 5.0
+    s_slope = -2.56 * elastic / rigid * decay
+    weight = 1.0 / (1.0 + (piezoviscous / isoviscous) ** s)
+    logarithm = weight * np.log(isoviscous) + (1.0 - weight) * np.log(piezoviscous)
+    film = np.log(isoviscous**s + piezoviscous**s) / s
+    joined = weight * slope + (1.0 - weight) * thick_slope
+    return np.asarray(joined + s_slope / s * (logarithm - film))[()]

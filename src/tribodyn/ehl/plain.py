@@ -1,0 +1,298 @@
+"""The steady line contact in plain NumPy: the whole physics on a page, dense and without loops.
+
+Slow, but nothing is hidden: the film is a product with a full matrix, and so is the Jacobian. The
+compiled solvers are tested against these equations and share none of their code.
+
+Everything is in the units of the dry contact: ``X = x/b``, ``P = p/p_h``, ``H = h R/b^2``. The
+nodes 0 to n divide the domain evenly, and node i stands for the cell of width ``dX`` around it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["PlainContact", "PlainOil", "plain_oil"]
+
+Array = NDArray[np.float64]
+
+#: Reference pressure of the Roelands law [Pa].
+_ROELANDS_PRESSURE = 1.0 / 5.1e-9
+#: The gap is taken as at least this much in the mobility, and there only.
+_LEAST_GAP = 1e-10
+
+
+class PlainOil(NamedTuple):
+    """Viscosity and density over pressure, in units of the ambient values and of ``p_h``.
+
+    Parameters
+    ----------
+    law : float
+        0: isoviscous, 1: Barus ``ln eta = a P``, 2: Roelands ``ln eta = a ((1 + P/p0)^z - 1)``.
+    scale : float
+        The number a: pure.
+    reference : float
+        The number p0, pure; the Roelands law is held from -0.3 p0 downwards.
+    exponent : float
+        The number z, pure.
+    growth, saturation : float
+        Density ``1 + growth P/(1 + saturation P)`` of Dowson and Higginson, both pure.
+    """
+
+    law: float
+    scale: float
+    reference: float
+    exponent: float
+    growth: float
+    saturation: float
+
+    def log_viscosity(self, P: Array) -> tuple[Array, Array]:
+        """Logarithm of the viscosity, and its slope over pressure.
+
+        Parameters
+        ----------
+        P : array
+            Pressures, in Hertz pressures.
+
+        Returns
+        -------
+        tuple of two arrays
+        """
+        if self.law == 0.0:
+            return 0.0 * P, 0.0 * P
+        if self.law == 1.0:
+            return self.scale * P, self.scale + 0.0 * P
+        held = np.maximum(P / self.reference, -0.3)
+        slope = self.scale * self.exponent / self.reference * (1.0 + held) ** (self.exponent - 1.0)
+        moving = P / self.reference > -0.3
+        return self.scale * ((1.0 + held) ** self.exponent - 1.0), slope * moving
+
+    def density(self, P: Array) -> tuple[Array, Array]:
+        """Density, and its slope over pressure.
+
+        Parameters
+        ----------
+        P : array
+            Pressures, in Hertz pressures.
+
+        Returns
+        -------
+        tuple of two arrays
+        """
+        below = 1.0 + self.saturation * P
+        return 1.0 + self.growth * P / below, self.growth / below**2
+
+    @property
+    def initial_slope(self) -> float:
+        """Slope ``alpha p_h`` of the logarithm of the viscosity at ambient pressure."""
+        return float(self.log_viscosity(np.zeros(1))[1][0])
+
+
+def plain_oil(
+    viscosity_law: str,
+    hertz_pressure: float,
+    pressure_viscosity_coefficient: float,
+    pressure_viscosity_index: float = 0.68,
+    *,
+    compressible: bool = True,
+) -> PlainOil:
+    """Constants of an oil under a Hertz pressure.
+
+    Parameters
+    ----------
+    viscosity_law : str
+        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
+    hertz_pressure : float [Pa]
+        Greatest pressure of the dry contact.
+    pressure_viscosity_coefficient : float [1/Pa]
+        Slope of ln(viscosity) over pressure at ambient pressure.
+    pressure_viscosity_index : float [-]
+        Exponent z of the Roelands law.
+    compressible : bool
+        Whether the density follows Dowson and Higginson; otherwise it is constant.
+
+    Returns
+    -------
+    PlainOil
+
+    Source: Roelands (1966) with ``p0 = 1/5.1e-9 Pa``; Dowson and Higginson (1966).
+    """
+    law = {"isoviscous": 0.0, "barus": 1.0, "roelands": 2.0}[viscosity_law]
+    scale = pressure_viscosity_coefficient * hertz_pressure
+    reference = _ROELANDS_PRESSURE / hertz_pressure
+    if law == 2.0:
+        scale *= reference / pressure_viscosity_index
+    growth, saturation = (0.6e-9, 1.7e-9) if compressible else (0.0, 0.0)
+    return PlainOil(
+        law, scale, reference, pressure_viscosity_index,
+        growth * hertz_pressure, saturation * hertz_pressure,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class PlainContact:
+    """A line contact on its grid.
+
+    Parameters
+    ----------
+    intervals : int
+        Number n of cells; there are n + 1 nodes.
+    domain : tuple of two float
+        First and last node, in half widths.
+    speed_parameter : float
+        ``lambda = 12 eta0 u_e R^2/(b^3 p_h) = 3 pi^2/(8 M^2)``, pure.
+    oil : PlainOil
+        Constants of the oil.
+    load : float
+        What ``dX (P_0/2 + P_1 + ... + P_n)`` must be: pi/2 without a part cut off.
+    inlet_pressure : float
+        ``P_0``, in Hertz pressures.
+    """
+
+    intervals: int
+    domain: tuple[float, float]
+    speed_parameter: float
+    oil: PlainOil
+    load: float = math.pi / 2.0
+    inlet_pressure: float = 0.0
+    X: Array = field(init=False, repr=False)
+    width: float = field(init=False)
+    influence: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Make the nodes and the matrix that turns pressure into film."""
+        X, width = np.linspace(*self.domain, self.intervals + 1, retstep=True)
+        node = np.arange(self.intervals + 1)
+        near = (np.maximum(node, 1) - 0.5) * width  # nearer edge of a cell m widths away
+        far = width * (np.log(near) - 1.0) + (near + width) * np.log1p(width / near)
+        own = width * (math.log(0.5 * width) - 1.0)
+        row = np.where(node == 0, own, far) / -math.pi
+        object.__setattr__(self, "X", X)
+        object.__setattr__(self, "width", float(width))
+        object.__setattr__(self, "influence", row[np.abs(node[:, None] - node)])
+
+    def film(self, P: Array, offset: float) -> Array:
+        """Gap ``H = H0 + X^2/2 - (1/pi) int P ln|X - X'| dX'``.
+
+        Parameters
+        ----------
+        P : array
+            Pressures at the nodes.
+        offset : float
+            H0 in b^2/R.
+
+        Returns
+        -------
+        array
+        """
+        return np.asarray(offset + 0.5 * self.X**2 + self.influence @ P)
+
+    def flux(self, P: Array, H: Array, speed: float = 1.0) -> Array:
+        """Mass flux through the faces: second-order upstream with the wall, central by pressure.
+
+        ``F_{i+1/2} = 1.5 (rho H)_i - 0.5 (rho H)_{i-1} - (eps_i + eps_{i+1})/2 (P_{i+1}-P_i)/dX``
+        with the mobility ``eps = rho H^3/(eta lambda)``; the first face takes the mean of its two
+        nodes.
+
+        Parameters
+        ----------
+        P, H : array
+            Pressures and film at the nodes.
+        speed : float
+            Entrainment speed over that in lambda, pure.
+
+        Returns
+        -------
+        array
+            At the n faces.
+        """
+        mass = self.oil.density(P)[0] * H
+        wall = np.concatenate(([0.5 * (mass[0] + mass[1])], 1.5 * mass[1:-1] - 0.5 * mass[:-2]))
+        mobility = self._mobility(P, H)
+        return speed * wall - 0.5 * (mobility[1:] + mobility[:-1]) * np.diff(P) / self.width
+
+    def residual(
+        self,
+        P: Array,
+        H: Array,
+        speed: float = 1.0,
+        squeeze: float = 0.0,
+        history: float | Array = 0.0,
+    ) -> Array:
+        """What the inner nodes 1 to n - 1 lose: outflow less inflow, plus the growth of the film.
+
+        Zero in the film. In the cavity, where P = 0, it is positive: the gap widens.
+
+        Parameters
+        ----------
+        P, H : array
+            Pressures and film at the nodes.
+        speed : float
+            Entrainment speed over that in lambda, pure.
+        squeeze : float
+            Weight of the present mass in its rate of growth, pure.
+        history : float or array
+            What earlier masses contribute to that rate, pure.
+
+        Returns
+        -------
+        array
+            At the n - 1 inner nodes.
+        """
+        mass = self.oil.density(P)[0] * H
+        return np.asarray(np.diff(self.flux(P, H, speed)) + squeeze * mass[1:-1] - history)
+
+    def _mobility(self, P: Array, H: Array) -> Array:
+        viscous = np.exp(-self.oil.log_viscosity(P)[0])
+        rho = self.oil.density(P)[0]
+        return np.asarray(rho * np.maximum(H, _LEAST_GAP) ** 3 * viscous / self.speed_parameter)
+
+    def jacobian(self, P: Array, H: Array) -> tuple[Array, Array]:
+        """Derivatives of the steady residual: by the pressures, a full matrix, and by the offset.
+
+        The film follows the pressures through the influence matrix and the offset one to one.
+
+        Parameters
+        ----------
+        P, H : array
+            Pressures and film at the nodes.
+
+        Returns
+        -------
+        tuple of two arrays
+            Of shapes (n - 1, n + 1) and (n - 1).
+        """
+        rho, rho_slope = self.oil.density(P)
+        mobility = self._mobility(P, H)
+        by_gap = np.where(_LEAST_GAP < H, 3.0 * mobility / H, 0.0)
+        by_oil = mobility * (rho_slope / rho - self.oil.log_viscosity(P)[1])
+        conductance = 0.5 * (mobility[1:] + mobility[:-1]) / self.width
+        film = self._by_node(P, rho, by_gap, 0.0)
+        own = self._by_node(P, rho_slope * H, by_oil, conductance)
+        above = np.vstack((np.zeros_like(P), self.influence))  # nodes -1 to n
+        rows = len(P) - 2
+        full = sum(film[s][:, None] * above[s : s + rows] for s in range(4))
+        for s in range(4):
+            full[np.arange(rows), np.arange(rows) + s - 1] += own[s]
+        return full, film.sum(axis=0)
+
+    def _by_node(self, P: Array, mass: Array, mobility: Array, conductance: float | Array) -> Array:
+        """Derivatives of the residual i by something at the nodes i - 2 to i + 1: four rows.
+
+        ``mass`` and ``mobility`` are the derivatives by that at the node itself; ``conductance``
+        is the flux per drop of pressure where it is the pressure, else zero.
+        """
+        half_slope = 0.5 * np.diff(P) / self.width
+        face = np.zeros((3, len(P) - 1))  # flux through i + 1/2 by the nodes i - 1, i, i + 1
+        face[0, 1:], face[1, 1:] = -0.5 * mass[:-2], 1.5 * mass[1:-1]
+        face[1, 0], face[2, 0] = 0.5 * mass[0], 0.5 * mass[1]
+        face[1] += conductance - half_slope * mobility[:-1]
+        face[2] -= conductance + half_slope * mobility[1:]
+        node = np.zeros((4, len(P) - 2))
+        node[1:] += face[:, 1:]
+        node[:3] -= face[:, :-1]
+        return node

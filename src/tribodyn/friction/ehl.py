@@ -1,0 +1,186 @@
+"""Friction of the solved oil film: its shear, with or without the heat that it makes."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.ehl.film_state import FilmState
+from tribodyn.ehl.film_temperature import film_temperature_rise, film_thermal_resistance
+from tribodyn.ehl.heated_viscosity import thermal_oil
+from tribodyn.ehl.inlet_heating import inlet_heating_factor
+from tribodyn.ehl.ree_eyring import EYRING_STRESS
+from tribodyn.ehl.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction import FilmShear
+from tribodyn.errors import InputError, Problem, require_positive, warn
+from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+
+__all__ = ["ehl"]
+
+Array = NDArray[np.float64]
+
+_GREATEST = 0.2  # friction coefficient that lubricated steel hardly exceeds
+
+
+def ehl(
+    contact: TribologicalContact,
+    *,
+    shear_model: str = "ree-eyring",
+    eyring_stress: float = EYRING_STRESS,
+    inlet_heating: bool = False,
+    flash_temperature: bool = False,
+    rolling: bool = False,
+) -> Array:
+    """Friction coefficient of solved films: integral of their shear stress over the load.
+
+    With ``flash_temperature`` the viscosity is that at the mean temperature of the film: inlet
+    plus mean flash temperature of Blok plus ``q h/(12 k)`` across the oil, where the heat q is
+    that of the friction itself.
+
+    Parameters
+    ----------
+    contact : TribologicalContact
+        Loaded contacts with their ``film``.
+    shear_model : {"ree-eyring", "newtonian"}
+        How the oil shears.
+    eyring_stress : float [Pa]
+        Stress from which a Ree-Eyring oil thins; 2 to 10 MPa for oils.
+    inlet_heating : bool
+        Thin the film by the heat made in the inlet.
+    flash_temperature : bool
+        Take the viscosity at the mean temperature of the film, between bodies of steel.
+    rolling : bool
+        Add the rolling traction, so that the coefficient is that on the faster surface.
+
+    Returns
+    -------
+    array
+        Friction coefficient, never negative; without sliding zero, or the rolling part.
+
+    Raises
+    ------
+    InputError
+        If the contacts have no film, or the oil lacks the thermal data that an option needs.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``friction-range`` where the coefficient exceeds 0.2; code ``film-range`` of a
+        heated inlet.
+
+    Valid for a full film: asperities are not counted. Source: Johnson and Tevaarwerk (1977), with
+    the models of the single effects, each named in its function.
+
+    Examples
+    --------
+    >>> from tribodyn.lubricant import from_library
+    >>> x = np.linspace(-1e-4, 1e-4, 401)
+    >>> pressure = 0.8e9 * np.sqrt(1 - (x / 1e-4) ** 2)
+    >>> film = FilmState(x, pressure, 1e-6 * np.ones(401), from_library("80W"), 2.2e11)
+    >>> load = 0.5 * np.pi * 1e-4 * 0.8e9 * np.ones(1)
+    >>> one = np.ones(1)
+    >>> contact = TribologicalContact(
+    ...     load, 0.8e9 * one, 0.5 * one, 2.0 * one, 0.25 * one, 8e-3 * one, 0.082, 0.0, film
+    ... )
+    >>> print(np.round(ehl(contact), 4), np.round(ehl(contact, flash_temperature=True), 4))
+    [0.044] [0.035]
+    """
+    require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
+    film = _film_of(contact)
+    speed = np.abs(np.ravel(contact.sliding_speed))
+    factor = _film_factor(contact, film) if inlet_heating else None
+    shear = FilmShear(film, SHEAR_MODELS[shear_model], eyring_stress, factor)
+    rise = _temperature_rise(contact, shear, speed) if flash_temperature else None
+    traction, _ = shear.sliding(speed, rise)
+    if rolling:
+        traction = traction + shear.rolling
+    coefficient = traction / np.ravel(contact.load_per_width)
+    _warn_of_solid(coefficient, shear_model)
+    return coefficient.reshape(np.shape(contact.load_per_width))
+
+
+def _film_of(contact: TribologicalContact) -> FilmState:
+    if contact.film is not None:
+        return contact.film
+    raise InputError(
+        Problem(
+            what="the oil film is not known",
+            where='friction law "ehl"',
+            why="it integrates the shear stress of the solved film",
+            remedy='Set [film] model = "newton" (or "multigrid"), or choose another friction law',
+        )
+    )
+
+
+def _film_factor(contact: TribologicalContact, film: FilmState) -> Array:
+    oil = thermal_oil(film.lubricant)
+    return np.ravel(
+        inlet_heating_factor(
+            contact.entrainment_speed,
+            contact.slide_to_roll_ratio,
+            contact.hertz_pressure,
+            film.lubricant.dynamic_viscosity,
+            oil.temperature_viscosity_coefficient,
+            oil.thermal_conductivity,
+            film.effective_modulus,
+        )
+    )
+
+
+def _temperature_rise(contact: TribologicalContact, shear: FilmShear, speed: Array) -> Array:
+    """Mean rise of the film temperature in each contact."""
+    film = shear.film
+    entrainment = np.ravel(contact.entrainment_speed)
+    half_width = 2.0 * np.ravel(contact.load_per_width / contact.hertz_pressure) / np.pi
+    thickness = film.central_film[film.contacts]
+    resistance = film_thermal_resistance(
+        half_width,
+        thickness if shear.film_factor is None else thickness * shear.film_factor,
+        entrainment + 0.5 * speed,
+        entrainment - 0.5 * speed,
+        thermal_oil(film.lubricant).thermal_conductivity,
+    )
+
+    def heat(rise: Array) -> tuple[Array, Array]:
+        traction, slope = shear.sliding(speed, rise)
+        return speed * traction, speed * slope
+
+    return film_temperature_rise(heat, resistance)
+
+
+def _warn_of_solid(coefficient: Array, shear_model: str) -> None:
+    """Say where the oil would have to be stronger than any oil is."""
+    greatest = float(np.max(coefficient))
+    if greatest > _GREATEST:
+        remedy = (
+            'Set friction.shear_model = "ree-eyring"'
+            if shear_model == "newtonian"
+            else "Lower the Eyring stress, or set friction.flash_temperature = true"
+        )
+        warn(
+            "friction-range",
+            f"ehl: friction coefficient up to {greatest:.3g} with {shear_model} shear; oil films "
+            f"stay below {_GREATEST:g}, because oil under pressure thins and yields. {remedy}.",
+            stacklevel=4,
+        )
+
+
+LAWS.register("ehl")(
+    FrictionLaw(
+        "ehl",
+        "Johnson and Tevaarwerk, Proc. R. Soc. A 356 (1977); Conry, Wang and Cusano (1987)",
+        ehl,
+        MappingProxyType(
+            {
+                "shear_model": "ree-eyring",
+                "eyring_stress": EYRING_STRESS,
+                "inlet_heating": False,
+                "flash_temperature": False,
+                "rolling": False,
+            }
+        ),
+        needs_film=True,
+    )
+)

@@ -1,0 +1,254 @@
+"""Places along the path of contact at which the film is solved, and what lies between them.
+
+The load of a tooth pair jumps where another pair enters or leaves, and its friction turns round at
+the pitch point. Between two such places everything is smooth: each zone has the Gauss-Lobatto
+points of its own, both ends included, and the polynomial through them is nearly the best one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.contact import PathOfContact
+from tribodyn.errors import require_between
+
+__all__ = [
+    "LEAST",
+    "MOST",
+    "PathPositions",
+    "lobatto_points",
+    "lobatto_polynomial",
+    "path_positions",
+]
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+#: Number of positions that can be asked for.
+LEAST, MOST = 8, 200
+#: A zone with fewer points is not worth a polynomial.
+_LEAST_IN_ZONE = 4
+#: Zones narrower than this are rounding [mesh cycles].
+_ROUNDING = 1e-9
+#: Distance from the end of a zone that tells its two sides apart [mesh cycles].
+_SIDE = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class PathPositions:
+    """Positions of one tooth pair from its entry to its exit, counted in mesh cycles.
+
+    Parameters
+    ----------
+    edges : tuple of float
+        Ages of the pair where zones begin, and where the last one ends [mesh cycles].
+    counts : tuple of int
+        Positions in each zone.
+    """
+
+    edges: tuple[float, ...]
+    counts: tuple[int, ...]
+
+    @cached_property
+    def age(self) -> FloatArray:
+        """Mesh cycles since the pair entered; an edge between two zones occurs twice."""
+        zones = zip(self.edges[:-1], self.edges[1:], self.counts, strict=True)
+        parts = [0.5 * (a + b) + 0.5 * (b - a) * lobatto_points(count) for a, b, count in zones]
+        for part, start, end in zip(parts, self.edges[:-1], self.edges[1:], strict=True):
+            part[0], part[-1] = start, end
+        return np.concatenate(parts)
+
+    @cached_property
+    def sided_age(self) -> FloatArray:
+        """The same ages moved by a hair into their own zone, so that edges have two sides."""
+        first = np.repeat(self.edges[:-1], self.counts) + _SIDE
+        last = np.repeat(self.edges[1:], self.counts) - _SIDE
+        return np.asarray(np.clip(self.age, first, last))
+
+    @property
+    def zones(self) -> tuple[slice, ...]:
+        """Positions of each zone."""
+        stops = np.cumsum(self.counts)
+        return tuple(
+            slice(int(stop) - count, int(stop))
+            for stop, count in zip(stops, self.counts, strict=True)
+        )
+
+    def zone_of(self, age: FloatArray) -> IntArray:
+        """Find the zone of a pair.
+
+        Parameters
+        ----------
+        age : array
+            Mesh cycles since the pair entered [mesh cycles]; on an edge the zone after it.
+
+        Returns
+        -------
+        array of int
+            Index of the zone.
+        """
+        inner = np.array(self.edges[1:-1])
+        return np.asarray(np.searchsorted(inner, age, side="right"), dtype=np.int64)
+
+    def interpolate(self, values: FloatArray, age: FloatArray, zone: IntArray) -> FloatArray:
+        """Evaluate the polynomial through the positions of a zone.
+
+        Parameters
+        ----------
+        values : array (positions, ...)
+            Values at the positions.
+        age : array (m,)
+            Mesh cycles since the pair entered [mesh cycles].
+        zone : array of int (m,)
+            Zone whose polynomial is taken, so that an edge can be seen from either side.
+
+        Returns
+        -------
+        array (m, ...)
+        """
+        found = np.zeros(age.shape + values.shape[1:])
+        for number, part in enumerate(self.zones):
+            here = zone == number
+            matrix = lobatto_polynomial(self.age[part], age[here])
+            found[here] = np.tensordot(matrix, values[part], axes=(1, 0))
+        return found
+
+    def truncation(self, values: FloatArray) -> float:
+        """Estimate the error of the interpolation from how the terms of each zone fall.
+
+        Parameters
+        ----------
+        values : array (positions,)
+            Values at the positions.
+
+        Returns
+        -------
+        float
+            Greatest next Chebyshev term of any zone, in the unit of the values.
+        """
+        return max(_rest(values[part]) for part in self.zones)
+
+
+def lobatto_points(count: int) -> FloatArray:
+    """Gauss-Lobatto points of Chebyshev between -1 and 1, rising.
+
+    Parameters
+    ----------
+    count : int
+        At least two.
+
+    Returns
+    -------
+    array (count,)
+    """
+    return np.asarray(-np.cos(np.pi * np.arange(count) / (count - 1)))
+
+
+def lobatto_polynomial(knots: FloatArray, at: FloatArray) -> FloatArray:
+    """Weights of the values at Gauss-Lobatto points in the polynomial through them.
+
+    Parameters
+    ----------
+    knots : array (count,)
+        Points of :func:`lobatto_points`, shifted and scaled.
+    at : array (m,)
+        Where the polynomial is evaluated.
+
+    Returns
+    -------
+    array (m, count)
+
+    Notes
+    -----
+    Source: barycentric formula, Berrut and Trefethen (2004).
+    """
+    weight = (-1.0) ** np.arange(knots.size)
+    weight[[0, -1]] *= 0.5
+    distance = at[:, None] - knots
+    hit = distance == 0.0
+    parts = weight / np.where(hit, 1.0, distance)
+    parts = np.where(hit.any(axis=1, keepdims=True), hit, parts)
+    return np.asarray(parts / parts.sum(axis=1, keepdims=True))
+
+
+def _rest(values: FloatArray) -> float:
+    """What the series leaves out, as its terms fall: the next one after the last pair of terms."""
+    order = values.size - 1
+    ends = np.ones(order + 1)
+    ends[[0, -1]] = 0.5
+    angle = np.pi * np.arange(order + 1) / order
+    terms = [
+        2.0 / order * abs(np.sum(ends * values * np.cos(k * angle)))
+        for k in (order - 2, order - 1, order)
+    ]
+    terms[-1] *= 0.5
+    last, before = max(terms[1:]), max(terms[:2])
+    return float(min(last, last * last / before) if before > 0.0 else last)
+
+
+def path_positions(contact: PathOfContact, positions: int) -> PathPositions:
+    """Spread positions over the zones of the path of contact.
+
+    Parameters
+    ----------
+    contact : PathOfContact
+        Path of contact of the pair.
+    positions : int
+        Positions wanted, from 8 to 200; every zone has at least four.
+
+    Returns
+    -------
+    PathPositions
+        Zones end where a pair enters or leaves, and at the pitch point.
+
+    Raises
+    ------
+    InputError
+        If the number of positions is out of range.
+
+    Notes
+    -----
+    Any contact ratio. Source: Gauss-Lobatto points, whose interpolation of a smooth function
+    converges exponentially.
+
+    Examples
+    --------
+    >>> from tribodyn.contact import path_of_contact
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...                  normal_pressure_angle=0.3490658504, pinion_face_width=50e-3)
+    >>> places = path_positions(path_of_contact(pair), 30)
+    >>> [round(edge, 3) for edge in places.edges], places.counts
+    ([0.0, 0.605, 0.827, 1.0, 1.605], (11, 4, 4, 11))
+    """
+    require_between("positions", positions, LEAST, MOST)
+    ratio = contact.contact_ratio
+    found = [0.0, ratio]
+    for number in range(1, contact.pairs):
+        found += [float(number), ratio - number]
+    pitch_point = contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
+    found.append(pitch_point)
+    edges = [0.0]
+    for edge in sorted(edge for edge in found if 0.0 < edge <= ratio):
+        if edge - edges[-1] > _ROUNDING:
+            edges.append(edge)
+    edges[-1] = ratio
+    return PathPositions(tuple(edges), _shares(np.diff(edges), int(positions)))
+
+
+def _shares(lengths: FloatArray, total: int) -> tuple[int, ...]:
+    """Whole numbers in proportion to the lengths, at least four each, by the largest remainder."""
+    free = np.maximum(total * lengths / lengths.sum(), _LEAST_IN_ZONE)
+    wide = free > _LEAST_IN_ZONE
+    room = total - _LEAST_IN_ZONE * int(np.sum(~wide))
+    if not np.any(wide) or room < _LEAST_IN_ZONE * int(np.sum(wide)):
+        return (_LEAST_IN_ZONE,) * lengths.size
+    wanted = np.where(wide, room * lengths / lengths[wide].sum(), _LEAST_IN_ZONE)
+    counts = np.maximum(np.floor(wanted), _LEAST_IN_ZONE).astype(int)
+    for index in np.argsort(counts - wanted)[: max(total - int(counts.sum()), 0)]:
+        counts[index] += 1
+    return tuple(int(count) for count in counts)

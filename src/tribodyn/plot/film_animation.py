@@ -1,0 +1,271 @@
+"""Pressure and film of one contact that moves or changes: frames, a slider and a play button."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.plot.contact_scales import Scales, dry_pressure, film_height, thinned, window
+from tribodyn.plot.events import event_lines
+from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.line_contact import curve, point
+from tribodyn.plot.style import INK, MUTED, PAIR_COLORS, TOTAL, figure
+
+__all__ = ["Track", "animation"]
+
+Array = NDArray[np.float64]
+
+#: Points of a profile, and of the dry pressure: enough for a screen, small as a file.
+_POINTS, _DRY = 200, 41
+#: Upper ends and lower ends of the three rows of panels, from the top down, and the height [px].
+_PRESSURE, _FILM, _TRACK = (0.71, 1.0), (0.36, 0.66), (0.0, 0.2)
+#: Width of each of the lower panels.
+_HALF = 0.44
+_HEIGHT = 760
+#: Time for which a place is shown [ms].
+_FRAME = 160
+
+
+def _short(values: Any) -> NDArray[np.float32]:
+    """Half the bytes; a screen shows four digits."""
+    return np.asarray(values, dtype=np.float32)
+
+
+@dataclass(frozen=True)
+class Track:
+    """What the contact moves along: the path of contact, or time.
+
+    Parameters
+    ----------
+    quantity, words : str
+        Name in the nomenclature, and what is printed under the axis.
+    values : (n,) array
+        Place of each contact, in SI.
+    letters : mapping of str to float
+        Places to be marked, in SI.
+    """
+
+    quantity: str
+    words: str
+    values: Array
+    letters: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def places(self) -> Array:
+        """Places in the display unit."""
+        return displayed(self.quantity, self.values)
+
+    def axis(self, share: tuple[float, float], anchor: str) -> dict[str, Any]:
+        """Describe the axis under one of the lower panels, on which time runs to the right.
+
+        Parameters
+        ----------
+        share : tuple of float
+            Left and right end, as parts of the width.
+        anchor : str
+            Vertical axis.
+
+        Returns
+        -------
+        dict
+            A plotly axis.
+        """
+        backwards = self.values[-1] < self.values[0]
+        return {
+            "domain": share,
+            "anchor": anchor,
+            "title": {"text": axis_label(self.quantity, self.words)},
+            "autorange": "reversed" if backwards else True,
+            "nticks": 6,
+        }
+
+
+def _moving(contact: Any, scales: Scales, place: float, dry: bool) -> list[dict[str, Any]]:
+    """Everything that changes from one place to the next, in the order of the frames."""
+    kept = thinned(contact, _POINTS)
+    position = _short(scales.position * contact.position[kept])
+    pressure = _short(scales.pressure * contact.pressure[kept])
+    film = _short(scales.film * contact.film[kept])
+    load = float(displayed("load_per_width", contact.load_per_width))
+    newton, color = display_unit("load_per_width"), PAIR_COLORS[0]
+    least = scales.film * contact.minimum_film
+    first = {"xaxis": "x", "yaxis": "y", "showlegend": True}
+    traces = [
+        {**curve(position, pressure, "oil film", TOTAL, unit=scales.pressure_unit), **first},
+        {**curve(position, film, "film", TOTAL, unit=scales.film_unit), **_on("x", "y2")},
+        {**point(place, load, "load", color, unit=newton), **_on("x3", "y3")},
+        {**point(place, least, "minimum film", color, unit=scales.film_unit), **_on("x4", "y4")},
+    ]
+    if dry:
+        x, hertz = dry_pressure(contact, _DRY)
+        around, above = _short(scales.position * x), _short(scales.pressure * hertz)
+        dashed = curve(around, above, "dry (Hertz)", MUTED, unit=scales.pressure_unit, dash="dash")
+        traces.append({**dashed, **first})
+    return traces
+
+
+def _on(x: str, y: str) -> dict[str, Any]:
+    return {"xaxis": x, "yaxis": y, "showlegend": False}
+
+
+def _resting(places: Array, loads: Array, films: Array, unit: str) -> list[dict[str, Any]]:
+    """Load and minimum film over the whole track, in display units."""
+    load = curve(places, loads, "load", INK, unit=display_unit("load_per_width"))
+    film = curve(places, films, "minimum film", INK, unit=unit)
+    return [{**load, **_on("x3", "y3")}, {**film, **_on("x4", "y4")}]
+
+
+def _axes(contacts: Sequence[Any], scales: Scales, track: Track) -> dict[str, Any]:
+    ends = np.array([window(one) for one in contacts])
+    highest = scales.pressure * max(float(one.pressure.max()) for one in contacts)
+    height = film_height(contacts, [scales] * len(contacts))
+    low = {"domain": _TRACK, "rangemode": "tozero", "nticks": 6}
+    labels = axis_label("load_per_width", "Load"), f"Thinnest [{scales.film_unit}]"
+    return {
+        "xaxis": {
+            "anchor": "y2",
+            "range": [scales.position * ends[:, 0].min(), scales.position * ends[:, 1].max()],
+            "title": {"text": scales.position_label},
+        },
+        "yaxis": {
+            "domain": _PRESSURE,
+            "range": [0.0, 1.05 * highest],
+            "title": {"text": scales.pressure_label},
+        },
+        "yaxis2": {
+            "domain": _FILM,
+            "range": [0.0, height],
+            "title": {"text": scales.film_label},
+        },
+        "xaxis3": track.axis((0.0, _HALF), "y3"),
+        "yaxis3": {**low, "anchor": "x3", "title": {"text": labels[0]}},
+        "xaxis4": track.axis((1.0 - _HALF, 1.0), "y4"),
+        "yaxis4": {**low, "anchor": "x4", "title": {"text": labels[1]}},
+    }
+
+
+def _letters(track: Track) -> dict[str, Any]:
+    """Lines at the marked places in both lower panels."""
+    places = {name: float(displayed(track.quantity, at)) for name, at in track.letters.items()}
+    marks = event_lines(places.items(), share=_HALF)
+    shapes = [
+        {**shape, "xref": axis, "y1": _TRACK[1]}
+        for axis in ("x3", "x4")
+        for shape in marks["shapes"]
+    ]
+    notes = [
+        {**note, "xref": axis, "y": _TRACK[1]}
+        for axis in ("x3", "x4")
+        for note in marks["annotations"]
+    ]
+    return {"shapes": shapes, "annotations": notes}
+
+
+def _controls(words: Sequence[str]) -> dict[str, Any]:
+    """Slider over the places, and buttons that run through them."""
+    at_once = {"mode": "immediate", "transition": {"duration": 0}}
+    shown = {"frame": {"duration": _FRAME, "redraw": False}, "transition": {"duration": 0}}
+    still = {"frame": {"duration": 0, "redraw": False}, **at_once}
+    hidden = {"color": "rgba(0,0,0,0)", "size": 1}
+    slider = {
+        "active": 0,
+        "x": 0.0,
+        "len": 1.0,
+        "y": -0.12,
+        "yanchor": "top",
+        "pad": {"t": 0},
+        "ticklen": 3,
+        "font": hidden,
+        "currentvalue": {"font": {"color": INK, "size": 13}, "xanchor": "left"},
+        "steps": [
+            {"label": label, "method": "animate", "args": [[str(number)], still]}
+            for number, label in enumerate(words)
+        ],
+    }
+    buttons = {
+        "type": "buttons",
+        "direction": "right",
+        "showactive": False,
+        "x": 0.0,
+        "xanchor": "left",
+        "y": -0.3,
+        "yanchor": "top",
+        "bgcolor": "white",
+        "font": {"size": 12},
+        "buttons": [
+            {"label": "play", "method": "animate", "args": [None, {**shown, "fromcurrent": True}]},
+            {"label": "pause", "method": "animate", "args": [[None], still]},
+        ],
+    }
+    return {"sliders": [slider], "updatemenus": [buttons]}
+
+
+def animation(
+    title: str,
+    contacts: Sequence[Any],
+    scales: Scales,
+    track: Track,
+    *,
+    dry: bool = True,
+    whole: tuple[Array, Array, Array] | None = None,
+) -> Any:
+    """Draw contacts one after the other, with a slider and a play button.
+
+    Parameters
+    ----------
+    title : str
+        The answer that the figure gives.
+    contacts : sequence
+        Each has positions, pressure, film, load and films as a LineContactSolution has them.
+    scales : Scales
+        Units of all contacts.
+    track : Track
+        Place of each contact.
+    dry : bool
+        Whether the dry pressure is drawn.
+    whole : tuple of three array, optional
+        Places, loads and minimum films of the lower panels in display units, where they are
+        known at more places than the contacts.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    import plotly.graph_objects as go
+
+    places = track.places
+    frames = [
+        _moving(one, scales, float(place), dry) for one, place in zip(contacts, places, strict=True)
+    ]
+    if whole is None:
+        loads = displayed("load_per_width", np.array([one.load_per_width for one in contacts]))
+        whole = places, loads, scales.film * np.array([one.minimum_film for one in contacts])
+    words = [
+        f"{rounded(track.quantity, float(at))}: "
+        f"{rounded('load_per_width', float(one.load_per_width))}, "
+        f"film {scales.film_text(one.minimum_film)} at its thinnest"
+        for one, at in zip(contacts, track.values, strict=True)
+    ]
+    resting = _resting(*whole, scales.film_unit)
+    moving = list(range(len(resting), len(resting) + len(frames[0])))
+    made = figure(
+        title,
+        [*resting, *frames[0]],
+        {
+            **_axes(contacts, scales, track),
+            **_letters(track),
+            **_controls(words),
+            "height": _HEIGHT,
+            "hovermode": "closest",
+            "margin": {"l": 70, "r": 24, "t": 74, "b": 200},
+            "legend": {"x": 1.0, "xanchor": "right", "y": 1.0, "yanchor": "top"},
+        },
+    )
+    made.frames = [
+        go.Frame(name=str(number), data=data, traces=moving) for number, data in enumerate(frames)
+    ]
+    return made

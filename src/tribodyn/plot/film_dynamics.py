@@ -1,0 +1,169 @@
+"""Oil films in motion: over time, and against small vibrations of any frequency."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.plot.events import event_lines
+from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
+
+__all__ = ["film_response", "film_transient", "transit_frequency"]
+
+Array = NDArray[np.float64]
+
+#: Default frequencies, in transit frequencies, and their number.
+_LOWEST, _HIGHEST, _POINTS = 0.01, 30.0, 43
+
+
+def transit_frequency(solution: Any) -> float:
+    """Frequency ``u_e/(2 b)`` at which the oil crosses the contact once in a period.
+
+    Parameters
+    ----------
+    solution : LineContactSolution
+        A solved contact with units.
+
+    Returns
+    -------
+    float
+        Frequency [Hz].
+    """
+    return float(solution.entrainment_speed / (2.0 * solution.half_width))
+
+
+def _frequencies(solution: Any, asked: ArrayLike | None) -> Array:
+    if solution.lubricant is None:
+        raise InputError(
+            Problem(
+                what="a contact without units has no frequencies",
+                where="argument solution",
+                why="The numbers of Moes leave speed and size open",
+                remedy="Solve the contact with solve_line_contact",
+            )
+        )
+    if asked is None:
+        spread = np.geomspace(_LOWEST, _HIGHEST, _POINTS)
+        return np.asarray(transit_frequency(solution) * spread)
+    return np.atleast_1d(np.asarray(asked, dtype=float))
+
+
+def film_response(
+    solution: Any, frequencies: ArrayLike | None = None, *, length: float = 1.0
+) -> Any:
+    """Draw stiffness and damping of the film over the frequency, both on logarithmic scales.
+
+    Parameters
+    ----------
+    solution : LineContactSolution
+        What :func:`tribodyn.ehl.solve_line_contact` returns.
+    frequencies : array, optional [Hz]
+        Frequencies; by default from a hundredth of the transit frequency to thirty of it.
+    length : float [m]
+        Length of the contact line.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        A dotted line marks the transit frequency ``u_e/(2 b)``, above which the oil has no time
+        to leave the contact.
+
+    Raises
+    ------
+    InputError
+        If the contact has no units.
+    """
+    at = np.sort(_frequencies(solution, frequencies))
+    stiffness, damping = solution.frequency_response(at, length)
+    transit = transit_frequency(solution)
+    growth = significant(float(stiffness[-1] / stiffness[0]), 2)
+    slow, fast = (f"{significant(1e-3 * float(at[end]))} kHz" for end in (0, -1))
+    x = displayed("frequency", at)
+    curves = (("film_stiffness", "Stiffness", stiffness), ("mesh_damping", "Damping", damping))
+    logarithmic = {"type": "log", "exponentformat": "power"}
+    inside = int(at[0] <= transit <= at[-1])
+    # On a logarithmic axis annotations stand at the logarithm, shapes at the value.
+    marks = event_lines([("transit", float(displayed("frequency", transit)))] * inside)
+    for note in marks["annotations"]:
+        note["x"] = float(np.log10(note["x"]))
+    return stack(
+        f"At {fast} the film is {growth} times as stiff as at {slow}",
+        axis_label("frequency"),
+        [
+            Panel(
+                axis_label(name, words),
+                [line(x, displayed(name, values), words.lower(), TOTAL, unit=display_unit(name))],
+                logarithmic,
+            )
+            for name, words, values in curves
+        ],
+        {"xaxis": logarithmic, **marks},
+    )
+
+
+def _films(transient: Any, time: Any, steady: ArrayLike | None) -> list[dict[str, Any]]:
+    unit = display_unit("film_thickness")
+    rows = [
+        ("in the centre", transient.central_film, PAIR_COLORS[2], "solid"),
+        ("at its thinnest", transient.minimum_film, TOTAL, "solid"),
+    ]
+    if steady is not None:
+        films = np.asarray(steady, dtype=float)
+        if films.shape != transient.time.shape:
+            raise InputError(
+                Problem(
+                    what=f"{films.size} steady films and {transient.time.size} instants",
+                    where="argument steady",
+                    why="Each instant has one steady film to be compared with",
+                    remedy="Give the central films of solve_line_contacts at the same instants",
+                )
+            )
+        rows.append(("in the centre, steady", films, MUTED, "dash"))
+    return [
+        line(time, displayed("film_thickness", films), name, color, unit=unit, dash=dash)
+        for name, films, color, dash in rows
+    ]
+
+
+def film_transient(transient: Any, *, steady: ArrayLike | None = None) -> Any:
+    """Draw load, central and minimum film and the greatest pressure over time.
+
+    Parameters
+    ----------
+    transient : TransientLineContact
+        What :func:`tribodyn.ehl.solve_transient_line_contact` returns.
+    steady : array, optional [m]
+        Central films of steady contacts under the load, radius and speed of every instant: what
+        the squeeze of the film changes is the distance to them.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    InputError
+        If the steady films are not as many as the instants.
+    """
+    time = displayed("time", transient.time)
+    films = _films(transient, time, steady)
+
+    def panel(name: str, words: str, values: Any) -> Panel:
+        curve = line(time, displayed(name, values), words, TOTAL, unit=display_unit(name))
+        return Panel(axis_label(name, words), [curve], {"rangemode": "tozero"}, height=0.6)
+
+    at = int(np.argmin(transient.minimum_film))
+    least = rounded("film_thickness", float(transient.minimum_film[at]))
+    return stack(
+        f"The film is thinnest, {least}, after {rounded('time', float(transient.time[at]))}",
+        axis_label("time"),
+        [
+            panel("load_per_width", "Load", transient.load_per_width),
+            Panel(axis_label("film_thickness", "Film"), films, {"rangemode": "tozero"}),
+            panel("hertz_pressure", "Greatest pressure", transient.maximum_pressure),
+        ],
+    )

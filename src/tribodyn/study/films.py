@@ -1,0 +1,93 @@
+"""The oil film of a case over torques and speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from pydantic_core import PydanticCustomError
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.pipeline import model_settings
+from tribodyn.study.places import placed
+from tribodyn.study.surroundings import Operation
+from tribodyn.study.values import Plain, read_value
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import FilmOverOperation
+    from tribodyn.study.case import Case
+
+__all__ = ["film_over_operation"]
+
+
+def film_over_operation(
+    case: Case,
+    *,
+    torque: Any = None,
+    speed: Any = None,
+    progress: Progress = SILENT,
+) -> FilmOverOperation:
+    """Find the films of a case along the path of contact, for every torque at every speed.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
+    torque : float, str or list, optional
+        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
+        That of the case where absent.
+    speed : float, str or list, optional
+        Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
+    progress : Progress
+        Told how many films are solved; silent by default.
+
+    Returns
+    -------
+    FilmOverOperation
+        Torques and speeds in it are those of the pinion.
+
+    Raises
+    ------
+    InputError
+        If a torque or speed is out of range, or the case has no film model.
+    ComputationError
+        If a film cannot be solved.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"film.model": "moes"})
+    >>> films = film_over_operation(case, torque=["50 N*m", "150 N*m"], speed=[90.0, 180.0])
+    >>> films.central_film.shape
+    (2, 2, 30)
+    """
+    from tribodyn.mesh import film_over_operation as compute
+
+    if case.film.model == "none":
+        remedy = 'Choose one: case.replace({"film.model": "newton"})'
+        raise InputError(Problem('film.model = "none"', "argument case", "No film", remedy))
+    pair = case.gear_pair
+    turns = pair.ratio if case.operation.speed_of == "wheel" else 1.0
+    with placed(case):
+        return compute(
+            pair,
+            pinion_torque=[value / turns for value in _values("torque", torque, case)],
+            pinion_speed=[value * turns for value in _values("speed", speed, case)],
+            progress=progress,
+            **model_settings(case),
+        )
+
+
+def _values(name: str, given: Any, case: Case) -> list[float]:
+    """SI values of one or several torques or speeds, each checked like the key of the case."""
+    if given is None:
+        return [getattr(case.operation, name)]
+    several = isinstance(given, Iterable) and not isinstance(given, str)
+    spec = dict(Operation.specs())[name]
+    try:
+        return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]
+    except PydanticCustomError as error:
+        told = error.context or {}
+        problem = Problem(told["what"], f"argument {name}", told["why"], told["remedy"])
+        raise InputError(problem) from None

@@ -1,0 +1,151 @@
+"""Solved films against values of an independent two-scheme solution, and against one of our own."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from known_films import known_film, wetted
+from tribodyn.ehl import line_contact_groups, solve_line_contact, solve_line_contact_moes
+from tribodyn.lubricant import Lubricant
+
+ENGINES = ("newton", "multigrid")
+
+#: Cases of Moes' numbers with z = 0.68, alpha = 2.2e-8 1/Pa, P = 0 at both ends of (-4.5, 1.5):
+#: M, L, compressible, central and minimum film in b^2/R, outlet in b.
+MOES = {
+    "M20 L10": (20.0, 10.0, True, 0.085232, 0.074163, 1.0753),
+    "M20 L10 incompressible": (20.0, 10.0, False, 0.100013, 0.07526, 1.0544),
+    "M5 L5": (5.0, 5.0, True, 0.301073, 0.243137, 1.1259),
+}
+#: Half of the last digits printed with them, relative.
+MINIMUM_UNCERTAINTY = 2e-4
+
+#: FZG pair of the first source document, wheel of 24 teeth driving at 1400 rpm, pitch point, one
+#: pair in contact, flooded: torque [N*m] -> load [N/m], Hertz pressure [GPa], half width [um],
+#: central and minimum film [um].
+FZG = {
+    50: (49267.5, 0.4644, 67.544, 1.1395, 0.991),
+    150: (147802.0, 0.8043, 116.989, 1.0248, 0.896),
+}
+RADIUS, SPEED, MODULUS = 8e-3, 3.0722, 2.2e11
+OIL = Lubricant(0.082, 880.0, 2.19e-8)
+
+
+@cache
+def moes(name, nodes, method="newton"):
+    M, L, compressible, *_ = MOES[name]
+    return solve_line_contact_moes(M, L, compressible=compressible, nodes=nodes, method=method)
+
+
+@pytest.mark.parametrize("method", ENGINES)
+@pytest.mark.parametrize("name", MOES)
+def test_cases_of_moes_on_1025_nodes(name, method):
+    *_, central, minimum, outlet = MOES[name]
+    found = moes(name, 1025, method)
+    tolerance = 1e-3 if name == "M5 L5" else 4e-3
+    assert found.central_film == pytest.approx(central, rel=tolerance)
+    assert found.minimum_film == pytest.approx(minimum, rel=tolerance)
+    assert found.outlet == pytest.approx(outlet, abs=3e-3)
+
+
+@pytest.mark.parametrize("method", ENGINES)
+@pytest.mark.parametrize("name", MOES)
+def test_extrapolated_central_film(name, method):
+    central = MOES[name][3]
+    found = moes(name, 1025, method)
+    assert found.central_film_extrapolated == pytest.approx(central, rel=5e-4)
+    error = abs(found.central_film - central)
+    assert found.central_film_error == pytest.approx(error, rel=0.15, abs=2e-5 * central)
+
+
+@pytest.mark.parametrize("name", MOES)
+def test_fine_grid_reaches_the_printed_digits(name):
+    *_, central, minimum, outlet = MOES[name]
+    found = moes(name, 8193)
+    assert found.central_film_extrapolated == pytest.approx(central, rel=3e-5)
+    assert found.minimum_film == pytest.approx(minimum, rel=4e-4)
+    assert found.outlet == pytest.approx(outlet, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("nodes", "central"), [(257, 0.083989), (513, 0.084919), (1025, 0.085154), (2049, 0.085213)]
+)
+@pytest.mark.parametrize("method", ENGINES)
+def test_uniform_grids_of_second_order(nodes, central, method):
+    # the values differ by the discretisation alone, which the engines share
+    tolerance = 1e-5 if method == "newton" else 1e-4
+    assert moes("M20 L10", nodes, method).central_film == pytest.approx(central, rel=tolerance)
+
+
+@pytest.mark.parametrize("name", MOES)
+def test_observed_order(name):
+    films = [moes(name, nodes).central_film for nodes in (257, 513, 1025, 2049, 4097)]
+    steps = [fine - coarse for coarse, fine in zip(films, films[1:], strict=False)]
+    for coarse, fine in zip(steps, steps[1:], strict=False):
+        assert 3.5 < coarse / fine < 4.5
+
+
+@pytest.mark.parametrize("method", ENGINES)
+@pytest.mark.parametrize("torque", FZG)
+def test_fzg_pair(torque, method):
+    load, hertz, half_width, central, minimum = FZG[torque]
+    found = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, method=method)
+    assert found.hertz_pressure == pytest.approx(hertz * 1e9, rel=2e-4)
+    assert found.half_width == pytest.approx(half_width * 1e-6, rel=2e-5)
+    assert found.central_film == pytest.approx(central * 1e-6, rel=5e-3)
+    assert found.minimum_film == pytest.approx(minimum * 1e-6, rel=1e-2)
+
+
+def test_speed_is_half_the_sum_of_the_surface_speeds():
+    load = FZG[150][0]
+    right = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, nodes=1025)
+    sum_of_speeds = solve_line_contact(load, RADIUS, 2.0 * SPEED, OIL, MODULUS, nodes=1025)
+    assert sum_of_speeds.central_film / right.central_film == pytest.approx(1.62, abs=0.03)
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+@pytest.mark.parametrize(("torque", "loss"), [(50, -0.32), (150, -0.14), (300, -0.07)])
+def test_domain_of_the_source_starves_its_contacts(torque, loss):
+    load = torque / (50.7434e-3 * 20e-3)
+    flooded = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, nodes=4097)
+    starved = solve_line_contact(
+        load, RADIUS, SPEED, OIL, MODULUS, nodes=4097, domain=(-2.5, 1.5), inlet="zero"
+    )
+    assert starved.central_film / flooded.central_film - 1.0 == pytest.approx(loss, abs=0.006)
+
+
+@pytest.mark.parametrize("torque", FZG)
+def test_fzg_pair_with_an_inlet_of_a_hundred_half_widths(torque):
+    """The flooded inlet condition against oil that is really there, by another scheme."""
+    load, *_, central, minimum = FZG[torque]
+    found = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, nodes=8193)
+    groups = line_contact_groups(load, RADIUS, SPEED, 0.082, 2.19e-8, MODULUS)
+    M, L = float(groups.moes_load), float(groups.moes_material)
+    start = solve_line_contact_moes(
+        M, L, pressure_viscosity_coefficient=2.19e-8, pressure_viscosity_index=OIL.roelands_index,
+        domain="auto", inlet="flooded", nodes=8193,
+    )  # fmt: skip
+    known = known_film(
+        M, L, wetted(start), inlet=-100.0, alpha=2.19e-8, z=OIL.roelands_index, nodes=700
+    )
+    unit = 1e6 * found.half_width**2 / RADIUS
+    assert known.central * unit == pytest.approx(central, rel=4e-4)
+    assert known.minimum * unit == pytest.approx(minimum, rel=3e-3)
+    assert found.central_film * 1e6 == pytest.approx(known.central * unit, rel=1e-3)
+    assert found.minimum_film * 1e6 == pytest.approx(known.minimum * unit, rel=2e-3)
+
+
+def test_height_of_the_spike_needs_a_fine_grid():
+    """Truth 0.944 of the Hertz pressure; a uniform grid of 257 to 2049 nodes finds 0.63 to 0.81."""
+    known = known_film(20.0, 10.0, wetted(moes("M20 L10", 8193)), inlet=-4.5, nodes=700)
+    position, height = known.spike
+    assert height == pytest.approx(0.944, abs=5e-3)
+    found = [moes("M20 L10", nodes) for nodes in (257, 513, 1025, 2049, 4097, 8193)]
+    heights = [one.spike_pressure for one in found]
+    assert heights[0] == pytest.approx(0.63, abs=0.01)
+    assert heights[3] == pytest.approx(0.81, abs=0.01)
+    assert heights == sorted(heights)
+    assert heights[-1] < height
+    assert found[-1].spike_position == pytest.approx(position, abs=3e-3)

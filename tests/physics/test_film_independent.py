@@ -1,0 +1,181 @@
+"""Physics of the solved film, checked by ways that do not share its discretisation."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from known_films import deflection, known_film, limiting_film, rigid_film, wetted
+from tribodyn.ehl import solve_line_contact_moes
+
+
+@cache
+def solved(M, L, nodes=4097, *, compressible=True, domain=(-4.5, 1.5)):
+    return solve_line_contact_moes(
+        M, L, compressible=compressible, domain=domain, inlet="zero", nodes=nodes,
+        tolerance=1e-9, flux_tolerance=1e-8,
+    )  # fmt: skip
+
+
+def lam(M):
+    return 3.0 * math.pi**2 / (8.0 * M**2)
+
+
+CASES = [(20.0, 10.0), (5.0, 5.0), (3.0, 12.0)]
+
+
+# The closed solutions for rigid bodies.
+
+
+def test_known_constants_of_rigid_bodies():
+    M = 0.01
+    far = rigid_film(M, -1e7)
+    assert far.minimum * 16.0 * M**2 / math.pi == pytest.approx(4.89496849, abs=1e-7)
+    assert far.at_maximum * 8.0 * M**2 / math.pi == pytest.approx(3.0, abs=1e-8)
+    assert limiting_film() == pytest.approx((1.04970, 1.28667), abs=5e-6)
+
+
+@pytest.mark.parametrize("reach", [4.0, 10.0])
+def test_isoviscous_film_tends_to_that_of_rigid_bodies(reach):
+    deviation = []
+    for M in (0.1, 0.05):
+        unit = math.sqrt(2.0 * 4.895 * math.pi / 16.0) / M
+        rigid = rigid_film(M, -reach * unit)
+        found = solve_line_contact_moes(
+            M, 0.0, compressible=False, domain=(-reach * unit, unit), inlet="zero", nodes=4097
+        )
+        deviation.append(found.minimum_film / rigid.minimum - 1.0)
+        assert found.outlet == pytest.approx(rigid.outlet, rel=0.02)
+    assert abs(deviation[1]) < 1e-3
+    # what the bodies yield falls with the square of M
+    assert deviation[1] == pytest.approx(deviation[0] / 4.0, abs=1e-4)
+
+
+def test_piezoviscous_film_tends_to_that_of_rigid_bodies():
+    deviation = []
+    for M in (0.1, 0.05):
+        L = 6.0 / M**1.5  # the reduced pressure comes to 87 % of its bound 1/alpha
+        unit = 1.3 * math.sqrt(2.0 * 4.895 * math.pi / 16.0) / M
+        rigid = rigid_film(M, -8.0 * unit, piezoviscosity=L * math.sqrt(M / (2.0 * math.pi)))
+        plain = rigid_film(M, -8.0 * unit)
+        assert rigid.minimum > 1.5 * plain.minimum
+        found = solve_line_contact_moes(
+            M, L, compressible=False, domain=(-8.0 * unit, unit), inlet="zero", nodes=4097,
+            viscosity_law="barus",
+        )  # fmt: skip
+        deviation.append(found.minimum_film / rigid.minimum - 1.0)
+    assert abs(deviation[1]) < 1e-3
+    assert deviation[1] == pytest.approx(deviation[0] / 4.0, abs=1e-4)
+
+
+# The field equations of a solved contact, each by another numerical method.
+
+
+@pytest.mark.parametrize(("M", "L"), CASES)
+def test_film_is_the_elastic_gap_under_its_pressure(M, L):
+    found = solved(M, L)
+    at = np.linspace(-4.0, 1.45, 60)
+    gap = 0.5 * at**2 + deflection(found.position, at) @ found.pressure
+    offset = np.interp(at, found.position, found.film) - gap
+    assert np.ptp(offset) < 2e-3 * found.central_film
+
+
+@pytest.mark.parametrize(("M", "L"), CASES)
+def test_pressure_follows_from_the_film_by_the_first_integral(M, L):
+    """March ``dP/dX = lambda eta (H - H_m)/H^3`` through the inlet over the film alone."""
+    from scipy.integrate import solve_ivp
+    from scipy.interpolate import CubicSpline
+
+    found = solved(M, L, compressible=False)
+    X, H = found.position, CubicSpline(found.position, found.film)
+    outlet = float(H(found.outlet))
+    alpha_p = L * math.sqrt(M / (2.0 * math.pi))
+    index, reference = 0.68, 1.0 / 5.1e-9 / (alpha_p / 2.2e-8)
+
+    def slope(x, p):
+        viscous = alpha_p * reference / index * ((1.0 + p / reference) ** index - 1.0)
+        h = float(H(x))
+        return lam(M) * np.exp(viscous) * (h - outlet) / h**3
+
+    place = np.array([-3.0, -2.0, -1.5, -1.2, -1.0])
+    marched = solve_ivp(
+        slope, (X[0], place[-1]), [0.0], t_eval=place, rtol=1e-8, atol=1e-12, max_step=0.02
+    )
+    exact = np.interp(place, X, found.pressure)
+    np.testing.assert_allclose(marched.y[0], exact, rtol=5e-3)
+
+
+@pytest.mark.parametrize(("M", "L"), CASES)
+def test_flux_by_spline_derivatives_is_one_constant(M, L):
+    from scipy.interpolate import CubicSpline
+
+    found = solved(M, L, compressible=False)
+    slope = CubicSpline(found.position, found.pressure).derivative()(found.position)
+    flux = found.film - found.film**3 / found.viscosity / lam(M) * slope
+    wet = (found.position > -4.0) & (found.position < 0.98 * found.outlet)
+    # the spike is the one place where a spline does not follow
+    smooth = wet & (np.abs(found.position - (found.spike_position or 9.0)) > 0.05)
+    at_outlet = np.interp(found.outlet, found.position, found.film)
+    np.testing.assert_allclose(flux[smooth], at_outlet, rtol=2e-3)
+
+
+@pytest.mark.parametrize(("M", "L"), CASES)
+def test_load_by_another_quadrature(M, L):
+    from scipy.integrate import simpson
+
+    found = solved(M, L)
+    assert simpson(found.pressure, x=found.position) == pytest.approx(math.pi / 2.0, rel=2e-4)
+
+
+@pytest.mark.parametrize(("M", "L"), CASES)
+def test_rolling_traction_balances_the_moment_of_the_pressure(M, L):
+    """``int h dp/dx dx = -int p x/R dx``: the elastic gap does no work on its own pressure."""
+    found = solved(M, L)
+    X, P, H = found.position, found.pressure, found.film
+    traction = np.sum(0.5 * (H[1:] + H[:-1]) * np.diff(P))
+    moment = -np.trapezoid(P * X, X)
+    assert moment > 0.0  # the pressure leads: rolling is resisted
+    assert traction == pytest.approx(moment, rel=2e-3)
+
+
+# Limits.
+
+
+def test_pressure_tends_to_that_of_the_dry_contact():
+    worst, outlet = [], []
+    for M in (20.0, 200.0, 800.0):
+        found = solved(M, 5.0, domain=(-2.5, 1.5))
+        inside = np.abs(found.position) < 0.7
+        dry = np.sqrt(1.0 - found.position[inside] ** 2)
+        worst.append(np.abs(found.pressure[inside] - dry).max())
+        outlet.append(found.outlet)
+    assert worst[0] > worst[1] > worst[2]
+    assert worst[2] < 0.01
+    assert outlet[0] > outlet[1] > outlet[2] > 1.0
+    assert outlet[2] == pytest.approx(1.0, abs=0.02)
+
+
+def test_film_outside_a_loaded_contact_is_the_dry_gap():
+    found = solved(800.0, 5.0, domain=(-2.5, 1.5))
+    x = np.array([1.2, 1.3, 1.45])
+    dry = 0.5 * (x * np.sqrt(x**2 - 1.0) - np.log(x + np.sqrt(x**2 - 1.0)))
+    gap = np.interp(x, found.position, found.film) - found.central_film
+    np.testing.assert_allclose(gap, dry, rtol=0.05)
+
+
+# The whole contact, by a scheme of its own.
+
+
+@pytest.mark.parametrize(("M", "L"), [(20.0, 10.0), (5.0, 5.0)])
+def test_known_film_agrees(M, L):
+    found = solved(M, L)
+    known = known_film(M, L, wetted(found), inlet=-4.5)
+    assert found.central_film == pytest.approx(known.central, rel=3e-4)
+    assert found.minimum_film == pytest.approx(known.minimum, rel=5e-4)
+    assert found.outlet == pytest.approx(known.X[-1], abs=1e-3)
+    inside = known.X < known.spike[0] - 0.05
+    pressure = np.interp(known.X, found.position, found.pressure)
+    np.testing.assert_allclose(pressure[inside], known.P[inside], atol=1e-3)

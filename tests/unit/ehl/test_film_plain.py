@@ -1,0 +1,249 @@
+"""The compiled kernels of the film against the equations in plain NumPy, piece by piece."""
+
+from __future__ import annotations
+
+import math
+
+import numba as nb
+import numpy as np
+import pytest
+
+from tribodyn.ehl.kernel import film_sum as sums
+from tribodyn.ehl.kernel import oil as oils
+from tribodyn.ehl.kernel import reynolds
+from tribodyn.ehl.plain import PlainContact, plain_oil
+from tribodyn.ehl.plain_newton import dry_start, solve_plain
+from tribodyn.errors import ComputationError
+from tribodyn.lubricant import barus_viscosity, dowson_higginson_density, roelands_viscosity
+
+_LAWS = ("isoviscous", "barus", "roelands")
+
+
+@nb.njit
+def _film_sum(n, kernel, P):
+    out, work = np.empty(n + 1), np.empty(sums.film_work_size(n))
+    sums.film_sum(n, kernel, sums.film_plan(n, kernel), P, work, out)
+    return out
+
+
+@nb.njit
+def _oil(n, P, oil):
+    lneta, dlneta, rho, drho = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
+    oils.oil_state(n, P, oil, lneta, dlneta, rho, drho)
+    return lneta, dlneta, rho, drho
+
+
+@nb.njit
+def _reynolds(n, dx, lam, u, squeeze, history, P, H, oil):
+    lneta, dlneta, rho, drho = _oil(n, P, oil)
+    eps, F, G = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
+    cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))
+    reynolds.mobility(n, H, lam, lneta, rho, eps)
+    reynolds.residual(n, dx, u, squeeze, history, P, H, rho, eps, F, G)
+    reynolds.coefficients(n, dx, lam, u, squeeze, P, H, dlneta, rho, drho, eps, cH, cP)
+    return F, G, cH, cP
+
+
+def make(
+    n: int = 60,
+    M: float = 8.0,
+    L: float = 9.0,
+    *,
+    law: str = "roelands",
+    compressible: bool = True,
+    domain: tuple[float, float] = (-4.5, 1.5),
+    inlet_pressure: float = 0.0,
+) -> PlainContact:
+    """Contact of Moes' numbers, with alpha = 2.2e-8 1/Pa and z = 0.68."""
+    hertz = L * math.sqrt(M / (2.0 * math.pi)) / 2.2e-8
+    oil = plain_oil(law, hertz, 2.2e-8, compressible=compressible)
+    lam = 3.0 * math.pi**2 / (8.0 * M**2)
+    return PlainContact(n, domain, lam, oil, inlet_pressure=inlet_pressure)
+
+
+def state(contact: PlainContact, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Pressures and films with nothing regular about them; P at the outlet is zero."""
+    generator = np.random.default_rng(seed)
+    P = generator.uniform(0.0, 0.2, contact.intervals + 1)
+    P[-1] = 0.0
+    return P, generator.uniform(0.5, 1.5, contact.intervals + 1)
+
+
+# The equations themselves, against what they are meant to be.
+
+
+def test_hertz_pressure_makes_a_flat_gap():
+    contact = make(2000, domain=(-2.0, 2.0))
+    H = contact.film(np.sqrt(np.maximum(1.0 - contact.X**2, 0.0)), 0.0)
+    inside = np.abs(contact.X) < 0.95
+    assert np.ptp(H[inside]) < 2e-4
+    wide = np.abs(contact.X[np.abs(contact.X) > 1.05])
+    dry = 0.5 * (wide * np.sqrt(wide**2 - 1.0) - np.log(wide + np.sqrt(wide**2 - 1.0)))
+    found = H[np.abs(contact.X) > 1.05] - H[inside].mean()
+    np.testing.assert_allclose(found, dry, atol=2e-4)
+
+
+def test_influence_is_the_integral_of_the_logarithm():
+    from scipy.integrate import quad
+
+    contact = make(40)
+    for m in (0, 1, 2, 17, 40):
+        ends = ((m - 0.5) * contact.width, (m + 0.5) * contact.width)
+        exact, _ = quad(
+            lambda x: -math.log(abs(x)) / math.pi, *ends, points=[0.0] if m == 0 else None
+        )
+        assert contact.influence[0, m] == pytest.approx(exact, rel=1e-10, abs=1e-14)
+
+
+@pytest.mark.parametrize("law", ["barus", "roelands"])
+def test_oil_is_that_of_the_lubricant(law):
+    hertz, alpha, viscosity = 0.9e9, 2.19e-8, 0.082
+    z = alpha / 5.1e-9 / (math.log(viscosity) + 9.67)
+    oil, P = plain_oil(law, hertz, alpha, z), np.linspace(0.0, 1.3, 14)
+    formula = {"barus": barus_viscosity, "roelands": roelands_viscosity}[law]
+    exact = np.log(formula(P * hertz, viscosity, alpha) / viscosity)
+    np.testing.assert_allclose(oil.log_viscosity(P)[0], exact, rtol=2e-4, atol=1e-12)
+    exact = dowson_higginson_density(P * hertz, 880.0) / 880.0
+    np.testing.assert_allclose(oil.density(P)[0], exact, rtol=1e-12)
+    assert oil.initial_slope == pytest.approx(alpha * hertz, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", _LAWS)
+@pytest.mark.parametrize("compressible", [True, False])
+def test_plain_jacobian_is_the_derivative(law, compressible):
+    contact = make(law=law, compressible=compressible)
+    P, offset = dry_start(contact)
+    full, by_offset = contact.jacobian(P, contact.film(P, offset))
+    direction = np.random.default_rng(2).standard_normal(len(P))
+    direction[-1] = 0.0
+    tiny = 1e-25  # a complex step: no difference of near numbers
+    moved = P + 1j * tiny * direction
+    slope = contact.residual(moved, contact.film(moved, offset)).imag / tiny
+    np.testing.assert_allclose(full @ direction, slope, rtol=1e-10, atol=1e-12 * abs(slope).max())
+    raised = contact.residual(P, contact.film(P, offset) + 1j * tiny).imag / tiny
+    np.testing.assert_allclose(by_offset, raised, rtol=1e-10, atol=1e-12 * abs(raised).max())
+
+
+def test_plain_solution_meets_every_condition():
+    contact = make(256, 20.0, 10.0)
+    found = solve_plain(contact)
+    P, H, free = found.P, found.H, found.free
+    assert P[1 : free + 1].min() > 0.0
+    assert np.all(P[free + 1 :] == 0.0)
+    residual = contact.residual(P, H)
+    assert np.abs(residual[:free]).max() < 1e-12
+    assert residual[free:].min() > 0.0
+    assert contact.width * P.sum() == pytest.approx(math.pi / 2.0, rel=1e-12)
+    np.testing.assert_allclose(H, contact.film(P, found.offset), atol=1e-14)
+    flux = contact.flux(P, H)[: free + 1]
+    assert np.ptp(flux) < 1e-10 * flux.mean()
+
+
+def test_plain_solution_does_not_depend_on_the_start():
+    contact = make(200, 12.0, 8.0)
+    first = solve_plain(contact)
+    P, offset = dry_start(make(200, 15.0, 7.0))
+    second = solve_plain(contact, (P, offset))
+    assert first.free == second.free
+    np.testing.assert_allclose(first.H, second.H, rtol=1e-9)
+    np.testing.assert_allclose(first.P, second.P, atol=1e-9)
+
+
+def test_plain_solver_says_that_it_fails():
+    with pytest.raises(ComputationError, match="plain solver stopped"):
+        solve_plain(make(128, 20.0, 10.0), flux_tolerance=0.0)
+
+
+# The compiled kernels against them.
+
+
+@pytest.mark.parametrize("n", [1, 16, 63, 64, 65, 100, 129, 200, 255, 256, 777, 1024, 2048])
+def test_film_sum_equals_the_dense_sum(n):
+    contact = make(n, domain=(-4.5, 1.5))
+    P, _ = state(contact)
+    kernel = sums.influence(n, contact.width)
+    np.testing.assert_allclose(kernel, contact.influence[0], rtol=1e-13 * n, atol=1e-15)
+    node = np.arange(n + 1)
+    exact = kernel[np.abs(node[:, None] - node)] @ P
+    assert np.abs(_film_sum(n, kernel, P) - exact).max() < 1e-12 * np.abs(exact).max()
+
+
+def test_film_sum_of_a_large_grid_is_that_of_single_nodes():
+    n, width = 16384, 6.0 / 16384
+    kernel = sums.influence(n, width)
+    for node in (0, 1, 5000, n - 1):
+        P = np.zeros(n + 1)
+        P[node] = 1.0
+        exact = kernel[np.abs(np.arange(n + 1) - node)]
+        assert np.abs(_film_sum(n, kernel, P) - exact).max() < 1e-12 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("law", _LAWS)
+@pytest.mark.parametrize("compressible", [True, False])
+def test_oil_kernel_equals_plain(law, compressible):
+    hertz = 2.5e9 if law == "roelands" else 0.6e9
+    oil = plain_oil(law, hertz, 2.4e-8, 0.6, compressible=compressible)
+    P = np.concatenate((np.linspace(0.0, 1.4, 300), [1e-12, 1e-6, 0.0]))
+    found = _oil(len(P) - 1, P, np.array(oil))
+    for kernel, plain in zip(found, (*oil.log_viscosity(P), *oil.density(P)), strict=True):
+        np.testing.assert_allclose(kernel, plain, rtol=2e-14, atol=2e-14)
+
+
+def test_oil_kernel_holds_roelands_at_the_same_tension():
+    oil = plain_oil("roelands", 1e9, 2e-8)
+    P = np.array([-0.2, -0.29, -0.31, -5.0]) * oil.reference
+    lneta, dlneta, _, _ = _oil(len(P) - 1, P, np.array(oil))
+    np.testing.assert_allclose(lneta, oil.log_viscosity(P)[0], rtol=1e-13)
+    assert np.all(dlneta > 0.0)  # the slope goes on, so that Newton's method is led back
+
+
+@pytest.mark.parametrize("law", _LAWS)
+@pytest.mark.parametrize(("u", "squeeze"), [(1.0, 0.0), (0.7, 0.4)])
+def test_residual_equals_plain(law, u, squeeze):
+    contact = make(law=law)
+    P, H = state(contact)
+    P[0] = 0.03  # a wedge that is cut off leaves a pressure there
+    history = np.random.default_rng(5).uniform(-0.1, 0.1, len(P))
+    n, lam, oil = contact.intervals, contact.speed_parameter, np.array(contact.oil)
+    F, G, _, _ = _reynolds(n, contact.width, lam, u, squeeze, history, P, H, oil)
+    flux = contact.flux(P, H, u)
+    np.testing.assert_allclose(F[:n], flux, rtol=1e-12, atol=1e-13 * np.abs(flux).max())
+    residual = contact.residual(P, H, u, squeeze, history[1:-1])
+    np.testing.assert_allclose(G[1:n], residual, rtol=0.0, atol=1e-12 * np.abs(flux).max())
+
+
+@pytest.mark.parametrize("law", _LAWS)
+@pytest.mark.parametrize(("u", "squeeze"), [(1.0, 0.0), (0.7, 0.4)])
+def test_eight_coefficients_are_the_derivatives(law, u, squeeze):
+    contact = make(32, law=law)
+    P, H = state(contact)
+    n, lam, oil, tiny = contact.intervals, contact.speed_parameter, np.array(contact.oil), 1e-25
+    _, _, cH, cP = _reynolds(n, contact.width, lam, u, squeeze, np.zeros(n + 1), P, H, oil)
+    by_film, by_pressure = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
+    for j in range(n + 1):
+        unit = 1j * tiny * (np.arange(n + 1) == j)
+        by_film[1:-1, j] = contact.residual(P, H + unit, u, squeeze).imag / tiny
+        by_pressure[1:-1, j] = contact.residual(P + unit, H, u, squeeze).imag / tiny
+    for found, exact in ((cH, by_film), (cP, by_pressure)):
+        size = np.abs(exact).max()
+        assert size > 0.1
+        for i in range(1, n):
+            row = np.zeros(n + 3)
+            row[i - 1 : i + 3] = found[i]  # nodes i-2..i+1, after one place for node -1
+            np.testing.assert_allclose(row[1:-1], exact[i], rtol=1e-11, atol=1e-12 * size)
+            assert row[0] == 0.0
+    assert not np.any(cH[[0, n]])
+    assert not np.any(cP[[0, n]])
+
+
+def test_gap_that_is_closed_has_no_slope_in_the_mobility():
+    contact = make(16)
+    P, H = state(contact)
+    H[5:8] = -1e-3
+    n, oil = contact.intervals, np.array(contact.oil)
+    F, _, cH, _ = _reynolds(
+        n, contact.width, contact.speed_parameter, 1.0, 0.0, np.zeros(n + 1), P, H, oil
+    )
+    np.testing.assert_allclose(F[:n], contact.flux(P, H), rtol=1e-12, atol=1e-12)
+    rho = contact.oil.density(P)[0]
+    assert cH[7, 2] == pytest.approx(1.5 * rho[7], rel=1e-12)

@@ -1,0 +1,180 @@
+"""Teeth and oil film in series: the rule, the load share that follows, and where it ends."""
+
+from __future__ import annotations
+
+import math
+import types
+
+import numpy as np
+import pytest
+
+from tribodyn.ehl import FILM_MODELS
+from tribodyn.errors import ComputationError, InputError
+from tribodyn.gear import Material
+from tribodyn.lubricant import Lubricant
+from tribodyn.mesh import MeshTable, build
+from tribodyn.mesh.series import in_series
+
+OIL = Lubricant(0.082, 880.0, 21.9e-9)
+CONDITIONS = {
+    "material": Material(),
+    "lubricant": OIL,
+    "friction_law": "constant",
+    "friction_options": {"coefficient": 0.05},
+    "composite_roughness": 0.5e-6,
+    "pinion_speed": 1400.0 * math.pi / 30.0,
+    "pinion_torque": 100.0,
+    "steps": 64,
+}
+
+
+def table(pair, model="dowson-higginson", kind="tangent", **changes):
+    options = {"film_model": model, "film_options": {"stiffness": kind}}
+    torque = 400.0 if pair.transverse_contact_ratio > 2.0 else 100.0
+    return build(pair, **{**CONDITIONS, "pinion_torque": torque, **options, **changes})
+
+
+@pytest.fixture(params=["pinion", "wheel", "high contact ratio"])
+def pair(request, fzg, high_contact_pair):
+    return high_contact_pair if request.param.startswith("high") else fzg(driver=request.param)
+
+
+@pytest.mark.parametrize("model", ["dowson-higginson", "moes"])
+def test_compliances_of_teeth_and_film_add_up_in_each_pair(pair, model):
+    mesh = table(pair, model)
+    touching = mesh.in_contact
+    compliance = 1.0 / mesh.tooth_stiffness[touching] + 1.0 / mesh.film_stiffness[touching]
+    assert mesh.stiffness[touching] == pytest.approx(1.0 / compliance, rel=1e-12)
+    assert np.all(mesh.stiffness[~touching] == 0.0)
+    # per pair, not on the sum: the sum of the pairs is softer than one film on the sum of teeth
+    teeth, film = mesh.tooth_stiffness.sum(axis=1), mesh.film_stiffness.sum(axis=1)
+    shared = touching.sum(axis=1) > 1
+    on_the_sum = teeth * film / (teeth + film)
+    assert np.all(mesh.mesh_stiffness[shared] < on_the_sum[shared] * (1.0 + 1e-12))
+    assert np.any(mesh.mesh_stiffness[shared] < on_the_sum[shared] * (1.0 - 1e-7))
+
+
+def test_shares_follow_the_stiffness_of_teeth_and_film(pair):
+    mesh, dry = table(pair), table(pair, kind="none")
+    expected = mesh.stiffness / mesh.stiffness.sum(axis=1, keepdims=True)
+    assert mesh.load_share == pytest.approx(expected, abs=1e-12)
+    moved = np.abs(mesh.load_share - dry.load_share).max()
+    assert 1e-5 < moved < 5e-3
+    assert mesh.tooth_stiffness == pytest.approx(dry.stiffness, rel=1e-14)
+
+
+def test_the_film_stiffness_is_that_of_the_share_that_was_found(pair):
+    mesh = table(pair)
+    touching = mesh.in_contact
+    films = FILM_MODELS["dowson-higginson"].films(
+        mesh.load_per_width[touching], mesh.equivalent_radius[touching],
+        mesh.entrainment_speed[touching], OIL, 2.0 * 206e9 / (2.0 * (1.0 - 0.3**2)),
+        length=pair.common_face_width,
+    )  # fmt: skip
+    assert mesh.film_stiffness[touching] == pytest.approx(films.film_stiffness, rel=1e-12)
+    assert mesh.central_film[touching] == pytest.approx(films.central_film, rel=1e-12)
+
+
+def test_the_lighter_pair_has_the_softer_film(fzg):
+    mesh = table(fzg())
+    lighter = np.argmin(np.where(mesh.in_contact, mesh.load_share, 2.0), axis=1)
+    shared = mesh.in_contact.sum(axis=1) == 2
+    rows = np.flatnonzero(shared)
+    soft = mesh.film_stiffness[rows, lighter[rows]]
+    assert np.all(soft <= mesh.film_stiffness[rows][:, :2].max(axis=1))
+    assert np.any(soft < 0.9 * mesh.film_stiffness[rows][:, :2].max(axis=1))
+
+
+def test_a_film_that_does_not_yield_leaves_the_mesh_alone(pair):
+    dry = table(pair, kind="none")
+    bare = table(pair, model="none", kind="none")
+    assert np.array_equal(dry.stiffness, bare.stiffness)
+    assert np.array_equal(dry.load_share, bare.load_share)
+    assert np.array_equal(dry.tooth_stiffness, dry.stiffness)
+    # it is told all the same
+    assert np.all(dry.film_stiffness[dry.in_contact] > 1e9)
+    assert (dry.film_stiffness_kind, table(pair).film_stiffness_kind) == ("none", "tangent")
+    assert bare.film_stiffness is None
+
+
+def test_more_load_stiffens_the_film_and_more_speed_softens_it(fzg):
+    stiffness = [
+        table(fzg(), pinion_torque=torque, pinion_speed=speed).film_stiffness.max()
+        for torque, speed in ((50.0, 100.0), (200.0, 100.0), (200.0, 300.0))
+    ]
+    assert stiffness[0] < stiffness[2] < stiffness[1]
+
+
+def test_secant_and_seed_need_the_solved_film(fzg):
+    for kind in ("secant", "seed"):
+        with pytest.raises(InputError, match=f'stiffness = "{kind}".*none, tangent'):
+            table(fzg(), kind=kind)
+
+
+def test_a_table_with_its_film_is_kept_and_read(fzg, tmp_path):
+    mesh = table(fzg())
+    mesh.save(tmp_path / "mesh.nc")
+    again = MeshTable.load(tmp_path / "mesh.nc")
+    for name in ("tooth_stiffness", "film_stiffness", "stiffness", "film_ratio"):
+        assert np.array_equal(getattr(again, name), getattr(mesh, name))
+    assert again.film_pressure is None
+    assert again.film_stiffness_kind == "tangent"
+    data = mesh.to_xarray()
+    assert data["film_stiffness"].attrs["units"] == "N/m"
+    assert "film" in data["tooth_stiffness"].attrs["long_name"]
+
+
+def test_a_table_of_the_earlier_format_is_read(fzg, tmp_path):
+    mesh = build(fzg(), **CONDITIONS)
+    old = mesh.to_xarray().drop_vars("tooth_stiffness")
+    old.attrs["format"] = "tribodyn mesh table 1"
+    del old.attrs["film_stiffness_kind"]
+    old.to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
+    again = MeshTable.load(tmp_path / "old.nc")
+    assert np.array_equal(again.tooth_stiffness, mesh.stiffness)
+    assert (again.film_stiffness_kind, again.film_stiffness) == ("none", None)
+
+
+def _film(stiffness_of):
+    """A film that is solved for any load, with a stiffness that follows from it."""
+    return lambda _: lambda load: types.SimpleNamespace(film_stiffness=stiffness_of(load))
+
+
+def test_two_springs_by_hand():
+    teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
+    stiffness, share, _ = in_series(teeth, both, 1e5, _film(lambda load: np.array([6e8, 1e8])))
+    assert stiffness.tolist() == [[pytest.approx(2e8), pytest.approx(0.5e8)]]
+    assert share.tolist() == [[pytest.approx(0.8), pytest.approx(0.2)]]
+
+
+def test_a_film_in_proportion_to_its_load_settles_at_its_fixed_point():
+    # K = c w: the film of each pair yields by the same 1/c, so that the teeth share as without it
+    teeth, both, c = np.array([[3e8, 1e8]]), np.array([[True, True]]), 1e5
+    stiffness, share, _ = in_series(teeth, both, 1e5, _film(lambda load: c * load))
+    assert share[0] == pytest.approx([0.75, 0.25], rel=1e-11)
+    assert stiffness[0] == pytest.approx(1e5 * share[0] / (1e5 / 4e8 + 1.0 / c), rel=1e-10)
+
+
+def test_a_film_softer_than_its_teeth_takes_the_load_away():
+    teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
+    with pytest.raises(ComputationError, match=r'film\.stiffness = "none"'):
+        in_series(teeth, both, 1e5, _film(lambda load: 1e-3 * load**1.1))
+
+
+def test_a_film_that_is_never_the_same_is_refused():
+    teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
+    films = iter(range(1000))
+
+    def restless(_):
+        factor = 1.0 + 0.1 * (next(films) % 2)
+        return lambda load: types.SimpleNamespace(film_stiffness=np.array([factor, 1.0]) * 1e8)
+
+    with pytest.raises(ComputationError, match="still moves by"):
+        in_series(teeth, both, 1e5, restless)
+
+
+def test_one_pair_alone_keeps_its_load():
+    teeth, one = np.array([[2e8, 0.0]]), np.array([[True, False]])
+    stiffness, share, _ = in_series(teeth, one, 1e5, _film(lambda load: np.array([2e8])))
+    assert stiffness.tolist() == [[pytest.approx(1e8), 0.0]]
+    assert share.tolist() == [[1.0, 0.0]]

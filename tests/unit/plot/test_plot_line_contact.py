@@ -1,0 +1,222 @@
+"""Figures of solved line contacts: curves are the numbers of the solution, marks stand right."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+
+from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
+from tribodyn.errors import InputError
+from tribodyn.lubricant import Lubricant
+from tribodyn.plot import (
+    compare_line_contacts,
+    film_along_path,
+    film_response,
+    line_contact,
+)
+from tribodyn.plot.contact_scales import thinned
+
+OIL = Lubricant(0.082, 880.0, 2.19e-8)
+LOADS = (49267.5, 147802.0, 295604.0)  # N/m
+
+
+@pytest.fixture(scope="module")
+def contacts() -> list[Any]:
+    return [solve_line_contact(w, 8e-3, 3.0722, OIL, 2.2e11, nodes=513) for w in LOADS]
+
+
+@pytest.fixture(scope="module")
+def bare() -> Any:
+    return solve_line_contact_moes(20.0, 10.0, nodes=257)
+
+
+def trace(figure: go.Figure, start: str, axis: str = "y") -> Any:
+    """The one trace on an axis whose name begins so."""
+    (found,) = (
+        each for each in figure.data if each.name.startswith(start) and (each.yaxis or "y") == axis
+    )
+    return found
+
+
+def labels(figure: go.Figure) -> list[str]:
+    layout = figure.layout
+    found = [layout[key].title.text for key in layout if key.startswith(("xaxis", "yaxis"))]
+    return [label for label in found if label]
+
+
+def test_curves_are_those_of_the_solution_in_display_units(contacts: list[Any]) -> None:
+    one = contacts[1]
+    figure = line_contact(one)
+    np.testing.assert_allclose(trace(figure, "oil film").x, 1e6 * one.position)
+    np.testing.assert_allclose(trace(figure, "oil film").y, 1e-9 * one.pressure)
+    np.testing.assert_allclose(trace(figure, "film", "y2").y, 1e6 * one.film)
+    assert labels(figure) == ["Position [µm]", "Pressure [GPa]", "Film [µm]"]
+
+
+def test_dry_pressure_carries_the_load(contacts: list[Any]) -> None:
+    dry = trace(line_contact(contacts[1]), "dry")
+    assert dry.line.dash == "dash"
+    # N/m: GPa times um is N/mm
+    assert 1e3 * np.trapezoid(dry.y, dry.x) == pytest.approx(LOADS[1], rel=1e-3)
+    assert dry.y.max() == pytest.approx(0.8043, abs=1e-4)
+    assert dry.x[-1] == pytest.approx(116.99, abs=0.01)
+
+
+def test_marks_stand_on_the_film(contacts: list[Any]) -> None:
+    one = contacts[1]
+    figure = line_contact(one)
+    central, least = trace(figure, "central", "y2"), trace(figure, "minimum", "y2")
+    assert (central.x[0], central.y[0]) == (0.0, pytest.approx(1e6 * one.central_film))
+    assert least.y[0] == pytest.approx(1e6 * one.minimum_film)
+    # the constriction lies between the centre and the outlet
+    assert 0.0 < least.x[0] < 1e6 * one.outlet
+    assert least.y[0] == pytest.approx(
+        np.interp(least.x[0], 1e6 * one.position, 1e6 * one.film), 1e-3
+    )
+    places = {note.text: note.x for note in figure.layout.annotations}
+    assert places == {"centre": 0.0, "outlet": pytest.approx(1e6 * one.outlet)}
+    spike = trace(figure, "spike")
+    assert spike.x[0] == pytest.approx(1e6 * one.spike_position)
+    assert spike.y[0] == pytest.approx(1e-9 * one.spike_pressure)
+
+
+def test_title_tells_both_films(contacts: list[Any]) -> None:
+    title = line_contact(contacts[1]).layout.title.text
+    assert title == "The film is 1.02 µm thick in the centre and 0.895 µm at its thinnest"
+
+
+def test_dimensionless_form(contacts: list[Any], bare: Any) -> None:
+    figure = line_contact(bare)
+    assert labels(figure) == ["Position [b]", "Pressure [p<sub>h</sub>]", "Film [b²/R]"]
+    np.testing.assert_allclose(trace(figure, "oil film").x, bare.position)
+    one = contacts[1]
+    made = line_contact(one, dimensionless=True)
+    assert labels(made) == labels(figure)
+    film = trace(made, "film", "y2")
+    np.testing.assert_allclose(film.y, one.film * 8e-3 / one.half_width**2)
+    assert trace(made, "dry").y.max() == pytest.approx(1.0)
+
+
+def test_a_pressure_without_spike_has_no_mark(bare: Any) -> None:
+    smooth = SimpleNamespace(
+        **{name: getattr(bare, name) for name in ("position", "pressure", "film", "central_film")},
+        **{name: getattr(bare, name) for name in ("minimum_film", "hertz_pressure", "half_width")},
+        **{name: getattr(bare, name) for name in ("film_unit", "outlet", "lubricant")},
+        spike_position=None,
+        spike_pressure=None,
+    )
+    assert all("spike" not in each.name for each in line_contact(smooth).data)
+
+
+def test_solution_draws_itself(contacts: list[Any]) -> None:
+    assert contacts[0].plot().to_dict() == line_contact(contacts[0]).to_dict()
+
+
+def test_thinning_keeps_the_curves(contacts: list[Any]) -> None:
+    fine = solve_line_contact(LOADS[2], 8e-3, 3.0722, OIL, 2.2e11, nodes=4097)
+    kept = thinned(fine, 200)
+    assert len(kept) <= 200
+    assert (kept[0], kept[-1]) == (0, 4096)
+    assert np.all(np.diff(kept) > 0)
+    assert fine.pressure[kept].max() == fine.pressure.max()
+    for values, size in ((fine.pressure, fine.hertz_pressure), (fine.film, fine.central_film)):
+        between = np.interp(fine.position, fine.position[kept], values[kept])
+        near = fine.film < 3.0 * fine.central_film
+        assert np.abs(between - values)[near].max() < 0.01 * size
+    assert len(thinned(contacts[0], 5000)) == 513
+
+
+def test_comparison_names_the_thinnest(contacts: list[Any]) -> None:
+    names = ("50 N·m", "150 N·m", "300 N·m")
+    figure = compare_line_contacts(contacts, names)
+    assert figure.layout.title.text.startswith("The thinnest film, 0.83")
+    assert figure.layout.title.text.endswith(" µm, is that of 300 N·m")
+    for one, name in zip(contacts, names, strict=True):
+        assert trace(figure, name).y.max() == pytest.approx(1e-9 * one.pressure.max())
+    looks = [(trace(figure, name).line.color, trace(figure, name).line.dash) for name in names]
+    assert len({color for color, _ in looks}) == len({dash for _, dash in looks}) == 3
+
+
+def test_dimensionless_comparison_has_one_dry_pressure(contacts: list[Any], bare: Any) -> None:
+    names = ("a", "b", "c")
+    in_units = compare_line_contacts(contacts, names)
+    assert sum(each.name == "dry (Hertz)" for each in in_units.data) == 3
+    shapes = compare_line_contacts([*contacts, bare], (*names, "d"), dimensionless=True)
+    assert sum(each.name == "dry (Hertz)" for each in shapes.data) == 1
+    # the spike moves to the outlet with the load
+    peaks = [trace(shapes, name) for name in names]
+    places = [each.x[np.argmax(np.where(each.x > 0.2, each.y, 0.0))] for each in peaks]
+    assert places == sorted(places)
+
+
+def test_comparisons_that_make_no_sense_are_refused(contacts: list[Any], bare: Any) -> None:
+    with pytest.raises(InputError, match="3 contacts and 2 labels"):
+        compare_line_contacts(contacts, ("a", "b"))
+    with pytest.raises(InputError, match=r"1 of 4 contacts have no unit.*dimensionless=True"):
+        compare_line_contacts([*contacts, bare], "abcd")
+    with pytest.raises(InputError, match="no contact"):
+        compare_line_contacts([], [])
+
+
+PATH = np.array([10e-3, 12e-3, 15e-3])
+LETTERS = SimpleNamespace(A=9e-3, B=11e-3, C=12e-3, D=13e-3, E=16e-3)
+
+
+def test_animation_moves_profile_and_marks(contacts: list[Any]) -> None:
+    figure = film_along_path(contacts, PATH, path_of_contact=LETTERS)
+    assert [frame.name for frame in figure.frames] == ["0", "1", "2"]
+    for one, at, frame in zip(contacts, PATH, figure.frames, strict=True):
+        moved = [figure.data[number] for number in frame.traces]
+        assert [each.name for each in frame.data] == [each.name for each in moved]
+        assert [each.yaxis for each in frame.data] == [each.yaxis for each in moved]
+        pressure, film, load, least, dry = frame.data
+        assert max(pressure.y) == pytest.approx(1e-9 * one.pressure.max(), rel=1e-6)
+        assert np.interp(0.0, film.x, film.y) == pytest.approx(1e6 * one.central_film, rel=1e-3)
+        assert (load.x[0], load.y[0]) == pytest.approx((1e3 * at, 1e-3 * one.load_per_width))
+        assert (least.x[0], least.y[0]) == pytest.approx((1e3 * at, 1e6 * one.minimum_film))
+        assert len(pressure.x) <= 200
+        assert max(dry.y) == pytest.approx(1e-9 * one.hertz_pressure, rel=1e-6)
+    assert {note.text for note in figure.layout.annotations} == set("ABCDE")
+    steps = figure.layout.sliders[0].steps
+    assert [step.args[0][0] for step in steps] == ["0", "1", "2"]
+    assert steps[1].label.startswith("12.0 mm: 148 N/mm, film 0.895 µm")
+
+
+def test_animation_runs_from_left_to_right(contacts: list[Any]) -> None:
+    back = film_along_path(contacts, PATH[::-1])
+    assert back.layout.xaxis3.autorange == "reversed"
+    assert film_along_path(contacts, PATH).layout.xaxis3.autorange is True
+    assert not back.layout.annotations
+
+
+def test_animation_is_a_small_file(contacts: list[Any]) -> None:
+    many = [contacts[number % 3] for number in range(30)]
+    text = film_along_path(many, np.linspace(9e-3, 16e-3, 30)).to_json()
+    assert len(text) < 500_000
+
+
+def test_animation_refuses_what_it_cannot_draw(contacts: list[Any]) -> None:
+    with pytest.raises(InputError, match="3 contacts and 2 positions"):
+        film_along_path(contacts, PATH[:2])
+    with pytest.raises(InputError, match="1 contacts and 1 positions"):
+        film_along_path(contacts[:1], PATH[:1])
+    with pytest.raises(InputError, match="keep_solutions=True"):
+        film_along_path(SimpleNamespace(solutions=None), PATH)
+
+
+def test_response_over_the_frequency(contacts: list[Any], bare: Any) -> None:
+    figure = film_response(contacts[1], [100.0, 1e4, 1e5], length=0.02)
+    stiffness, damping = contacts[1].frequency_response([100.0, 1e4, 1e5], 0.02)
+    np.testing.assert_allclose(trace(figure, "stiffness").y, 1e-6 * stiffness)
+    np.testing.assert_allclose(trace(figure, "damping", "y2").y, damping)
+    (note,) = figure.layout.annotations
+    # u_e over twice the half width, on an axis of powers of ten
+    assert note.x == pytest.approx(math.log10(3.0722 / (2.0 * 116.989e-6)), abs=1e-4)
+    assert len(trace(film_response(contacts[1], length=0.02), "stiffness").x) == 43
+    with pytest.raises(InputError, match="without units"):
+        film_response(bare)
