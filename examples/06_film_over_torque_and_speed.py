@@ -1,10 +1,11 @@
 """Pressure and film over torque and over speed, beside what a cut-off inlet makes of them.
 
-The pair of an FZG rig at its pitch point, where one tooth pair carries everything: the wheel with 24
-teeth drives. The second figure of each row is the same contact with the oil supply cut off 2.5 half
-widths before its centre: light loads starve most, so that the film seems to rise with the torque.
+The pair of an FZG rig at its pitch point, where one tooth pair carries everything and the wheel
+with 24 teeth drives. The starved film is that of the same contact with the oil supply cut off 2.5
+half widths before its centre: light loads lose most, so that the film seems to rise with torque.
 
-Run it with a folder to keep the figures: ``python examples/06_film_over_torque_and_speed.py figures``.
+Run it with a folder to keep the figures:
+``python examples/06_film_over_torque_and_speed.py figures``.
 """
 
 import math
@@ -12,6 +13,8 @@ import sys
 import tempfile
 import warnings
 from pathlib import Path
+
+import numpy as np
 
 from tribodyn.ehl import solve_line_contact
 from tribodyn.errors import ModelWarning
@@ -33,19 +36,20 @@ def contact(torque, rpm, **options):
 
 def compare(name, unit, points):
     """Print one line for each operating point, and draw the flooded contacts."""
-    print(f"{name:>8}    central [um]   minimum [um]   starved central [um]   pressure peak [p_h] at")
+    print(f"{name:>8}  central [um]  minimum [um]  starved [um]  peak [p_h]  at [b]")
     flooded = {}
     for value, (torque, rpm) in points.items():
         full = contact(torque, rpm)
         starved = contact(torque, rpm, inlet="zero", domain=(-2.5, 1.5))
-        behind = full.position > 0.25 * full.half_width
-        peak = full.pressure[behind].argmax()
-        print(
-            f"{value:>8}    {full.central_film * 1e6:12.4f}   {full.minimum_film * 1e6:12.4f}"
-            f"   {starved.central_film * 1e6:20.4f}"
-            f"   {full.pressure[behind][peak] / full.hertz_pressure:19.2f}"
-            f" {full.position[behind][peak] / full.half_width:.2f} b"
+        behind = np.where(full.position > 0.15 * full.half_width, full.pressure, 0.0).argmax()
+        figures = (
+            full.central_film * 1e6,
+            full.minimum_film * 1e6,
+            starved.central_film * 1e6,
+            full.pressure[behind] / full.hertz_pressure,
+            full.position[behind] / full.half_width,
         )
+        print("{:>8}  {:12.4f}  {:12.4f}  {:12.4f}  {:10.2f}  {:6.3f}".format(value, *figures))
         flooded[f"{value} {unit}"] = full
     return compare_line_contacts(flooded.values(), flooded)
 

@@ -8,6 +8,7 @@ Run it with a folder to keep the figure: ``python examples/07_film_along_path.py
 
 import sys
 import tempfile
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -17,16 +18,19 @@ from tribodyn.contact import effective_modulus, path_of_contact
 from tribodyn.ehl import solve_line_contacts
 from tribodyn.plot import film_along_path
 
+warnings.simplefilter("ignore", td.ModelWarning)  # of this pair and of its rough flanks
 case = td.load_case("fzg-roughness")
 mesh, pair = td.run(case).mesh, case.gear_pair
 
 # The table counts pairs by the mesh cycles since they entered: its transpose is the life of a pair.
+# Where the load jumps, a position occurs twice.
 life = mesh.in_contact.T
-kept = np.unique(np.linspace(0, life.sum() - 1, 31).round().astype(int))
-path, load, radius, speed = (
-    getattr(mesh, column).T[life][kept]
-    for column in ("path", "load_per_width", "equivalent_radius", "entrainment_speed")
-)
+columns = ("path", "load_per_width", "equivalent_radius", "entrainment_speed")
+path, load, radius, speed = (getattr(mesh, column).T[life] for column in columns)
+jumps = np.flatnonzero(np.abs(np.diff(load)) > 1e-2 * load[1:])
+even = np.linspace(0, path.size - 1, 31).round().astype(int)
+kept = np.unique(np.concatenate((even, jumps, jumps + 1)))
+path, load, radius, speed = (values[kept] for values in (path, load, radius, speed))
 steel, oil = case.material_properties, case.lubricant_properties
 films = solve_line_contacts(
     load, radius, speed, oil, effective_modulus(steel, steel), nodes=513, keep_solutions=True

@@ -8,6 +8,7 @@ Run it with a folder to keep the figures: ``python examples/08_film_over_a_mesh_
 
 import sys
 import tempfile
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from tribodyn.ehl import solve_line_contacts, solve_transient_line_contact
 from tribodyn.plot import film_over_time, film_transient
 
 STEPS = 300
+warnings.simplefilter("ignore", td.ModelWarning)  # of this pair and of its rough flanks
 case = td.load_case("fzg-roughness")
 mesh = td.run(case).mesh
 life = mesh.in_contact.T

@@ -7,8 +7,11 @@ import re
 import warnings
 from collections.abc import Callable, Iterable
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
 from tribodyn.errors import ModelWarning
@@ -67,8 +70,8 @@ def convergence() -> list[str]:
 def ratios(case: str) -> list[float]:
     """Difference of two grids over that of the next two."""
     films = [central_film(case, nodes, "newton") for nodes in NODES]
-    steps = [after - before for before, after in zip(films, films[1:], strict=False)]
-    return [before / after for before, after in zip(steps, steps[1:], strict=False)]
+    steps = [after - before for before, after in pairwise(films)]
+    return [before / after for before, after in pairwise(steps)]
 
 
 def extrapolated(case: str, nodes: int) -> float:
@@ -97,24 +100,32 @@ def source_figure(torque: float, rpm: float, starved: bool) -> Any:
     return gear_contact(torque, rpm, nodes=4097)
 
 
-def _spike(contact: Any) -> list[str]:
-    if contact.spike_position is None:
-        return ["none", "none"]
-    height = contact.spike_pressure / contact.hertz_pressure
-    return [f"{height:.2f}", f"{contact.spike_position / contact.half_width:.3f}"]
+def peak(contact: Any) -> tuple[float, float]:
+    """Height [p_h] and place [b] of the greatest pressure behind the centre."""
+    behind = np.where(contact.position > 0.15 * contact.half_width, contact.pressure, 0.0)
+    at = int(behind.argmax())
+    return behind[at] / contact.hertz_pressure, contact.position[at] / contact.half_width
+
+
+def _peak(contact: Any) -> str:
+    height, place = peak(contact)
+    alone = ", alone" if contact.spike_position is None else ""
+    return f"{height:.2f} at {place:.3f}{alone}"
 
 
 def operating_points(points: Iterable[tuple[int, int]]) -> list[str]:
     """Films and spikes at operating points, flooded and in the domain of the source."""
-    head = ["torque, speed", "p_h [GPa]", "h_c [um]", "h_min [um]", "spike [p_h]", "spike at [b]"]
-    lines = [row([*head, "h_c, starved [um]", "h_min, starved [um]"]), "|" + "---|" * 8]
+    head = ["torque, speed", "p_h [GPa]"]
+    head += [f"{name} [um]" for name in ("h_c", "h_min")] + ["spike [p_h] at [b]"]
+    head += [f"{name}, starved [um]" for name in ("h_c", "h_min")] + ["spike, starved"]
+    lines = [row(head), "|" + "---|" * len(head)]
     for torque, rpm in points:
         full, starved = (source_figure(torque, rpm, cut) for cut in (False, True))
-        films = [1e6 * size for size in (full.central_film, full.minimum_film)]
-        cut = [1e6 * size for size in (starved.central_film, starved.minimum_film)]
         cells = [f"{torque} N m, {rpm} rpm", f"{1e-9 * full.hertz_pressure:.4f}"]
-        cells += [f"{film:.4f}" for film in films] + _spike(full)
-        lines.append(row([*cells, *(f"{film:.4f}" for film in cut)]))
+        for contact in (full, starved):
+            cells += [f"{1e6 * contact.central_film:.4f}", f"{1e6 * contact.minimum_film:.4f}"]
+            cells.append(_peak(contact))
+        lines.append(row(cells))
     return lines
 
 
@@ -136,9 +147,15 @@ def on_page(name: str, text: str) -> str:
     return found.group(1).rstrip("\n") if found else ""
 
 
-def numbers(table: str) -> list[float]:
-    """All numbers of a table."""
-    return [float(each) for each in re.findall(r"-?\d+\.\d+", table)]
+def numbers(table: str) -> list[tuple[float, float]]:
+    """All numbers of a table, each with the value of its last digit.
+
+    >>> numbers("| 1.25 | 3 |")
+    [(1.25, 0.01)]
+    """
+    found = re.findall(r"-?\d+\.(\d+)", table)
+    values = re.findall(r"-?\d+\.\d+", table)
+    return [(float(v), 10.0 ** -len(d)) for v, d in zip(values, found, strict=True)]
 
 
 def written(text: str) -> str:

@@ -14,6 +14,7 @@ from film_tables import (
     extrapolated,
     numbers,
     on_page,
+    peak,
     ratios,
     source_figure,
 )
@@ -21,28 +22,33 @@ from film_tables import (
 TEXT = PAGE.read_text("utf-8")
 
 
+def disagreements(printed: str, solved: str) -> list[tuple[float, float]]:
+    """Numbers of two tables that differ by more than three of their last digits."""
+    pairs = zip(numbers(printed), numbers(solved), strict=True)
+    return [(a, b) for (a, digit), (b, _) in pairs if abs(a - b) > 3.1 * digit]
+
+
 @pytest.mark.parametrize("name", TABLES)
 def test_tables_are_solved_numbers(name: str) -> None:
     printed, solved = on_page(name, TEXT), "\n".join(TABLES[name]())
     assert len(numbers(printed)) == len(numbers(solved)) > 10, "run tests/docs/film_tables.py"
-    # the last digits of a spike and of a ratio of small differences depend on the processor
-    assert numbers(printed) == pytest.approx(numbers(solved), rel=2e-6, abs=0.02)
-    fine = {"convergence": 1e-6, "order": 1.0, "torque": 2e-4, "speed": 2e-4}[name]
-    if name != "order":
-        films = [each for each in numbers(printed) if each < 2.0]
-        assert films == pytest.approx([each for each in numbers(solved) if each < 2.0], abs=fine)
+    assert disagreements(printed, solved) == []
 
 
 def test_a_wrong_digit_on_the_page_is_noticed() -> None:
     table = on_page("convergence", TEXT)
-    first = numbers(table)[0]
+    first = numbers(table)[0][0]
     wrong = table.replace(f"{first:.7f}", f"{first * 1.0001:.7f}", 1)
-    assert numbers(wrong) != pytest.approx(numbers(table), rel=2e-6)
+    assert len(disagreements(wrong, table)) == 1
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_second_order(case: str) -> None:
-    assert all(3.5 < ratio < 4.5 for ratio in ratios(case))
+def test_second_order() -> None:
+    for case in ("M 20, L 10", "M 5, L 5"):
+        assert all(3.9 < ratio < 4.1 for ratio in ratios(case))
+    # the spike of the gear contact is narrower than the spacing: fine grids gain less from it
+    gear = ratios("150 N m, 1400 rpm [um]")
+    assert all(3.5 < ratio < 4.5 for ratio in gear[:3])
+    assert all(3.0 < ratio < 4.0 for ratio in gear[3:])
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -74,3 +80,27 @@ def test_the_domain_of_the_source_makes_the_film_rise_with_torque() -> None:
     assert starved == sorted(starved)
     lost = [1.0 - cut / film for cut, film in zip(starved, full, strict=True)]
     assert lost == pytest.approx([0.32, 0.14, 0.07], abs=0.01)
+
+
+def test_constriction_weakens_with_torque() -> None:
+    contacts = [source_figure(torque, 1400, False) for torque in TORQUES]
+    depths = [one.minimum_film / one.central_film for one in contacts]
+    assert depths == sorted(depths)
+
+
+def test_the_spike_goes_to_the_outlet_with_torque_and_to_the_inlet_with_speed() -> None:
+    for cut in (False, True):
+        torque = [peak(source_figure(torque, 1400, cut)) for torque in TORQUES]
+        speed = [peak(source_figure(150, rpm, cut)) for rpm in SPEEDS]
+        # in Hertz pressures it falls with torque and rises with speed
+        assert [place for _, place in torque] == sorted(place for _, place in torque)
+        assert [place for _, place in speed] == sorted((place for _, place in speed), reverse=True)
+        assert torque[2][0] < torque[1][0]
+        assert [height for height, _ in speed] == sorted(height for height, _ in speed)
+
+
+def test_light_load_is_not_close_to_hertz() -> None:
+    # the only maximum is the spike, far above the dry pressure
+    contact = source_figure(50, 1400, False)
+    assert contact.spike_position is None
+    assert contact.pressure.max() > 1.5 * contact.hertz_pressure

@@ -56,19 +56,19 @@ def test_isoviscous_film_tends_to_that_of_rigid_bodies(reach):
 
 def test_piezoviscous_film_tends_to_that_of_rigid_bodies():
     deviation = []
-    for M in (0.1, 0.05):
-        L = 6.0 / M**1.5  # the reduced pressure comes to 87 % of its bound 1/alpha
+    for M in (0.4, 0.2):
+        L = 4.0 / M**1.5  # the reduced pressure comes to 72 % of its bound 1/alpha
         unit = 1.3 * math.sqrt(2.0 * 4.895 * math.pi / 16.0) / M
         rigid = rigid_film(M, -8.0 * unit, piezoviscosity=L * math.sqrt(M / (2.0 * math.pi)))
         plain = rigid_film(M, -8.0 * unit)
-        assert rigid.minimum > 1.5 * plain.minimum
+        assert rigid.minimum > 1.3 * plain.minimum
         found = solve_line_contact_moes(
             M, L, compressible=False, domain=(-8.0 * unit, unit), inlet="zero", nodes=4097,
             viscosity_law="barus",
         )  # fmt: skip
         deviation.append(found.minimum_film / rigid.minimum - 1.0)
-    assert abs(deviation[1]) < 1e-3
-    assert deviation[1] == pytest.approx(deviation[0] / 4.0, abs=1e-4)
+    assert abs(deviation[1]) < 1e-2
+    assert (4.0 * deviation[1] - deviation[0]) / 3.0 == pytest.approx(0.0, abs=1e-3)
 
 
 # The field equations of a solved contact, each by another numerical method.
@@ -117,7 +117,7 @@ def test_flux_by_spline_derivatives_is_one_constant(M, L):
     flux = found.film - found.film**3 / found.viscosity / lam(M) * slope
     wet = (found.position > -4.0) & (found.position < 0.98 * found.outlet)
     # the spike is the one place where a spline does not follow
-    smooth = wet & (np.abs(found.position - (found.spike_position or 9.0)) > 0.05)
+    smooth = wet & (np.abs(found.position - wetted(found).spike[0]) > 0.02)
     at_outlet = np.interp(found.outlet, found.position, found.film)
     np.testing.assert_allclose(flux[smooth], at_outlet, rtol=2e-3)
 

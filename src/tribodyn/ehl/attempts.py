@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
+from tribodyn.ehl.automatic import MOST
 from tribodyn.ehl.continuation import continue_to
 from tribodyn.ehl.discrete import ContactProblem, Outcome
 from tribodyn.ehl.newton_engine import first_intervals, newton_engine
@@ -77,43 +79,50 @@ def solve_problem(problem: ContactProblem, method: str) -> Solved:
     """
     engine = ENGINES[method]
     log: list[str] = []
-    cold = replace(problem, start=None)
-    other = "newton" if method == "multigrid" else "multigrid"
-    finer = 4 * first_intervals(cold)
-
-    def again() -> Outcome:
-        return engine(replace(cold, coarsest=min(finer, problem.nodes - 1)))
-
-    trials: list[tuple[str, Callable[[], Outcome]]] = [
-        (method, lambda: engine(problem)),
-        (method, lambda: engine(cold)),
-        (method, again),
-        (other, lambda: ENGINES[other](cold)),
-        ("newton", lambda: continue_to(cold)),
-    ]
-    if problem.start is None:
-        del trials[1]
-    for name, trial in trials:
+    for name, trial in _trials(problem, method, engine):
         outcome = trial()
         complaint = outcome.message
         if outcome.converged and outcome.grid is not None:
             check = verify(outcome.grid)
             complaint = check.complaint(1.05 * problem.flux_tolerance + 1e-9)
-            if outcome.grid.free >= outcome.grid.n - 1:
-                complaint = "the oil film reaches the end of the domain"
             if not complaint:
                 return Solved(outcome, check, name, tuple(log))
             complaint = f"{name}: {complaint}"
         log.append(complaint)
+        if "rounding" in complaint:
+            break
     raise ComputationError(_failure(problem, log))
+
+
+def _trials(
+    problem: ContactProblem, method: str, engine: Engine
+) -> list[tuple[str, Callable[[], Outcome]]]:
+    """What is tried, one after the other."""
+    cold = replace(problem, start=None)
+    first, last = first_intervals(cold), problem.nodes - 1
+    other = "newton" if method == "multigrid" else "multigrid"
+    trials = [(method, lambda: engine(problem))]
+    if problem.start is not None:
+        trials.append((method, lambda: engine(cold)))
+    if first < last:
+        finer = replace(cold, coarsest=min(4 * first, last))
+        trials.append((method, lambda: engine(finer)))
+    if first == last and problem.profile is None:
+        # A grid may be too coarse to have any solution: see the inlet in `first_intervals`.
+        trials += [
+            (method, partial(engine, replace(cold, nodes=factor * last + 1)))
+            for factor in (2, 4, 8, 16)
+            if factor * last < MOST
+        ]
+    trials.append((other, lambda: ENGINES[other](cold)))
+    trials.append(("newton", lambda: continue_to(cold)))
+    return trials
 
 
 def _failure(problem: ContactProblem, log: list[str]) -> Problem:
     tried = "; ".join(f"({number}) {entry}" for number, entry in enumerate(log, 1))
     start, end = problem.domain
-    if any("end of the domain" in entry for entry in log):
-        remedy = f"Let the domain end beyond X = {end:g}"
-    elif any("rounding" in entry for entry in log):
+    if any("rounding" in entry for entry in log):
         remedy = "Take a greater flux_tolerance or fewer nodes"
     else:
         remedy = "Take more nodes; check load, radius, speed, viscosity and their units"

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.ehl.contact_case import si_case
 from tribodyn.ehl.line_contact import SolverOptions, solve_case
 from tribodyn.ehl.solution import LineContactSolution
-from tribodyn.errors import InputError, Problem, TribodynError
+from tribodyn.errors import InputError, Problem, TribodynError, warn
 from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -183,6 +183,9 @@ def solve_line_contacts(
         progress.advance()
     progress.finish()
     table = np.asarray(rows, dtype=float).reshape(size, 8).T
+    table[2] = -columns[0] / table[2]
+    if stiffness:
+        _warn_negative(table[2], shape)
     fields = [column.reshape(shape) for column in table]
     empty = np.empty(0)
     return LineContactBatch(
@@ -214,17 +217,33 @@ def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
 
 
 def _row(solution: LineContactSolution, stiffness: bool) -> list[float]:
+    from tribodyn.ehl.film_stiffness import central_film_slope
+
     error = solution.central_film_error
     return [
         solution.central_film,
         solution.minimum_film,
-        solution.film_stiffness(1.0) if stiffness else 0.0,
+        central_film_slope(solution) if stiffness else 1.0,
         solution.hertz_pressure,
         solution.half_width,
         solution.outlet,
         solution.flux_error,
         -1.0 if error is None else error,
     ]
+
+
+def _warn_negative(stiffness: Array, shape: tuple[int, ...]) -> None:
+    """One warning for all contacts whose central film rises with the load."""
+    rising = np.flatnonzero(stiffness <= 0.0)
+    if rising.size:
+        place = ", ".join(str(part) for part in np.unravel_index(rising[0], shape)) or "0"
+        warn(
+            "film-stiffness",
+            f"The central film of {rising.size} of {stiffness.size} contacts, the first of them "
+            f"[{place}], rises with the load, so that its tangent stiffness is negative: the "
+            "load is so light that the outlet comes near the centre, or the inlet is starved",
+            stacklevel=4,
+        )
 
 
 def _at(problem: Problem, index: int, shape: tuple[int, ...], columns: list[Array]) -> Problem:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.ehl.film_stiffness import central_film_slope
+from tribodyn.ehl.inlet_change import InletChange, inlet_change
 from tribodyn.errors import ComputationError, InputError, Problem, require_between, require_positive
 
 if TYPE_CHECKING:
@@ -121,7 +123,7 @@ def film_compliance(
 
     Valid for amplitudes small against the film. Above ``u_e/2b`` the oil in the contact is
     trapped: the compliance of the centre falls to that of the oil's volume,
-    ``h_c rho'/rho dp_c/dw``. The pressure of the inlet before the first node follows at once.
+    ``h_c rho'/rho dp_c/dw``. The pressure of the inlet before the first node follows load and film at once.
     Source: linearized transient Reynolds equation.
     """
     values = np.asarray(frequencies, dtype=float)
@@ -136,12 +138,14 @@ def film_compliance(
             )
         )
     unit, rate = _units(solution, length)
-    linear = _linearize(_on_coarse_grid(solution._grid))
-    central, offset = linear.answer(0.0)
+    linear = _linearize(_on_coarse_grid(solution._grid), inlet_change(solution))
+    central, offset = linear.answer(0.0, None)
+    at_rest = -central_film_slope(solution) / solution.film_unit
     result = np.empty(values.size, dtype=complex)
     for i, frequency in enumerate(values.reshape(-1)):
-        film, rigid = linear.answer(2.0 * np.pi * frequency / rate)
-        result[i] = -film if deflection == "central" else -central - (rigid - offset)
+        film, rigid = linear.answer(2.0 * np.pi * frequency / rate, central)
+        change = film - central if deflection == "central" else rigid - offset
+        result[i] = at_rest - change
     return np.asarray(unit * result.reshape(values.shape))[()]
 
 
@@ -159,35 +163,37 @@ class _Linear:
     """Linearized equations: unknowns P_0, the free pressures and the offset.
 
     ``steady + i omega squeeze`` times the unknowns is zero in the rows of the mass balance;
-    ``film`` gives the central film; ``inlet`` holds the slopes of the inlet's pressure and load
-    by the central film and by ln(w).
+    ``film`` gives the central film.
     """
 
     steady: Array
     squeeze: Array
     film: Array
-    inlet: tuple[float, float, float, float]
-    load: float
-    dx: float
+    inlet: InletChange
 
-    def answer(self, omega: float) -> tuple[complex, complex]:
-        """Change of central film and offset at a unit change of ln(w)."""
-        pressure_film, load_film, pressure_load, load_load = self.inlet
+    def answer(self, omega: float, at_rest: complex | None) -> tuple[complex, complex]:
+        """Change of central film and offset at a unit change of ln(w).
+
+        The inlet follows the load as at rest, and the film as far as it then differs from that.
+        """
+        inlet = self.inlet
         matrix = self.steady + 1j * omega * self.squeeze
         size = matrix.shape[0]
         right = np.zeros((size, 2))
         # First column: unit change of ln(w); second: of the film in the law of the inlet.
-        right[0] = pressure_load, pressure_film
-        right[-1] = self.load - load_load, -load_film
+        right[0] = inlet.pressure, inlet.pressure_film
+        right[-1] = 0.5 * np.pi - inlet.load, -inlet.load_film
         scale = np.abs(matrix).max(axis=1)
         direct, back = np.linalg.solve(matrix / scale[:, None], right / scale[:, None]).T
-        change = direct + back * (self.film @ direct) / (1.0 - self.film @ back)
+        change = direct
+        if at_rest is not None:
+            film, answer = self.film @ direct, self.film @ back
+            change = direct + back * (film - at_rest) / (1.0 - answer)
         return complex(self.film @ change), complex(change[-1])
 
 
-def _linearize(grid: DiscreteContact) -> _Linear:
+def _linearize(grid: DiscreteContact, inlet: InletChange) -> _Linear:
     from tribodyn.ehl.kernel.film_sum import influence
-    from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
     from tribodyn.ehl.kernel.oil import oil_state
     from tribodyn.ehl.kernel.reynolds import coefficients, mobility
     from tribodyn.ehl.kernel.transfer import central
@@ -214,14 +220,8 @@ def _linearize(grid: DiscreteContact) -> _Linear:
     steady[0, 0] = 1.0
     steady[-1, : k + 1] = dx
     steady[-1, 0] = 0.5 * dx
-    load = dx * (0.5 * grid.P[0] + float(np.sum(grid.P[1:])))
     middle = np.array([central(n, start, dx, column.copy()) for column in film.T])
-    inlet = (0.0, 0.0, 0.0, 0.0)
-    if grid.tail > 0.0:
-        thickness = central(n, start, dx, grid.H)
-        _, outside, *inlet = flooded_inlet(start, thickness, grid.lam, 1.0, 1.0)
-        load += outside
-    return _Linear(steady, squeeze, middle, tuple(inlet), load, dx)
+    return _Linear(steady, squeeze, middle, inlet)
 
 
 def _on_coarse_grid(grid: DiscreteContact) -> DiscreteContact:

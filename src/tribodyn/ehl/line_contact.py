@@ -102,7 +102,8 @@ def solve_line_contact(
         ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
     nodes : "auto" or int
         Nodes of the grid, 65 to 16385, preferably 2^k + 1. Automatic: refined until the estimated
-        error of the central film meets ``film_tolerance``.
+        error of the central film meets ``film_tolerance``. A grid on which so thin a film has no
+        solution is refined too; ``nodes`` and ``attempts`` of the solution tell.
     method : {"newton", "multigrid"}
         Multilevel Newton-Krylov, or full multigrid. If it fails, the other one is tried.
     domain : "auto" or (float, float)
@@ -142,7 +143,7 @@ def solve_line_contact(
     -----
     ModelWarning
         Code ``starved-inlet`` for ``inlet="zero"``; ``film-resolution`` where the finest grid
-        does not meet ``film_tolerance``.
+        does not meet ``film_tolerance``; ``outlet-cut`` where the domain ends before the film.
 
     Valid for smooth bodies of a linear elastic material and a film that is thin against the
     radius. Source: Reynolds (1886); Dowson and Higginson (1966); Venner and Lubrecht (2000).
@@ -166,7 +167,8 @@ def solve_line_contact(
     solution = solve_case(case, options)
     if inlet == "zero":
         _warn_starved(solution)
-    _warn_resolution(solution, options)
+    _warn_cut(solution)
+    _warn_accuracy(solution, options)
     return solution
 
 
@@ -252,7 +254,7 @@ def solve_line_contact_moes(
         M, L, pressure_viscosity_index, pressure_viscosity_coefficient, viscosity_law, compressible
     )
     solution = solve_case(case, options)
-    _warn_resolution(solution, options)
+    _warn_accuracy(solution, options)
     return solution
 
 
@@ -354,7 +356,7 @@ def _warn_starved(solution: LineContactSolution) -> None:
     )
 
 
-def _warn_resolution(solution: LineContactSolution, options: SolverOptions) -> None:
+def _warn_accuracy(solution: LineContactSolution, options: SolverOptions) -> None:
     error = solution.central_film_error
     automatic = isinstance(options.nodes, str)
     if automatic and error is not None and error > options.film_tolerance * solution.central_film:
@@ -363,5 +365,16 @@ def _warn_resolution(solution: LineContactSolution, options: SolverOptions) -> N
             f"With {solution.nodes} nodes, the most there are, the central film has an estimated "
             f"error of {error / solution.central_film:.2g} of it, more than film_tolerance = "
             f"{options.film_tolerance:g}. Take the extrapolated value, or a greater tolerance",
+            stacklevel=3,
+        )
+
+
+def _warn_cut(solution: LineContactSolution) -> None:
+    if solution._grid.free >= solution._grid.n - 1:
+        warn(
+            "outlet-cut",
+            f"The oil film reaches the end of the domain, X = {solution.domain[1]:g} half widths, "
+            "where its pressure is forced to zero. Let the domain end further out, or take "
+            'domain="auto"',
             stacklevel=3,
         )

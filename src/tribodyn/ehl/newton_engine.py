@@ -12,8 +12,8 @@ __all__ = ["first_intervals", "newton_engine", "resample"]
 Array = NDArray[np.float64]
 
 #: Intervals of the coarsest grid at least, and interval that resolves an inlet, whose length
-#: goes with the film to the power 2/3.
-_LEAST, _RESOLVED = 64, 0.7
+#: goes with the film to the power 2/3, between rigid bodies with its root.
+_LEAST, _RESOLVED, _RESOLVED_RIGID = 64, 0.7, 0.35
 #: Newton steps on a grid, and tolerance of the linear solver.
 _STEPS, _LINEAR, _LINEAR_TIGHT = 40, 3e-2, 1e-2
 #: Greatest change of a nodal pressure in a step, in Hertz pressures.
@@ -44,7 +44,10 @@ def first_intervals(problem: ContactProblem) -> int:
     m = problem.nodes - 1
     width = problem.domain[1] - problem.domain[0]
     least = problem.coarsest or _LEAST
-    resolved = np.inf if problem.coarsest else _RESOLVED * problem.film ** (2.0 / 3.0)
+    film = problem.film
+    resolved = min(_RESOLVED * film ** (2.0 / 3.0), _RESOLVED_RIGID * (2.0 * film) ** 0.5)
+    if problem.coarsest:
+        resolved = np.inf
     while m % 2 == 0 and m // 2 >= least and 2.0 * width / m <= resolved:
         m //= 2
     return m

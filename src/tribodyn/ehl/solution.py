@@ -239,9 +239,9 @@ class LineContactSolution:
         plotly.graph_objects.Figure
         """
         # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot.film_contact import film_contact
+        from tribodyn.plot.line_contact import line_contact
 
-        return film_contact(self)
+        return line_contact(self)
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.errors import ModelWarning
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
 
@@ -27,7 +29,8 @@ class Films:
     film_pressure : array [Pa], optional
         Greatest pressure in the film.
     film_stiffness : array [N/m], optional
-        Stiffness of the film over the length of the contact line.
+        Stiffness of the film over the length of the contact line; the tangent one is negative
+        where the central film rises with the load.
     solutions : tuple of LineContactSolution
         Pressure and film of each contact in flat order; empty for formulas.
     """
@@ -96,20 +99,23 @@ def solved_films(
     from tribodyn.ehl.batch import solve_line_contacts
 
     tangent = stiffness in ("none", "tangent")
-    batch = solve_line_contacts(
-        load_per_width,
-        equivalent_radius,
-        entrainment_speed,
-        lubricant,
-        effective_modulus,
-        nodes=nodes,
-        method=method,
-        inlet=inlet,
-        domain="auto" if domain is None else domain,
-        stiffness=tangent,
-        keep_solutions=True,
-        progress=progress,
-    )
+    with warnings.catch_warnings():
+        # Whoever uses the stiffness says what a negative one means for it.
+        warnings.filterwarnings("ignore", r"\[film-stiffness\]", ModelWarning)
+        batch = solve_line_contacts(
+            load_per_width,
+            equivalent_radius,
+            entrainment_speed,
+            lubricant,
+            effective_modulus,
+            nodes=nodes,
+            method=method,
+            inlet=inlet,
+            domain="auto" if domain is None else domain,
+            stiffness=tangent,
+            keep_solutions=True,
+            progress=progress,
+        )
     solutions = tuple(np.ravel(batch.solutions))
     pressures = np.array([solution.pressure.max() for solution in solutions])
     if tangent:

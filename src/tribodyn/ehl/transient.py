@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -25,6 +26,10 @@ from tribodyn.lubricant import Lubricant
 __all__ = ["solve_transient_line_contact"]
 
 Array = NDArray[np.float64]
+
+#: Share of the load near the last node up to which the grid does not cut the film off, and how
+#: often the grid is made longer for it.
+_LATE_LOAD, _EXTENSIONS = 1e-3, 4
 
 def solve_transient_line_contact(
     time: ArrayLike,
@@ -141,8 +146,9 @@ def solve_transient_line_contact(
     scale = reference_scale(
         inputs.time, inputs.load, inputs.radius, inputs.speed, effective_modulus
     )
-    if domain == "auto":
-        domain = flooded_domain(
+    extent = domain
+    if extent == "auto":
+        extent = flooded_domain(
             scale, inputs.load, inputs.radius, inputs.speed, lubricant, effective_modulus
         )
     length = float(np.max(inputs.radius)) if reference_length is None else reference_length
@@ -153,15 +159,30 @@ def solve_transient_line_contact(
         lubricant=lubricant,
         modulus=effective_modulus,
         nodes=nodes,
-        domain=(float(domain[0]), float(domain[1])),
+        domain=(float(extent[0]), float(extent[1])),
         inlet=inlet,
         law=viscosity_law,
         compressible=compressible,
         length=length,
         limits=np.array([tolerance, tolerance, 30.0, 1e-3, 0.3, 0.0]),
     )
+    for _ in range(_EXTENSIONS if domain == "auto" else 0):
+        contact.check_roughness()
+        result, late = _march(contact, start, step_halvings, keep_every)
+        if late < _LATE_LOAD:
+            return result
+        # A film that is squeezed out reaches further than a steady one.
+        contact = replace(contact, domain=(contact.domain[0], 1.5 * contact.domain[1]))
     contact.check_roughness()
-    return _march(contact, start, step_halvings, keep_every)
+    result, late = _march(contact, start, step_halvings, keep_every)
+    if late >= _LATE_LOAD:
+        warn(
+            "transient-outlet",
+            f"Up to {late:.2%} of the load lies in the last sixteenth of the grid, so that its "
+            f"end at X = {contact.domain[1]:.3g} cuts the film off. Give a domain with a later "
+            "last node",
+        )
+    return result
 
 
 def _require_options(
@@ -192,7 +213,8 @@ def _require_options(
 
 def _march(
     contact: TransientContact, start: str, step_halvings: int, keep_every: int
-) -> TransientLineContact:
+) -> tuple[TransientLineContact, float]:
+    """Result, and the greatest share of the load near the last node."""
     from tribodyn.ehl.kernel.march_entry import march_contact
     from tribodyn.ehl.kernel.squeeze import RECORD
 
@@ -211,7 +233,8 @@ def _march(
     )  # fmt: skip
     if status != 0:
         raise _failure(contact, status, instant, step_halvings)
-    return _result(contact, records, kept, pressures, films)
+    result = _result(contact, records[:, :-1], kept, pressures, films)
+    return result, float(np.max(records[:, -1]))
 
 
 def _failure(
@@ -231,7 +254,9 @@ def _failure(
             f"{inputs.speed[instant]:.6g} m/s",
             why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
             f"{step_halvings} times",
-            remedy="Take more time steps, smoother inputs, or a ramp from 1 to 2 % of the load",
+            remedy="Take more time steps, smoother inputs, or a longer ramp from or to 1 to 2 % "
+            "of the load: where a contact is unloaded within the time that the oil needs to pass "
+            "it, the film ruptures inside, which is not followed",
         )
     )
 
@@ -245,15 +270,6 @@ def _result(
     if inputs.approach is None:
         # The kernel counts the deflection from the distance b.
         offset = offset - total * np.log(contact.depth) / np.pi
-        if np.any(free >= contact.nodes - 2):
-            first = int(np.argmax(free >= contact.nodes - 2))
-            warn(
-                "transient-outlet",
-                f"The oil film reaches the last node at X = {contact.domain[1]:.3g} at "
-                f"t = {inputs.time[first]:.6g} s, so that the grid ends it. Give a domain with a "
-                "later last node",
-                stacklevel=4,
-            )
     return TransientLineContact(
         time=inputs.time,
         central_film=central * scale.film,

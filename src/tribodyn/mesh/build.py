@@ -18,7 +18,13 @@ from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import mesh_cycle
 from tribodyn.mesh.film import FILM_COLUMNS, as_columns
 from tribodyn.mesh.film_friction import film_friction
-from tribodyn.mesh.loads import Loads, quasi_static_loads, tribological_contact, usable_stiffness
+from tribodyn.mesh.loads import (
+    Loads,
+    quasi_static_loads,
+    tribological_contact,
+    usable_stiffness,
+    warn_of_rigid_films,
+)
 from tribodyn.mesh.path_film import SolvedPath, touching_pairs
 from tribodyn.mesh.table import MeshTable
 from tribodyn.progress import SILENT, Progress
@@ -132,6 +138,7 @@ def build(
     loads = quasi_static_loads(
         cycle, teeth, total_load, touching, pinion_speed, film_model, options, progress
     )
+    warn_of_rigid_films(loads, options)
     load_per_width = total_load * loads.share[cycle.in_contact]
     tribology = tribological_contact(motion, touching, load_per_width, composite_roughness)
     columns: dict[str, FloatArray] = {

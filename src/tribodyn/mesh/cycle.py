@@ -60,6 +60,24 @@ class MeshCycle:
         middle = self.contact.pair_paths(self.grid.middle)[0]
         return self.contact.sliding_direction(middle[self.in_contact])
 
+    def named(self, knot: int, pair: int) -> str:
+        """Name a tooth pair by its roll angle.
+
+        Parameters
+        ----------
+        knot : int
+            Row of the mesh table.
+        pair : int
+            Column of the mesh table.
+
+        Returns
+        -------
+        str
+        """
+        gears, path = self.contact.pair, float(self.path[knot, pair])
+        radius = path if self.contact.direction > 0 else gears.line_of_action_length - path
+        return f"the tooth pair at the roll angle {radius / gears.driving.base_radius:.4f} rad"
+
     def motion(self, pinion_speed: float) -> Kinematics:
         """Curvatures and speeds of the touching pairs.
 

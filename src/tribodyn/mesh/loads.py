@@ -11,14 +11,20 @@ from numpy.typing import NDArray
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.errors import ComputationError, Problem
+from tribodyn.errors import ComputationError, Problem, warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle
-from tribodyn.mesh.path_film import FilmAt, PathFilm, Touching, path_film
+from tribodyn.mesh.path_film import FilmAt, PathFilm, SolvedPath, Touching, path_film
 from tribodyn.mesh.series import in_series
 from tribodyn.progress import Progress
 
-__all__ = ["Loads", "quasi_static_loads", "tribological_contact", "usable_stiffness"]
+__all__ = [
+    "Loads",
+    "quasi_static_loads",
+    "tribological_contact",
+    "usable_stiffness",
+    "warn_of_rigid_films",
+]
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -135,9 +141,38 @@ def quasi_static_loads(
         )
         film_of = of_path
     if options.get("stiffness", "none") != "none":
-        return Loads(*in_series(teeth, cycle.in_contact, total_load, film_of))
+        found = in_series(teeth, cycle.in_contact, total_load, film_of, cycle.named)
+        return Loads(*found)
     share = teeth / teeth.sum(axis=1, keepdims=True)
     return Loads(teeth, share, film_of(total_load * share))
+
+
+def warn_of_rigid_films(loads: Loads, options: Mapping[str, Any]) -> None:
+    """Say where a film that should yield does not: near the line of centres it rises with the load.
+
+    Parameters
+    ----------
+    loads : Loads
+        Loads with their films.
+    options : mapping
+        Options of the film model.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``film-stiffness`` where a film in series counts as rigid.
+    """
+    if options.get("stiffness") != "tangent" or not isinstance(loads.film_at, SolvedPath):
+        return
+    share = loads.film_at.rigid_share
+    if share > 0.0:
+        warn(
+            "film-stiffness",
+            f"in {100.0 * share:.2g} % of the contacts of the mesh cycle the central film does not "
+            "fall with the load, so that it has no tangent stiffness: there it counts as rigid. "
+            "Light loads do that, where the contact turns from rigid to elastic",
+            stacklevel=4,
+        )
 
 
 def tribological_contact(

@@ -16,6 +16,7 @@ from tribodyn.errors import InputError, Problem, require_between, require_positi
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.film import as_columns
+from tribodyn.mesh.film_places import film_places
 from tribodyn.mesh.loads import usable_stiffness
 from tribodyn.mesh.positions import PathPositions, path_positions
 from tribodyn.nomenclature import QUANTITIES
@@ -200,15 +201,24 @@ def film_over_operation(
     load = total_load[:, None] * share
     motion = contact.kinematics(path, speed[:, None])
     modulus = effective_modulus(material, material)
-    films = model.films(
-        load[:, None, :], motion.equivalent_radius, motion.entrainment_speed, lubricant, modulus,
-        length=pair.common_face_width, progress=progress, **options,
-    )  # fmt: skip
+    angle = _roll_angle(pair, motion)
+
+    def place(number: int, turn: int, position: int) -> str:
+        return (
+            f"under {torque[number]:g} N*m at {speed[turn]:g} rad/s and the roll angle "
+            f"{angle[position]:.4f} rad"
+        )
+
+    with film_places(place):
+        films = model.films(
+            load[:, None, :], motion.equivalent_radius, motion.entrainment_speed, lubricant,
+            modulus, length=pair.common_face_width, progress=progress, **options,
+        )  # fmt: skip
     return FilmOverOperation(
         pinion_torque=torque,
         pinion_speed=speed,
         path=path,
-        roll_angle=_roll_angle(pair, motion),
+        roll_angle=angle,
         load_per_width=load,
         hertz_pressure=hertz_line(load, motion.equivalent_radius[0], modulus).maximum_pressure,
         entrainment_speed=motion.entrainment_speed,

@@ -23,6 +23,7 @@ from tribodyn.errors import warn
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import MeshCycle
+from tribodyn.mesh.film_places import film_places
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.positions import MOST, PathPositions, path_positions
 from tribodyn.progress import SILENT, Progress
@@ -36,6 +37,8 @@ FilmAt = Callable[[FloatArray], Films]
 
 #: Estimated error of the film between the positions that deserves a warning.
 _ROUGH = 1e-3
+#: Compliance over its estimate below which a film counts as rigid: its stiffness has a bound.
+_RIGID = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +134,8 @@ class PathFilm:
         Options of the model, with its defaults.
     places : PathPositions
         Positions at which the film is solved.
+    roll_angle : array [rad]
+        Roll angle of the driving gear at these positions.
     solved : Touching
         The pair at these positions.
     touching : Touching
@@ -142,6 +147,7 @@ class PathFilm:
     model: str
     options: Mapping[str, Any]
     places: PathPositions
+    roll_angle: FloatArray
     solved: Touching
     touching: Touching
     zone: NDArray[np.int64]
@@ -188,9 +194,15 @@ class PathFilm:
         ModelWarning
             Code ``film-positions`` where the positions are too few.
         """
-        films = self.solved.films(self.model, load_per_width, **self.options, progress=progress)
+        with film_places(lambda index: f"at the roll angle {self.roll_angle[index]:.4f} rad"):
+            films = self.solved.films(self.model, load_per_width, **self.options, progress=progress)
         scales = self.solved.scales(load_per_width)
-        ratios = [np.log(getattr(films, name) / scale) for name, scale in scales.items()]
+        ratios = [
+            np.log(getattr(films, name) / scales[name])
+            for name in ("central_film", "minimum_film", "film_pressure")
+        ]
+        # The compliance and not the stiffness, which has a pole where the compliance is zero.
+        ratios.append(scales["film_stiffness"] / np.asarray(films.film_stiffness))
         error = self.places.truncation(ratios[0])
         if error > _ROUGH:
             count = self.options["positions"]
@@ -200,8 +212,8 @@ class PathFilm:
                 f"{100.0 * error:.2g} % only; {100.0 * _ROUGH:g} % is usual. Give for example "
                 f"film.positions = {min(2 * count, MOST)}",
             )
-        between = self.places.interpolate(np.stack(ratios, axis=1), self.touching.age, self.zone)
-        return SolvedPath(self, load_per_width, films, np.exp(between.T))
+        between = self.places.interpolate(np.stack(ratios, axis=1), self.touching.age, self.zone).T
+        return SolvedPath(self, load_per_width, films, np.exp(between[:3]), between[3])
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,14 +228,23 @@ class SolvedPath:
         Load at each position.
     films : Films
         Films at the positions.
-    factors : array (4, m)
-        Films of the contacts of the mesh table over their scales.
+    factors : array (3, m)
+        Central film, minimum film and pressure of the contacts of the mesh table over their
+        scales.
+    yielding : array (m,)
+        Compliance of their films over its scale; not positive where the film rises with the load.
     """
 
     path: PathFilm
     load_per_width: FloatArray
     films: Films
     factors: FloatArray
+    yielding: FloatArray
+
+    @property
+    def rigid_share(self) -> float:
+        """Part of the contacts whose film does not fall with the load."""
+        return float(np.mean(self.yielding < _RIGID))
 
     def __call__(self, load_per_width: FloatArray) -> Films:
         """Films of all contacts of the mesh table.
@@ -237,8 +258,10 @@ class SolvedPath:
         -------
         Films
         """
-        scales = self.path.touching.scales(load_per_width)
-        return Films(*(np.stack(list(scales.values())) * self.factors))
+        *scales, stiffness = self.path.touching.scales(load_per_width).values()
+        central, minimum, pressure = np.stack(scales) * self.factors
+        film_stiffness = stiffness / np.maximum(self.yielding, _RIGID)
+        return Films(central, minimum, pressure, film_stiffness)
 
 
 def path_film(
@@ -284,7 +307,16 @@ def path_film(
         equivalent_radius=motion.equivalent_radius,
         entrainment_speed=motion.entrainment_speed,
     )
-    return PathFilm(model, options, places, solved, touching, places.zone_of(side))
+    radius = getattr(motion, f"{contact.pair.driver}_curvature_radius")
+    return PathFilm(
+        model=model,
+        options=options,
+        places=places,
+        roll_angle=radius / contact.pair.driving.base_radius,
+        solved=solved,
+        touching=touching,
+        zone=places.zone_of(side),
+    )
 
 
 def touching_pairs(

@@ -19,9 +19,13 @@ BoolArray = NDArray[np.bool_]
 #: The film is solved anew until the load shares move by less than this.
 _TOLERANCE = 1e-6
 _PASSES = 12
-#: Between two solutions the shares settle to this; each pass gains one digit or two.
+#: Between two solutions the shares settle to this; each pass gains one digit or two, and after
+#: every few of them the limit is extrapolated.
 _SETTLED = 1e-13
 _STEPS = 200
+_ROUND = 4
+#: Change of the steps, relative to them, without which nothing can be extrapolated.
+_BENT = 1e-3
 #: Load share below which a pair has lost its load to a film that is softer than its teeth.
 _LOST = 1e-9
 
@@ -31,6 +35,7 @@ def in_series(
     in_contact: BoolArray,
     total_load: float,
     film_of: Callable[[FloatArray], FilmAt],
+    where: Callable[[int, int], str],
 ) -> tuple[FloatArray, FloatArray, FilmAt]:
     """Put the film of each pair in series with its teeth, at the load share that follows.
 
@@ -45,6 +50,8 @@ def in_series(
     film_of : callable
         Solves the film for the loads (n, pairs) of a mesh table, and returns the films of the
         touching pairs as a function of their loads.
+    where : callable
+        Says which tooth pair a row and a column are.
 
     Returns
     -------
@@ -67,7 +74,7 @@ def in_series(
     share = teeth / teeth.sum(axis=1, keepdims=True)
     for _ in range(_PASSES):
         film_at = film_of(total_load * share)
-        settled, stiffness = _settle(teeth, in_contact, total_load, film_at, share)
+        settled, stiffness = _settle(teeth, in_contact, total_load, film_at, share, where)
         change = float(np.max(np.abs(settled - share)))
         share = settled
         if change < _TOLERANCE:
@@ -81,23 +88,52 @@ def _settle(
     total_load: float,
     film_at: FilmAt,
     share: FloatArray,
+    where: Callable[[int, int], str],
 ) -> tuple[FloatArray, FloatArray]:
     """Find the fixed point of share and stiffness with the films as a function of their load."""
-    stiffness = np.zeros(teeth.shape)
+    earlier = [share]
     for _ in range(_STEPS):
-        with warnings.catch_warnings():
-            # What a formula has to say, it says of the load share that is found.
-            warnings.simplefilter("ignore", ModelWarning)
-            film = film_at(total_load * share[in_contact]).film_stiffness
-        stiffness[in_contact] = 1.0 / (1.0 / teeth[in_contact] + 1.0 / np.asarray(film))
-        settled = stiffness / stiffness.sum(axis=1, keepdims=True)
-        change = float(np.max(np.abs(settled - share)))
-        share = settled
-        if change < _SETTLED:
+        stiffness = _stiffness(teeth, in_contact, total_load * share, film_at)
+        share = stiffness / stiffness.sum(axis=1, keepdims=True)
+        change = np.abs(share - earlier[-1])
+        if change.max() < _SETTLED:
             return share, stiffness
-        if np.min(share[in_contact]) < _LOST:
-            raise _unsettled("a tooth pair loses its whole load to its film")
-    raise _unsettled(f"the load share still moves by {change:.2g} after {_STEPS} steps")
+        lost = in_contact & (share < _LOST)
+        if lost.any():
+            row, pair = np.argwhere(lost)[0]
+            raise _unsettled(f"{where(row, pair)} loses its whole load to its film")
+        earlier.append(share)
+        if len(earlier) == _ROUND:
+            share = _extrapolated(earlier, in_contact)
+            earlier = [share]
+    row, pair = np.unravel_index(int(np.argmax(change)), change.shape)
+    raise _unsettled(
+        f"the load share of {where(int(row), int(pair))} still moves by {change.max():.2g} after "
+        f"{_STEPS} steps"
+    )
+
+
+def _stiffness(
+    teeth: FloatArray, in_contact: BoolArray, load_per_width: FloatArray, film_at: FilmAt
+) -> FloatArray:
+    """Stiffness of teeth and film in series, zero where the pair is not in contact."""
+    with warnings.catch_warnings():
+        # What a formula has to say, it says of the load share that is found.
+        warnings.simplefilter("ignore", ModelWarning)
+        film = film_at(load_per_width[in_contact]).film_stiffness
+    stiffness = np.zeros(teeth.shape)
+    stiffness[in_contact] = 1.0 / (1.0 / teeth[in_contact] + 1.0 / np.asarray(film))
+    return stiffness
+
+
+def _extrapolated(earlier: list[FloatArray], in_contact: BoolArray) -> FloatArray:
+    """Limit of the last three shares by the rule of Aitken, where it lies nearby."""
+    first, second, third = earlier[-3:]
+    step, bend = third - second, third - 2.0 * second + first
+    safe = np.where(np.abs(bend) > _BENT * np.abs(step), bend, 1.0)
+    limit = np.where(np.abs(bend) > _BENT * np.abs(step), third - step * step / safe, third)
+    limit = np.where(in_contact & (limit > 0.5 * third), limit, third)
+    return np.asarray(limit / limit.sum(axis=1, keepdims=True))
 
 
 def _unsettled(what: str) -> ComputationError:

@@ -24,7 +24,7 @@ _FRAMES = 60
 def _checked(contacts: Any, path: ArrayLike) -> tuple[list[Any], Array]:
     """Solutions in order, and the position of each."""
     kept = getattr(contacts, "solutions", contacts)
-    if kept is None:
+    if kept is not contacts and np.size(kept) == 0:
         raise InputError(
             Problem(
                 what="the batch holds no pressure and film",

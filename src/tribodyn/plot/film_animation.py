@@ -120,15 +120,18 @@ def _resting(places: Array, loads: Array, films: Array, unit: str) -> list[dict[
 
 
 def _axes(contacts: Sequence[Any], scales: Scales, track: Track) -> dict[str, Any]:
-    ends = np.array([window(one) for one in contacts])
+    ends = scales.position * np.array([window(one) for one in contacts])
+    # What is drawn suits most of the contacts: an unloaded one would make all others small.
+    first = max(ends[:, 0].min(), 1.5 * float(np.median(ends[:, 0])))
     highest = scales.pressure * max(float(one.pressure.max()) for one in contacts)
-    height = film_height(contacts, [scales] * len(contacts))
+    height = float(np.median([film_height([one], [scales]) for one in contacts]))
+    height = min(film_height(contacts, [scales] * len(contacts)), 2.0 * height)
     low = {"domain": _TRACK, "rangemode": "tozero", "nticks": 6}
     labels = axis_label("load_per_width", "Load"), f"Thinnest [{scales.film_unit}]"
     return {
         "xaxis": {
             "anchor": "y2",
-            "range": [scales.position * ends[:, 0].min(), scales.position * ends[:, 1].max()],
+            "range": [first, ends[:, 1].max()],
             "title": {"text": scales.position_label},
         },
         "yaxis": {

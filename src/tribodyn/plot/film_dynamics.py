@@ -17,7 +17,9 @@ __all__ = ["film_response", "film_transient", "transit_frequency"]
 Array = NDArray[np.float64]
 
 #: Default frequencies, in transit frequencies, and their number.
-_LOWEST, _HIGHEST, _POINTS = 0.01, 30.0, 43
+_LOWEST, _HIGHEST, _POINTS = 0.01, 1.0, 81
+#: Change of the stiffness that counts.
+_CHANGE = 0.1
 
 
 def transit_frequency(solution: Any) -> float:
@@ -52,25 +54,42 @@ def _frequencies(solution: Any, asked: ArrayLike | None) -> Array:
     return np.atleast_1d(np.asarray(asked, dtype=float))
 
 
+def _steadfast(frequencies: Array, stiffness: Array, rest: float) -> str:
+    """Say up to which frequency the stiffness is that at rest."""
+    gone = np.flatnonzero(np.abs(stiffness / rest - 1.0) > _CHANGE)
+    words = f"as stiff as at rest within {100 * _CHANGE:.0f} %"
+    if gone.size == 0:
+        return f"The film is {words} up to {_kilohertz(frequencies[-1])} at least"
+    if gone[0] == 0:
+        return f"The film is no more {words} at {_kilohertz(frequencies[0])}"
+    change = np.abs(stiffness[: gone[0] + 1] / rest - 1.0)
+    limit = np.interp(_CHANGE, change[-2:], frequencies[gone[0] - 1 : gone[0] + 1])
+    return f"The film is {words} up to {_kilohertz(limit)}"
+
+
+def _kilohertz(frequency: float) -> str:
+    return f"{significant(1e-3 * float(frequency), 2)} kHz"
+
+
 def film_response(
     solution: Any, frequencies: ArrayLike | None = None, *, length: float = 1.0
 ) -> Any:
-    """Draw stiffness and damping of the film over the frequency, both on logarithmic scales.
+    """Draw compliance, stiffness and damping of the film over the frequency of a vibration.
 
     Parameters
     ----------
     solution : LineContactSolution
         What :func:`tribodyn.ehl.solve_line_contact` returns.
     frequencies : array, optional [Hz]
-        Frequencies; by default from a hundredth of the transit frequency to thirty of it.
+        Frequencies; by default from a hundredth of the transit frequency up to it.
     length : float [m]
         Length of the contact line.
 
     Returns
     -------
     plotly.graph_objects.Figure
-        A dotted line marks the transit frequency ``u_e/(2 b)``, above which the oil has no time
-        to leave the contact.
+        A dotted line marks the transit frequency ``u_e/(2 b)``. Where the stiffness is negative
+        the film moves against the load: its compliance tells more there.
 
     Raises
     ------
@@ -78,28 +97,34 @@ def film_response(
         If the contact has no units.
     """
     at = np.sort(_frequencies(solution, frequencies))
-    stiffness, damping = solution.frequency_response(at, length)
+    everywhere, damped = solution.frequency_response(np.concatenate(([0.0], at)), length)
+    rest, stiffness, damping = float(everywhere[0]), everywhere[1:], damped[1:]
+    compliance = 1.0 / np.abs(stiffness + 2j * np.pi * at * damping)
     transit = transit_frequency(solution)
-    growth = significant(float(stiffness[-1] / stiffness[0]), 2)
-    slow, fast = (f"{significant(1e-3 * float(at[end]))} kHz" for end in (0, -1))
-    x = displayed("frequency", at)
-    curves = (("film_stiffness", "Stiffness", stiffness), ("mesh_damping", "Damping", damping))
-    logarithmic = {"type": "log", "exponentformat": "power"}
     inside = int(at[0] <= transit <= at[-1])
     # On a logarithmic axis annotations stand at the logarithm, shapes at the value.
     marks = event_lines([("transit", float(displayed("frequency", transit)))] * inside)
     for note in marks["annotations"]:
         note["x"] = float(np.log10(note["x"]))
+    logarithmic = {"type": "log", "exponentformat": "power"}
+    crossing = {"zeroline": True, "zerolinecolor": MUTED, "exponentformat": "power"}
+    rows: tuple[tuple[str, str, Any, dict[str, Any]], ...] = (
+        ("compliance", "Compliance", compliance, logarithmic),
+        ("film_stiffness", "Stiffness", stiffness, crossing),
+        ("mesh_damping", "Damping", damping, crossing),
+    )
+    x = displayed("frequency", at)
     return stack(
-        f"At {fast} the film is {growth} times as stiff as at {slow}",
+        _steadfast(at, stiffness, rest),
         axis_label("frequency"),
         [
             Panel(
                 axis_label(name, words),
                 [line(x, displayed(name, values), words.lower(), TOTAL, unit=display_unit(name))],
-                logarithmic,
+                axis,
+                height=0.8,
             )
-            for name, words, values in curves
+            for name, words, values, axis in rows
         ],
         {"xaxis": logarithmic, **marks},
     )
@@ -156,6 +181,9 @@ def film_transient(transient: Any, *, steady: ArrayLike | None = None) -> Any:
         curve = line(time, displayed(name, values), words, TOTAL, unit=display_unit(name))
         return Panel(axis_label(name, words), [curve], {"rangemode": "tozero"}, height=0.6)
 
+    # The thick film of a contact that is hardly loaded is found by zooming out.
+    thick = displayed("film_thickness", transient.central_film)
+    view = {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
     at = int(np.argmin(transient.minimum_film))
     least = rounded("film_thickness", float(transient.minimum_film[at]))
     return stack(
@@ -163,7 +191,7 @@ def film_transient(transient: Any, *, steady: ArrayLike | None = None) -> Any:
         axis_label("time"),
         [
             panel("load_per_width", "Load", transient.load_per_width),
-            Panel(axis_label("film_thickness", "Film"), films, {"rangemode": "tozero"}),
+            Panel(axis_label("film_thickness", "Film"), films, view),
             panel("hertz_pressure", "Greatest pressure", transient.maximum_pressure),
         ],
     )

@@ -8,13 +8,19 @@ import numba as nb
 import numpy as np
 import pytest
 
+from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
 from tribodyn.ehl.kernel import film_sum as sums
 from tribodyn.ehl.kernel import oil as oils
 from tribodyn.ehl.kernel import reynolds
-from tribodyn.ehl.plain import PlainContact, plain_oil
+from tribodyn.ehl.plain import PlainContact, PlainOil, plain_oil
 from tribodyn.ehl.plain_newton import dry_start, solve_plain
 from tribodyn.errors import ComputationError
-from tribodyn.lubricant import barus_viscosity, dowson_higginson_density, roelands_viscosity
+from tribodyn.lubricant import (
+    barus_viscosity,
+    dowson_higginson_density,
+    from_library,
+    roelands_viscosity,
+)
 
 _LAWS = ("isoviscous", "barus", "roelands")
 
@@ -247,3 +253,63 @@ def test_gap_that_is_closed_has_no_slope_in_the_mobility():
     np.testing.assert_allclose(F[:n], contact.flux(P, H), rtol=1e-12, atol=1e-12)
     rho = contact.oil.density(P)[0]
     assert cH[7, 2] == pytest.approx(1.5 * rho[7], rel=1e-12)
+
+
+# The compiled solvers, on the same grid.
+
+_TIGHT = {"newton": 1e-10, "multigrid": 1e-9}
+_CONTACTS = {
+    "M20 L10": {"M": 20.0, "L": 10.0},
+    "incompressible": {"M": 20.0, "L": 10.0, "compressible": False},
+    "barus": {"M": 6.0, "L": 8.0, "viscosity_law": "barus"},
+    "isoviscous": {"M": 5.0, "L": 0.0},
+    "heavy": {"M": 150.0, "L": 10.0, "domain": (-2.5, 1.5)},
+    "light": {"M": 1.5, "L": 15.0, "domain": (-9.0, 2.5)},
+    "odd grid": {"M": 12.0, "L": 9.0, "nodes": 401},
+    "flooded": {"M": 4.0, "L": 12.0, "domain": "auto", "inlet": "flooded"},
+}
+
+
+def twin(solution):
+    """The plain contact on the grid of a solution."""
+    grid = solution._grid
+    oil = PlainOil(*map(float, grid.oil))
+    return PlainContact(grid.n, solution.domain, grid.lam, oil, grid.load, grid.tail)
+
+
+@pytest.mark.parametrize("method", _TIGHT)
+@pytest.mark.parametrize("name", _CONTACTS)
+def test_solver_equals_plain(name, method):
+    case = {"nodes": 257, **_CONTACTS[name]}
+    found = solve_line_contact_moes(
+        case.pop("M"), case.pop("L"), method=method, tolerance=1e-9, flux_tolerance=1e-8, **case
+    )
+    assert found.method == method
+    contact = twin(found)
+    plain = solve_plain(contact, (found._grid.P, found._grid.H0))
+    precision = _TIGHT[method] * 10.0
+    np.testing.assert_allclose(found.film, plain.H, rtol=precision)
+    np.testing.assert_allclose(found.pressure, plain.P, atol=precision)
+    assert found._grid.free == plain.free
+    cold = solve_plain(contact)  # nothing of the solution that is judged goes in
+    np.testing.assert_allclose(found.film, cold.H, rtol=precision)
+
+
+def test_solver_in_si_equals_plain():
+    oil = from_library("80W")
+    found = solve_line_contact(
+        1.2e5, 9e-3, 4.0, oil, 2.2e11, nodes=257, tolerance=1e-10, flux_tolerance=1e-9
+    )
+    half_width = math.sqrt(8.0 * 1.2e5 * 9e-3 / (math.pi * 2.2e11))
+    hertz = 2.0 * 1.2e5 / (math.pi * half_width)
+    assert found.half_width == pytest.approx(half_width, rel=1e-13)
+    assert found.hertz_pressure == pytest.approx(hertz, rel=1e-13)
+    alpha = oil.pressure_viscosity_coefficient
+    lam = 12.0 * oil.dynamic_viscosity * 4.0 * 9e-3**2 / (half_width**3 * hertz)
+    same = PlainContact(
+        256, found.domain, lam, plain_oil("roelands", hertz, alpha, oil.roelands_index),
+        found._grid.load, found._grid.tail,
+    )  # fmt: skip
+    plain = solve_plain(same)
+    np.testing.assert_allclose(found.film, plain.H * half_width**2 / 9e-3, rtol=1e-8)
+    np.testing.assert_allclose(found.pressure, plain.P * hertz, atol=1e-8 * hertz)

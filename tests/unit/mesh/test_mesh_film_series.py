@@ -28,6 +28,10 @@ CONDITIONS = {
 }
 
 
+def named(row, pair):
+    return f"pair {pair} in row {row}"
+
+
 def table(pair, model="dowson-higginson", kind="tangent", **changes):
     options = {"film_model": model, "film_options": {"stiffness": kind}}
     torque = 400.0 if pair.transverse_contact_ratio > 2.0 else 100.0
@@ -142,7 +146,9 @@ def _film(stiffness_of):
 
 def test_two_springs_by_hand():
     teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
-    stiffness, share, _ = in_series(teeth, both, 1e5, _film(lambda load: np.array([6e8, 1e8])))
+    stiffness, share, _ = in_series(
+        teeth, both, 1e5, _film(lambda load: np.array([6e8, 1e8])), named
+    )
     assert stiffness.tolist() == [[pytest.approx(2e8), pytest.approx(0.5e8)]]
     assert share.tolist() == [[pytest.approx(0.8), pytest.approx(0.2)]]
 
@@ -150,7 +156,7 @@ def test_two_springs_by_hand():
 def test_a_film_in_proportion_to_its_load_settles_at_its_fixed_point():
     # K = c w: the film of each pair yields by the same 1/c, so that the teeth share as without it
     teeth, both, c = np.array([[3e8, 1e8]]), np.array([[True, True]]), 1e5
-    stiffness, share, _ = in_series(teeth, both, 1e5, _film(lambda load: c * load))
+    stiffness, share, _ = in_series(teeth, both, 1e5, _film(lambda load: c * load), named)
     assert share[0] == pytest.approx([0.75, 0.25], rel=1e-11)
     assert stiffness[0] == pytest.approx(1e5 * share[0] / (1e5 / 4e8 + 1.0 / c), rel=1e-10)
 
@@ -158,7 +164,7 @@ def test_a_film_in_proportion_to_its_load_settles_at_its_fixed_point():
 def test_a_film_softer_than_its_teeth_takes_the_load_away():
     teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
     with pytest.raises(ComputationError, match=r'film\.stiffness = "none"'):
-        in_series(teeth, both, 1e5, _film(lambda load: 1e-3 * load**1.1))
+        in_series(teeth, both, 1e5, _film(lambda load: 1e-3 * load**1.1), named)
 
 
 def test_a_film_that_is_never_the_same_is_refused():
@@ -170,11 +176,11 @@ def test_a_film_that_is_never_the_same_is_refused():
         return lambda load: types.SimpleNamespace(film_stiffness=np.array([factor, 1.0]) * 1e8)
 
     with pytest.raises(ComputationError, match="still moves by"):
-        in_series(teeth, both, 1e5, restless)
+        in_series(teeth, both, 1e5, restless, named)
 
 
 def test_one_pair_alone_keeps_its_load():
     teeth, one = np.array([[2e8, 0.0]]), np.array([[True, False]])
-    stiffness, share, _ = in_series(teeth, one, 1e5, _film(lambda load: np.array([2e8])))
+    stiffness, share, _ = in_series(teeth, one, 1e5, _film(lambda load: np.array([2e8])), named)
     assert stiffness.tolist() == [[pytest.approx(1e8), 0.0]]
     assert share.tolist() == [[1.0, 0.0]]

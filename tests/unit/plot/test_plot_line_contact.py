@@ -10,13 +10,15 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
+from tribodyn.ehl import solve_line_contact, solve_line_contact_moes, solve_line_contacts
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
 from tribodyn.plot import (
     compare_line_contacts,
     film_along_path,
+    film_over_time,
     film_response,
+    film_transient,
     line_contact,
 )
 from tribodyn.plot.contact_scales import thinned
@@ -43,10 +45,10 @@ def trace(figure: go.Figure, start: str, axis: str = "y") -> Any:
     return found
 
 
-def labels(figure: go.Figure) -> list[str]:
+def labels(figure: go.Figure) -> set[str]:
     layout = figure.layout
     found = [layout[key].title.text for key in layout if key.startswith(("xaxis", "yaxis"))]
-    return [label for label in found if label]
+    return {label for label in found if label}
 
 
 def test_curves_are_those_of_the_solution_in_display_units(contacts: list[Any]) -> None:
@@ -55,7 +57,7 @@ def test_curves_are_those_of_the_solution_in_display_units(contacts: list[Any]) 
     np.testing.assert_allclose(trace(figure, "oil film").x, 1e6 * one.position)
     np.testing.assert_allclose(trace(figure, "oil film").y, 1e-9 * one.pressure)
     np.testing.assert_allclose(trace(figure, "film", "y2").y, 1e6 * one.film)
-    assert labels(figure) == ["Position [µm]", "Pressure [GPa]", "Film [µm]"]
+    assert labels(figure) == {"Position [µm]", "Pressure [GPa]", "Film [µm]"}
 
 
 def test_dry_pressure_carries_the_load(contacts: list[Any]) -> None:
@@ -87,12 +89,12 @@ def test_marks_stand_on_the_film(contacts: list[Any]) -> None:
 
 def test_title_tells_both_films(contacts: list[Any]) -> None:
     title = line_contact(contacts[1]).layout.title.text
-    assert title == "The film is 1.02 µm thick in the centre and 0.895 µm at its thinnest"
+    assert title == "The film is 1.02 µm thick in the centre and 0.894 µm at its thinnest"
 
 
 def test_dimensionless_form(contacts: list[Any], bare: Any) -> None:
     figure = line_contact(bare)
-    assert labels(figure) == ["Position [b]", "Pressure [p<sub>h</sub>]", "Film [b²/R]"]
+    assert labels(figure) == {"Position [b]", "Pressure [p<sub>h</sub>]", "Film [b²/R]"}
     np.testing.assert_allclose(trace(figure, "oil film").x, bare.position)
     one = contacts[1]
     made = line_contact(one, dimensionless=True)
@@ -184,7 +186,7 @@ def test_animation_moves_profile_and_marks(contacts: list[Any]) -> None:
     assert {note.text for note in figure.layout.annotations} == set("ABCDE")
     steps = figure.layout.sliders[0].steps
     assert [step.args[0][0] for step in steps] == ["0", "1", "2"]
-    assert steps[1].label.startswith("12.0 mm: 148 N/mm, film 0.895 µm")
+    assert steps[1].label.startswith("12.0 mm: 148 N/mm, film 0.894 µm at its")
 
 
 def test_animation_runs_from_left_to_right(contacts: list[Any]) -> None:
@@ -206,17 +208,96 @@ def test_animation_refuses_what_it_cannot_draw(contacts: list[Any]) -> None:
     with pytest.raises(InputError, match="1 contacts and 1 positions"):
         film_along_path(contacts[:1], PATH[:1])
     with pytest.raises(InputError, match="keep_solutions=True"):
-        film_along_path(SimpleNamespace(solutions=None), PATH)
+        film_along_path(solve_line_contacts(LOADS, 8e-3, 3.0722, OIL, 2.2e11, nodes=129), PATH)
 
 
 def test_response_over_the_frequency(contacts: list[Any], bare: Any) -> None:
-    figure = film_response(contacts[1], [100.0, 1e4, 1e5], length=0.02)
-    stiffness, damping = contacts[1].frequency_response([100.0, 1e4, 1e5], 0.02)
-    np.testing.assert_allclose(trace(figure, "stiffness").y, 1e-6 * stiffness)
-    np.testing.assert_allclose(trace(figure, "damping", "y2").y, damping)
+    at = np.array([100.0, 1e3, 1e4])
+    figure = film_response(contacts[1], [*at, 1e5], length=0.02)
+    stiffness, damping = contacts[1].frequency_response(at, 0.02)
+    np.testing.assert_allclose(trace(figure, "stiffness", "y2").y[:3], 1e-6 * stiffness)
+    np.testing.assert_allclose(trace(figure, "damping", "y3").y[:3], damping)
+    # um/kN is 1e-9 m/N
+    both = np.abs(stiffness + 2j * np.pi * at * damping)
+    np.testing.assert_allclose(trace(figure, "compliance").y[:3], 1e9 / both)
     (note,) = figure.layout.annotations
     # u_e over twice the half width, on an axis of powers of ten
     assert note.x == pytest.approx(math.log10(3.0722 / (2.0 * 116.989e-6)), abs=1e-4)
-    assert len(trace(film_response(contacts[1], length=0.02), "stiffness").x) == 43
     with pytest.raises(InputError, match="without units"):
         film_response(bare)
+
+
+def test_response_tells_where_the_stiffness_at_rest_ends() -> None:
+    def spring(frequencies: Any, length: float) -> tuple[Any, Any]:
+        f = np.asarray(frequencies)
+        return length * 1e9 * (1.0 - (f / 1e4) ** 2), length * np.ones_like(f)
+
+    contact = SimpleNamespace(
+        lubricant=OIL, entrainment_speed=2.0, half_width=1e-4, frequency_response=spring
+    )
+    # 10 % are lost where the square of f/10 kHz is 0.1; transit is at 10 kHz
+    figure = film_response(contact)
+    assert figure.layout.title.text == "The film is as stiff as at rest within 10 % up to 3.2 kHz"
+    assert max(trace(figure, "compliance").x) == pytest.approx(1e4)
+    slow = film_response(contact, [10.0, 1000.0]).layout.title.text
+    assert slow.endswith("within 10 % up to 1.0 kHz at least")
+    fast = film_response(contact, [5e3, 6e3]).layout.title.text
+    assert fast == "The film is no more as stiff as at rest within 10 % at 5.0 kHz"
+
+
+def transient(impose: str = "load") -> Any:
+    """A contact whose load doubles within 1 ms, as a result of the solver."""
+    time = np.linspace(0.0, 1e-3, 101)
+    kept = np.arange(0, 101, 10)
+    position = np.linspace(-4e-4, 2e-4, 61)
+    pressure = 1e9 * np.sqrt(np.maximum(1.0 - (position / 1e-4) ** 2, 0.0))
+    film = 1e-6 + np.maximum(np.abs(position) - 1e-4, 0.0) ** 2 / 16e-3
+    return SimpleNamespace(
+        time=time,
+        central_film=1e-6 - 1e-4 * time,
+        minimum_film=0.9e-6 - 1e-4 * time,
+        load_per_width=1e5 * (1.0 + 1e3 * time),
+        equivalent_radius=np.full(101, 8e-3),
+        maximum_pressure=0.7e9 * np.sqrt(1.0 + 1e3 * time),
+        outlet=np.full(101, 1.2e-4),
+        position=position,
+        kept=kept,
+        pressure=np.tile(pressure, (11, 1)),
+        film=np.tile(film, (11, 1)),
+        half_width=1e-4,
+        hertz_pressure=2.0 * 2e5 / (math.pi * 1e-4),
+        impose=impose,
+    )
+
+
+def test_films_over_time() -> None:
+    moving = transient()
+    figure = film_transient(moving, steady=moving.central_film + 1e-8)
+    assert figure.layout.title.text == "The film is thinnest, 0.800 µm, after 1.00 ms"
+    assert labels(figure) == {"Time [ms]", "Load [N/mm]", "Film [µm]", "Greatest pressure [GPa]"}
+    np.testing.assert_allclose(trace(figure, "at its thinnest", "y2").y, 1e6 * moving.minimum_film)
+    steady = trace(figure, "in the centre, steady", "y2")
+    np.testing.assert_allclose(steady.y, 1e6 * moving.central_film + 0.01)
+    assert trace(figure, "Load").y[-1] == pytest.approx(200.0)
+    with pytest.raises(InputError, match="3 steady films and 101 instants"):
+        film_transient(moving, steady=[1e-6] * 3)
+
+
+def test_animation_over_time() -> None:
+    figure = film_over_time(transient())
+    assert len(figure.frames) == 11
+    assert figure.layout.xaxis3.title.text == "Time [ms]"
+    # the dry contact widens with the root of the load: from 1/sqrt(2) of the widest one
+    first, last = (figure.frames[number].data[4] for number in (0, -1))
+    assert max(last.x) == pytest.approx(100.0, rel=1e-6)
+    assert max(first.x) == pytest.approx(100.0 / math.sqrt(2.0), rel=1e-6)
+    for dry, load in ((first, 100.0), (last, 200.0)):
+        assert np.trapezoid(dry.y, dry.x) == pytest.approx(load, rel=5e-3)
+    whole = figure.data[0]
+    assert len(whole.x) == 101
+    assert whole.y[-1] == pytest.approx(200.0)
+    assert all("dry" not in each.name for each in film_over_time(transient("approach")).data)
+    bare = transient()
+    bare.kept = bare.kept[:1]
+    with pytest.raises(InputError, match="keep_every"):
+        film_over_time(bare)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.coarse import no_coarse
 from tribodyn.ehl.kernel.film_sum import film_sum
-from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
 from tribodyn.ehl.kernel.krylov import linear_solve, prepare
 from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import INNER
@@ -26,11 +25,42 @@ _TOLERANCE = 1e-8
 
 
 @nb.njit(**INNER)
-def _film_change(
-    n: int, start: float, dx: float, k: int, tail: float, load: float, K: Array, plan: Array,
-    work: Any, cH: Array, cP: Array, rhs: Array, x: Array,
+def film_tangent(
+    n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float, load: float,
+    K: Array, plan: Array, work: Any, P: Array, H: Array,
 ) -> tuple[float, int]:  # fmt: skip
-    """Change of the central film under a change of the load and of the pressure at the inlet."""
+    """Slope ``dH_c/d ln(w)`` of the central film over the load, the bodies and the oil held.
+
+    Parameters
+    ----------
+    n, start, dx : int, float, float
+        Grid.
+    lam, oil : float, array
+        Factor of the equation and oil.
+    k : int
+        Last free node.
+    tail, load : float
+        Derivatives, by the logarithm of the load, of the pressure at the first node and of the
+        target of ``dx`` times the sum of the pressures, the first node counted half.
+    K, plan, work
+        Influence, and room from :func:`~tribodyn.ehl.kernel.krylov.newton_work`.
+    P, H : (n + 1,) arrays
+        Converged pressure and film.
+
+    Returns
+    -------
+    (float, int)
+        Slope in the unit b^2/R of the film, and the products with the tangent that it took;
+        negative if the linear system could not be solved.
+    """
+    lneta, dlneta, rho, drho = np.empty((4, n + 1))
+    eps, rhs, x = np.empty(n + 1), np.empty(n + 2), np.empty(n + 2)
+    cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))
+    oil_state(n, P, oil, lneta, dlneta, rho, drho)
+    mobility(n, H, lam, lneta, rho, eps)
+    coefficients(n, dx, lam, 1.0, 0.0, P, H, dlneta, rho, drho, eps, cH, cP)
+    if not prepare(n, dx, k, True, K, cH, cP, work):
+        return 0.0, -1
     for i in range(k + 1):
         rhs[i] = 0.0
     # The pressure of the first node is given: its column of the tangent goes to the right.
@@ -52,63 +82,3 @@ def _film_change(
     for i in range(n + 1):
         film[i] += x[k]
     return central(n, start, dx, film), products
-
-
-@nb.njit(**INNER)
-def film_tangent(
-    n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float, K: Array,
-    plan: Array, work: Any, P: Array, H: Array,
-) -> tuple[float, int]:  # fmt: skip
-    """Slope ``dH_c/d ln(w)`` of the central film over the load, the bodies and the oil held.
-
-    Parameters
-    ----------
-    n, start, dx : int, float, float
-        Grid.
-    lam, oil : float, array
-        Factor of the equation and oil.
-    k : int
-        Last free node.
-    tail : float
-        Pressure at the first node; where there is one, it and the load before the first node
-        follow the load and the central film as in
-        :func:`~tribodyn.ehl.kernel.flooded_inlet.flooded_inlet`.
-    K, plan, work
-        Influence, and room from :func:`~tribodyn.ehl.kernel.krylov.newton_work`.
-    P, H : (n + 1,) arrays
-        Converged pressure and film.
-
-    Returns
-    -------
-    (float, int)
-        Slope in the unit b^2/R of the film, and the products with the tangent that it took;
-        negative if the linear system could not be solved.
-    """
-    lneta, dlneta, rho, drho = np.empty((4, n + 1))
-    eps, rhs, x = np.empty(n + 1), np.empty(n + 2), np.empty(n + 2)
-    cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))
-    oil_state(n, P, oil, lneta, dlneta, rho, drho)
-    mobility(n, H, lam, lneta, rho, eps)
-    coefficients(n, dx, lam, 1.0, 0.0, P, H, dlneta, rho, drho, eps, cH, cP)
-    if not prepare(n, dx, k, True, K, cH, cP, work):
-        return 0.0, -1
-    load = 0.5 * P[0]
-    for i in range(1, k + 1):
-        load += P[i]
-    load *= dx
-    if tail == 0.0:
-        return _film_change(n, start, dx, k, 0.0, load, K, plan, work, cH, cP, rhs, x)
-    film = central(n, start, dx, H)
-    _, outside, by_film, outside_by_film, by_load, outside_by_load = flooded_inlet(
-        start, film, lam, 1.0, 1.0
-    )
-    # Film under the load, and under a unit change of the film in the law of the inlet.
-    direct, first = _film_change(
-        n, start, dx, k, by_load, load + outside - outside_by_load, K, plan, work, cH, cP, rhs, x
-    )
-    back, second = _film_change(
-        n, start, dx, k, by_film, -outside_by_film, K, plan, work, cH, cP, rhs, x
-    )
-    if first < 0 or second < 0:
-        return 0.0, min(first, second)
-    return direct / (1.0 - back), first + second

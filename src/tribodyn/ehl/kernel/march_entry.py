@@ -103,14 +103,14 @@ def _build_settle(digest: str) -> Any:
 def _build_tangent(digest: str) -> Any:
     @nb.njit(cache=True, **JIT)
     def tangent_of_film(
-        n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float, P: Array,
-        H: Array,
+        n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float,
+        load: float, P: Array, H: Array,
     ) -> tuple[float, int]:  # fmt: skip
         """Slope of the film, see :func:`tribodyn.ehl.kernel.film_tangent.film_tangent`."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         K = influence(n, dx)
         return film_tangent(
-            n, start, dx, lam, oil, k, tail, K, film_plan(n, K), newton_work(n), P, H
+            n, start, dx, lam, oil, k, tail, load, K, film_plan(n, K), newton_work(n), P, H
         )
 
     return tangent_of_film

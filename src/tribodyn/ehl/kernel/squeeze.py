@@ -22,8 +22,8 @@ from tribodyn.ehl.kernel.profile import add_profile
 from tribodyn.ehl.kernel.transfer import central
 
 __all__ = [
-    "CURVATURE", "FIRST_SHIFT", "HEIGHT", "INPUTS", "LOAD", "OFFSET", "RECORD", "SECOND_SHIFT",
-    "SPEED", "march", "settle",
+    "CURVATURE", "FIRST_SHIFT", "HEIGHT", "INPUTS", "LOAD", "OFFSET", "RECORD", "RUPTURED",
+    "SECOND_SHIFT", "SPEED", "march", "settle",
 ]  # fmt: skip
 
 Array = NDArray[np.float64]
@@ -35,12 +35,16 @@ LOAD, OFFSET, SPEED, CURVATURE, FIRST_SHIFT, SECOND_SHIFT, HEIGHT = 0, 1, 2, 3, 
 #: Columns of the table.
 INPUTS = 7
 #: Columns of the record: offset, sum of the pressures, load with that of the inlet, central and
-#: minimum film, last free node, Newton steps, flux error, parts of the step, highest pressure.
-RECORD = 10
+#: minimum film, last free node, Newton steps, flux error, parts of the step, highest pressure,
+#: share of the load in the last sixteenth of the grid.
+RECORD = 11
 #: Load of the reference, in b p_h.
 _FULL = 0.5 * np.pi
 #: Flux error that is accepted where rounding keeps it above its tolerance.
 _ROUNDED_FLUX = 1e-4
+#: Status of a film with negative pressure away from the outlet, and what of it, over the highest
+#: pressure, is none.
+RUPTURED, _SUCTION = 6, 1e-7
 
 
 @nb.njit(**INNER)
@@ -93,7 +97,13 @@ def _solve(
     )  # fmt: skip
     state[5] += outside
     if status == ROUNDED and state[4] < _ROUNDED_FLUX:
-        return CONVERGED
+        status = CONVERGED
+    if status == CONVERGED:
+        highest, least = 0.0, 0.0
+        for i in range(n):
+            highest, least = max(highest, P[i]), min(least, P[i])
+        if least < -_SUCTION * highest:
+            return RUPTURED
     return status
 
 
@@ -130,10 +140,12 @@ def _keep(
     n: int, start: float, dx: float, P: Array, H: Array, state: Array, parts: int, record: Array
 ) -> None:
     k = int(state[1])
-    total, highest = 0.0, 0.0
+    total, highest, late = 0.0, 0.0, 0.0
     for i in range(k + 1):
         total += P[i]
         highest = max(highest, P[i])
+        if i > n - n // 16:
+            late += P[i]
     least = H[0]
     for i in range(min(k + 2, n + 1)):
         least = min(least, H[i])
@@ -141,6 +153,7 @@ def _keep(
     record[3], record[4] = central(n, start, dx, H), least
     record[5], record[6], record[7] = state[1], state[2], state[4]
     record[8], record[9] = parts, highest
+    record[10] = late / total if total > 0.0 else 0.0
 
 
 @nb.njit(**INNER)

@@ -23,6 +23,9 @@ _GRUBIN = 0.97
 _BOUND, _HIGHEST = 0.985, 0.5
 #: Position where the inlet pressure has faded under that of the dry contact.
 _FADED = -0.5
+#: Film [b^2/R] beyond which the bodies are taken as rigid, and the position in sqrt(2 R h) at
+#: which the film between rigid cylinders parts.
+_RIGID, _PARTING = 2.0, 0.4754
 
 
 @nb.njit(**INNER)
@@ -73,6 +76,23 @@ def _reduced_pressure(
 
 
 @nb.njit(**INNER)
+def _rigid_pressure(
+    n: int, start: float, dx: float, lam: float, film: float, tail: float, q: Array
+) -> None:
+    """Isoviscous pressure between rigid cylinders, which ends with its gradient."""
+    end = _PARTING * np.sqrt(2.0 * film)
+    leaving, last, before = film + 0.5 * end * end, tail, 0.0
+    for i in range(n + 1):
+        x = start + i * dx
+        h = film + 0.5 * x * x
+        here = lam * (h - leaving) / (h * h * h)
+        if i > 0:
+            last = last + 0.5 * dx * (before + here) if x < end else 0.0
+        q[i] = max(last, 0.0)
+        before = here
+
+
+@nb.njit(**INNER)
 def _thickened(q: float, slope: float) -> float:
     """Pressure of the reduced pressure ``q`` under Barus' law."""
     if slope > 2.0:
@@ -108,13 +128,14 @@ def cold_start(
     Notes
     -----
     Grubin (1949): the oil thickens until the reduced pressure of the inlet wedge nears 1/alpha
-    at the edge of the contact; bisected for the film where the oil is piezoviscous.
+    at the edge of the contact; bisected for the film where the oil is piezoviscous. Thick films
+    start from rigid cylinders.
     """
     q = work[0][0]
     slope = piezoviscosity(oil)
     wedge = film
     if slope > 2.0:
-        low, high = 1e-3 * film, 10.0 * film
+        low, high = film, 10.0 * film
         for _ in range(20):
             wedge = np.sqrt(low * high)
             if slope * _reduced_pressure(n, start, dx, lam, wedge, tail, q) > _GRUBIN:
@@ -123,9 +144,14 @@ def cold_start(
                 high = wedge
     edge = _reduced_pressure(n, start, dx, lam, wedge, tail, q)
     edge = _thickened(edge, slope)
+    rigid = film > _RIGID
+    if rigid:
+        _rigid_pressure(n, start, dx, lam, film, tail, q)
     for i in range(n + 1):
         x = start + i * dx
-        if x <= -1.0:
+        if rigid:
+            P[i] = _thickened(q[i], slope)
+        elif x <= -1.0:
             P[i] = _thickened(q[i], slope)
         else:
             inside = np.sqrt(max(1.0 - x * x, 0.0))

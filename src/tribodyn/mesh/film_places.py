@@ -1,0 +1,46 @@
+"""Say where on the path of contact a film could not be solved."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+from tribodyn.errors import Problem, TribodynError
+
+__all__ = ["film_places"]
+
+#: How the batch of contacts names the one that failed.
+_CONTACT = re.compile(r"contact \[([\d, ]+)\]")
+
+
+@contextmanager
+def film_places(describe: Callable[..., str]) -> Iterator[None]:
+    """Replace the index of a contact in an error by its place.
+
+    Parameters
+    ----------
+    describe : callable
+        Takes the index, one whole number for each axis, and says where the contact is.
+
+    Yields
+    ------
+    None
+
+    Raises
+    ------
+    TribodynError
+        The same error with the place in its text.
+    """
+
+    def named(problem: Problem) -> Problem:
+        def place(found: re.Match[str]) -> str:
+            return f"contact {describe(*(int(part) for part in found.group(1).split(',')))}"
+
+        return replace(problem, what=_CONTACT.sub(place, problem.what))
+
+    try:
+        yield
+    except TribodynError as error:
+        raise type(error)([named(problem) for problem in error.problems]) from error
