@@ -1,10 +1,11 @@
 """Many oil films at once: contacts per second and core, threads, and a study of one gear pair.
 
-The peer of the batch is a loop over single calls, with the same kernel and the same grid.
+The peer of the batch is a loop over single calls that ask for the same: film and film stiffness.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from statistics import median
 
@@ -13,6 +14,7 @@ import numpy as np
 from film_contacts import MODULUS, Study, random_si, study
 from race import Goal, Runner, arguments, machine, print_goals, print_table, race
 from tribodyn.ehl import solve_line_contact, solve_line_contacts
+from tribodyn.errors import ModelWarning
 
 __all__ = ["batch", "main", "one_by_one"]
 
@@ -70,7 +72,10 @@ def one_by_one(contacts: Study, nodes: int) -> Runner:
 
     def run() -> float:
         for load, radius, speed in rows:
-            solve_line_contact(load, radius, speed, contacts.lubricant, MODULUS, nodes=nodes)
+            found = solve_line_contact(
+                load, radius, speed, contacts.lubricant, MODULUS, nodes=nodes
+            )
+            found.film_stiffness(1.0)
         return float(len(rows))
 
     return run
@@ -87,6 +92,13 @@ def main(words: Sequence[str] | None = None) -> None:
     quick = arguments(__doc__, words).quick
     nodes, rounds = (129, 1) if quick else (513, 5)
     print(f"Many films: {machine()}\n")
+    with warnings.catch_warnings():
+        # Of the lightest contacts: their film stiffness is negative.
+        warnings.simplefilter("ignore", ModelWarning)
+        _races(nodes, rounds, quick=quick)
+
+
+def _races(nodes: int, rounds: int, *, quick: bool) -> None:
     contacts = random_si(4 if quick else 300)
     times = race(
         {

@@ -71,7 +71,7 @@ class MoesContact:
 
 
 def random_contacts(count: int, seed: int = 3) -> list[MoesContact]:
-    """M 1..300 (evenly in its logarithm), L 0..25, alpha 12..30 1/GPa, z .45...75, p_h to 2 GPa.
+    """M 1..300 evenly in its logarithm, L 0..25 up to p_h = 2 GPa, alpha 12..30 1/GPa, z .45...75.
 
     Parameters
     ----------
@@ -84,16 +84,12 @@ def random_contacts(count: int, seed: int = 3) -> list[MoesContact]:
     """
     generator = np.random.default_rng(seed)
     found: list[MoesContact] = []
-    while len(found) < count:
+    for _ in range(count):
         load = math.exp(generator.uniform(0.0, math.log(300.0)))
-        contact = MoesContact(
-            load,
-            generator.uniform(0.0, 25.0),
-            generator.uniform(1.2e-8, 3e-8),
-            generator.uniform(0.45, 0.75),
-        )
-        if contact.hertz_pressure <= _HIGHEST_PRESSURE:
-            found.append(contact)
+        coefficient, index = generator.uniform(1.2e-8, 3e-8), generator.uniform(0.45, 0.75)
+        highest = _HIGHEST_PRESSURE * coefficient / math.sqrt(load / (2.0 * math.pi))
+        viscosity = generator.uniform(0.0, min(25.0, highest))
+        found.append(MoesContact(load, viscosity, coefficient, index))
     return found
 
 

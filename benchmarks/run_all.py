@@ -9,7 +9,14 @@ from race import arguments
 
 __all__ = ["SCRIPTS", "main"]
 
-SCRIPTS = ("ensemble_speed", "equal_accuracy", "steady_state_speed", "cold_start")
+SCRIPTS = (
+    "ensemble_speed",
+    "equal_accuracy",
+    "steady_state_speed",
+    "film_speed",
+    "film_batch",
+    "cold_start",
+)
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -1,6 +1,6 @@
 """A rough flank in the contact: standing still, and moving through it.
 
-A flank with waves of 40 um across its lay, 0.1 um high. Standing still, with the other flank
+A flank with waves of 50 um, 0.05 um high. Standing still, with the other flank
 sliding by, the pressure flattens the waves a little. Carried along, each wave also brings its own
 film with it from the inlet.
 
@@ -21,7 +21,7 @@ LOAD, RADIUS, ENTRAINMENT, MODULUS = 147802.0, 8e-3, 3.0722, 2.2e11
 FAST = 1.2 * ENTRAINMENT  # m/s: the rough flank; the smooth one is as much slower
 oil = from_library("80W")
 
-wavelength, amplitude = 40e-6, 0.1e-6
+wavelength, amplitude = 50e-6, 0.05e-6
 x = np.arange(0.0, 20 * wavelength, 1e-6)
 column = amplitude * np.sin(2 * np.pi * x / wavelength)
 flank = RoughnessProfile.from_heights(1e-6, column, remove_tilt=False, beyond="periodic")
@@ -30,7 +30,7 @@ given = (LOAD, RADIUS, ENTRAINMENT, oil, MODULUS)
 smooth = solve_line_contact(*given, nodes=1025)
 standing = solve_line_contact(*given, nodes=1025, profile=flank)
 period = wavelength / FAST
-time = np.linspace(0.0, 12 * period, 12 * 25 + 1)
+time = np.linspace(0.0, 10 * period, 10 * 25 + 1)
 moving = solve_transient_line_contact(
     time, *given, nodes=513, roughness=(flank, None), surface_speeds=(FAST, 2 * ENTRAINMENT - FAST)
 )
@@ -42,7 +42,7 @@ def waviness(position, film):
     return 0.5 * np.ptp(film[..., middle], axis=-1)
 
 
-settled, late = moving.kept_time > 8 * period, time > 8 * period
+settled, late = moving.kept_time > 7 * period, time > 7 * period
 amplitudes = {
     "before": amplitude,
     "standing": waviness(standing.position, standing.film),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 
 import pytest
 
@@ -81,8 +82,8 @@ def test_uniform_grids_of_second_order(nodes, central, method):
 @pytest.mark.parametrize("name", MOES)
 def test_observed_order(name):
     films = [moes(name, nodes).central_film for nodes in (257, 513, 1025, 2049, 4097)]
-    steps = [fine - coarse for coarse, fine in zip(films, films[1:], strict=False)]
-    for coarse, fine in zip(steps, steps[1:], strict=False):
+    steps = [fine - coarse for coarse, fine in pairwise(films)]
+    for coarse, fine in pairwise(steps):
         assert 3.5 < coarse / fine < 4.5
 
 

@@ -28,7 +28,8 @@ ENGINES.register("newton")(newton_engine)
 def _multigrid(problem: ContactProblem) -> Outcome:
     from tribodyn.ehl.multigrid_engine import multigrid_engine
 
-    return multigrid_engine(problem)
+    outcome: Outcome = multigrid_engine(problem)
+    return outcome
 
 
 class Solved:

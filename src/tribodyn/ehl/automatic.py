@@ -43,7 +43,7 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
                 why=f'it is "auto" or a whole number from {FEWEST} to {MOST}',
             )
         )
-    count = int(nodes)
+    count = int(float(nodes))
     near = 2 ** min(14, max(6, round(math.log2(max(count - 1, 1))))) + 1
     if not FEWEST <= count <= MOST:
         raise InputError(

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.ehl.contact_case import si_case
 from tribodyn.ehl.line_contact import SolverOptions, solve_case
 from tribodyn.ehl.solution import LineContactSolution
-from tribodyn.errors import InputError, Problem, TribodynError, warn
+from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
 from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -36,15 +36,15 @@ class LineContactBatch:
     ----------
     central_film, minimum_film : array [m]
         Film at position zero, and least film.
-    film_stiffness : array [N/m^2]
-        Tangent stiffness of the film per length of the contact line; empty if not asked for.
+    film_stiffness : array [N/m]
+        Tangent stiffness of the film over the length that was asked for; empty if none was.
     hertz_pressure : array [Pa]
         Maximum pressure of the dry contact.
     half_width : array [m]
         Half width of the dry contact.
     outlet : array [m]
         Position where the oil film parts.
-    flux_error : array
+    flux_error : array [-]
         Greatest relative deviation of the mass flux from its mean.
     central_film_error : array [m]
         Estimate of the discretisation error of ``central_film``; empty where the grid has no
@@ -89,6 +89,7 @@ def solve_line_contacts(
     flux_tolerance: float = 1e-3,
     film_tolerance: float = 5e-4,
     stiffness: bool = True,
+    length: float = 1.0,
     keep_solutions: bool = False,
     threads: int | None = None,
     progress: Progress = SILENT,
@@ -111,7 +112,7 @@ def solve_line_contacts(
         Nodes of each grid.
     method : {"newton", "multigrid"}
         Engine.
-    domain : "auto" or (float, float)
+    domain : "auto" or (float, float) [-]
         First and last position, in half widths of each dry contact.
     inlet : {"flooded", "zero"}
         Oil everywhere before the contact, or pressure zero at the first position.
@@ -122,7 +123,9 @@ def solve_line_contacts(
     tolerance, flux_tolerance, film_tolerance : float
         As for one contact.
     stiffness : bool
-        Whether to compute the film stiffness, one linear solve a contact.
+        Whether to compute the film stiffness, one or two linear solves a contact.
+    length : float [m]
+        Length of the contact line, for the stiffness.
     keep_solutions : bool
         Whether to keep pressure and film of every contact.
     threads : int, optional
@@ -151,43 +154,44 @@ def solve_line_contacts(
     >>> (films.central_film * 1e6).round(2)
     array([1.14, 1.02])
     """
+    require_positive("length", length, "m")
     shape, columns = _broadcast(load_per_width, equivalent_radius, entrainment_speed)
     options = SolverOptions(
         nodes=nodes, method=method, domain=domain, inlet=inlet, tolerance=tolerance,
         flux_tolerance=flux_tolerance, film_tolerance=film_tolerance,
     )  # fmt: skip
-    keep = keep_solutions
 
     def one(index: int) -> tuple[list[float], LineContactSolution | None]:
+        load, radius, speed = (float(column[index]) for column in columns)
         try:
             case = si_case(
-                *(column[index] for column in columns), lubricant, effective_modulus,
-                viscosity_law, compressible,
-            )  # fmt: skip
+                load, radius, speed, lubricant, effective_modulus, viscosity_law, compressible
+            )
             solution = solve_case(case, options)
             row = _row(solution, stiffness)
         except TribodynError as error:
             raise type(error)(
                 [_at(problem, index, shape, columns) for problem in error.problems]
             ) from error
-        return row, solution if keep else None
+        return row, solution if keep_solutions else None
 
     size = columns[0].size
-    rows: list[list[float]] = []
-    solutions = np.empty(size if keep else 0, dtype=object)
+    table, solutions = np.empty((8, size)), np.empty(size, dtype=object)
     progress.start("Solving oil films", size)
     for index, (row, solution) in enumerate(_in_threads(one, size, threads)):
-        rows.append(row)
-        if keep:
-            solutions[index] = solution
+        table[:, index], solutions[index] = row, solution
         progress.advance()
     progress.finish()
-    table = np.asarray(rows, dtype=float).reshape(size, 8).T
-    table[2] = -columns[0] / table[2]
+    table[2] = -length * columns[0] / table[2]
     if stiffness:
         _warn_negative(table[2], shape)
-    fields = [column.reshape(shape) for column in table]
-    empty = np.empty(0)
+    return _gather(table, solutions if keep_solutions else solutions[:0], shape, stiffness)
+
+
+def _gather(
+    table: Array, solutions: NDArray[Any], shape: tuple[int, ...], stiffness: bool
+) -> LineContactBatch:
+    fields, empty = [column.reshape(shape) for column in table], np.empty(0)
     return LineContactBatch(
         central_film=fields[0],
         minimum_film=fields[1],
@@ -197,7 +201,7 @@ def solve_line_contacts(
         outlet=fields[5],
         flux_error=fields[6],
         central_film_error=empty if np.any(fields[7] < 0.0) else fields[7],
-        solutions=solutions.reshape(shape) if keep else solutions,
+        solutions=solutions.reshape(shape) if solutions.size else solutions,
     )
 
 

@@ -234,7 +234,7 @@ def _check_extent(start: float, end: float, inlet: str, film: float) -> None:
                 where="argument domain",
                 why=f"the inlet before the domain is given by the wedge alone from X = "
                 f"{_NEAREST_TAIL:g} outwards",
-                remedy=f"Begin at X <= {_NEAREST_TAIL:g}, take domain = \"auto\", or take "
+                remedy=f'Begin at X <= {_NEAREST_TAIL:g}, take domain = "auto", or take '
                 'inlet = "zero" for a contact that is starved from there',
             )
         )

@@ -106,7 +106,7 @@ def solve_line_contact(
         solution is refined too; ``nodes`` and ``attempts`` of the solution tell.
     method : {"newton", "multigrid"}
         Multilevel Newton-Krylov, or full multigrid. If it fails, the other one is tried.
-    domain : "auto" or (float, float)
+    domain : "auto" or (float, float) [-]
         First and last position, in half widths of the dry contact.
     inlet : {"flooded", "zero"}
         Oil everywhere before the contact, or pressure zero at the first position of a stated
@@ -195,9 +195,9 @@ def solve_line_contact_moes(
 
     Parameters
     ----------
-    M : float
+    M : float [-]
         Load number ``w/(E'R) (2U)^(-1/2)``.
-    L : float
+    L : float [-]
         Material number ``alpha E' (2U)^(1/4)``; zero for an isoviscous oil.
     pressure_viscosity_index : float
         Index z of Roelands.
@@ -206,7 +206,7 @@ def solve_line_contact_moes(
         ``L sqrt(M/2pi)/alpha``, on which Roelands' law and the density depend.
     compressible : bool
         Whether the density rises with pressure, after Dowson and Higginson.
-    domain : "auto" or (float, float)
+    domain : "auto" or (float, float) [-]
         First and last position, in half widths of the dry contact.
     inlet : {"flooded", "zero"}
         Oil everywhere before the contact, or pressure zero at the first position of the domain.

@@ -113,7 +113,7 @@ def _record(
 ) -> DiscreteContact:
     start, end = problem.domain
     dx = (end - start) / m
-    X = start + dx * np.arange(m + 1)
+    X = np.asarray(start + dx * np.arange(m + 1))
     factor = (problem.nodes - 1) // m
     heights = profile
     if factor > 1:

@@ -15,7 +15,7 @@ from tribodyn.lubricant.roelands import ROELANDS_PRESSURE
 if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
 
-__all__ = ["ContactScales", "LAWS", "contact_scales", "moes_numbers"]
+__all__ = ["LAWS", "ContactScales", "contact_scales", "moes_numbers"]
 
 Array = NDArray[np.float64]
 

@@ -51,13 +51,13 @@ class LineContactSolution:
         has a single maximum. Not converged on uniform grids: too low by 10 % and more.
     spike_position : float, optional [m]
         Where the spike lies.
-    flux_error : float
+    flux_error : float [-]
         Greatest relative deviation of the mass flux from its mean.
-    load_error : float
+    load_error : float [-]
         Relative difference between the integral of the pressure and the load.
-    cavity_residual : float
-        Least mass balance behind the outlet, in units of the film; negative ones show an outlet
-        in the wrong place.
+    cavity_residual : float [-]
+        Least mass balance per length behind the outlet, in units of the dry contact; a negative
+        one shows an outlet in the wrong place.
     iterations : int
         Newton steps, or multigrid cycles, on the finest grid.
     nodes : int
@@ -76,7 +76,7 @@ class LineContactSolution:
         Central film extrapolated to an infinitely fine grid; ``None`` without a coarser grid.
     attempts : tuple of str
         What was tried in vain before.
-    moes_load, moes_viscosity : float
+    moes_load, moes_viscosity : float [-]
         Numbers M and L of Moes.
     load_per_width : float [N/m]
         Load that was asked for.
@@ -259,4 +259,3 @@ class LineContactSolution:
             f"LineContactSolution({films}, M {self.moes_load:.4g}, L {self.moes_viscosity:.4g}, "
             f"{self.nodes} nodes, {self.method}, {self.iterations} iterations)"
         )
-

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.errors import ModelWarning
+from tribodyn.errors import ModelWarning, warn
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
 
@@ -121,8 +121,15 @@ def solved_films(
     if tangent:
         film_stiffness = length * batch.film_stiffness
     else:
-        each = [solution.film_stiffness(length, kind=stiffness) for solution in solutions]
-        film_stiffness = np.reshape(each, batch.central_film.shape)
+        film_stiffness = _sums(solutions, length, stiffness).reshape(batch.central_film.shape)
+    if stiffness == "seed":
+        warn(
+            "seed-film-stiffness",
+            "the film stiffness is the sum as one source prints it: a length, which doubles when "
+            f"the {nodes} nodes are doubled. It is shown and not put in series with the teeth. "
+            'Take film.stiffness = "tangent", or "secant" for a sum that is sound',
+            stacklevel=4,
+        )
     return Films(
         central_film=batch.central_film,
         minimum_film=batch.minimum_film,
@@ -130,3 +137,11 @@ def solved_films(
         film_stiffness=film_stiffness,
         solutions=solutions,
     )
+
+
+def _sums(solutions: tuple[Any, ...], length: float, kind: str) -> Array:
+    """Secant or printed sum of every solution; what the latter has to say is said once."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"\[seed-film-stiffness\]", ModelWarning)
+        each = [solution.film_stiffness(length, kind=kind) for solution in solutions]
+    return np.array(each)

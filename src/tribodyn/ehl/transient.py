@@ -233,8 +233,8 @@ def _march(
     )  # fmt: skip
     if status != 0:
         raise _failure(contact, status, instant, step_halvings)
-    result = _result(contact, records[:, :-1], kept, pressures, films)
-    return result, float(np.max(records[:, -1]))
+    result = _result(contact, records, kept, pressures, films)
+    return result, float(np.max(records[:, 10]))
 
 
 def _failure(
@@ -254,9 +254,8 @@ def _failure(
             f"{inputs.speed[instant]:.6g} m/s",
             why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
             f"{step_halvings} times",
-            remedy="Take more time steps, smoother inputs, or a longer ramp from or to 1 to 2 % "
-            "of the load: where a contact is unloaded within the time that the oil needs to pass "
-            "it, the film ruptures inside, which is not followed",
+            remedy="Take more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
+            "of the load",
         )
     )
 
@@ -265,7 +264,7 @@ def _result(
     contact: TransientContact, records: Array, kept: Array, pressures: Array, films: Array
 ) -> TransientLineContact:
     inputs, scale = contact.inputs, contact.scale
-    offset, total, load, central, minimum, free, steps, flux, parts, highest = records.T
+    offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = records.T
     X = np.linspace(*contact.domain, contact.nodes)
     if inputs.approach is None:
         # The kernel counts the deflection from the distance b.
@@ -286,7 +285,8 @@ def _result(
         film=films * scale.film,
         iterations=steps.astype(int),
         parts=parts.astype(int),
-        flux_error=flux,
+        balance_error=flux,
+        ruptured=cavities * contact.dx * scale.half_width,
         half_width=scale.half_width,
         hertz_pressure=scale.pressure,
         domain=contact.domain,

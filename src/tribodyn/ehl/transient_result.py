@@ -53,8 +53,10 @@ class TransientLineContact:
         Newton steps of each time step.
     parts : (m,) array of int
         Parts that each time step was divided into; one unless it failed as a whole.
-    flux_error : (m,) array
-        Greatest deviation of the summed mass balance from its mean, over the mean flux.
+    balance_error : (m,) array
+        Sum of the mass balances over the mean flux.
+    ruptured : (m,) array [m]
+        Width of the cavities inside the film, before the outlet. A fast unloading tears it.
     half_width : float [m]
         Half width of the widest dry contact, the unit of the grid.
     hertz_pressure : float [Pa]
@@ -84,7 +86,8 @@ class TransientLineContact:
     film: Array = field(repr=False)
     iterations: NDArray[np.int64] = field(repr=False)
     parts: NDArray[np.int64] = field(repr=False)
-    flux_error: Array = field(repr=False)
+    balance_error: Array = field(repr=False)
+    ruptured: Array = field(repr=False)
     half_width: float
     hertz_pressure: float
     domain: tuple[float, float]
@@ -118,7 +121,8 @@ class TransientLineContact:
             "entrainment_speed": "m/s",
             "iterations": "1",
             "parts": "1",
-            "flux_error": "1",
+            "balance_error": "1",
+            "ruptured": "m",
         }
         fields = {"pressure": "Pa", "film": "m"}
         data: dict[str, Any] = {

@@ -26,7 +26,6 @@ REASONS = {
     3: "the linear system is singular",
     4: "a value is not finite",
     5: "rounding keeps the mass balance above its tolerance",
-    6: "the pressure turns negative inside the contact: the film ruptures there",
 }
 #: Greatest factor of load, speed or curvature from one steady state to the next of the start.
 _RATIO = 1.25

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +70,6 @@ class Verification:
         return "; ".join(found)
 
 
-@lru_cache(maxsize=64)
 def _transform(n: int, dx: float) -> tuple[int, Array]:
     """Length of the circular sum, and transform of the influence."""
     from scipy.fft import next_fast_len, rfft
@@ -90,7 +88,8 @@ def _film(grid: DiscreteContact) -> Array:
     from scipy.fft import irfft, rfft
 
     size, spectrum = _transform(grid.n, grid.dx)
-    return grid.H0 + grid.shape + irfft(rfft(grid.P, size) * spectrum, size)[: grid.n + 1]
+    deflection = irfft(rfft(grid.P, size) * spectrum, size)[: grid.n + 1]
+    return np.asarray(grid.H0 + grid.shape + deflection)
 
 
 def verify(grid: DiscreteContact) -> Verification:

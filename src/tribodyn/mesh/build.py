@@ -15,7 +15,7 @@ from tribodyn.errors import require_between, require_positive
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.cycle import mesh_cycle
+from tribodyn.mesh.cycle import MeshCycle, mesh_cycle
 from tribodyn.mesh.film import FILM_COLUMNS, as_columns
 from tribodyn.mesh.film_friction import film_friction
 from tribodyn.mesh.loads import (
@@ -25,8 +25,9 @@ from tribodyn.mesh.loads import (
     usable_stiffness,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.path_film import SolvedPath, touching_pairs
+from tribodyn.mesh.path_film import SolvedPath
 from tribodyn.mesh.table import MeshTable
+from tribodyn.mesh.touching import touching_pairs
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
 
@@ -127,18 +128,14 @@ def build(
     options = FILM_MODELS[film_model].complete(film_options)
     cycle = mesh_cycle(pair, steps)
     total_force = pinion_torque / pair.pinion.base_radius
-    teeth = MODELS[stiffness_model](
-        pair, material, cycle.path, cycle.in_contact, cycle.grid.phase, total_force,
-        **stiffness_options,
-    )  # fmt: skip
-    teeth = usable_stiffness(teeth, cycle.in_contact, stiffness_model)
+    teeth = _teeth(cycle, material, total_force, stiffness_model, stiffness_options)
     motion = cycle.motion(pinion_speed)
     touching = touching_pairs(cycle, motion, lubricant, material)
     total_load = total_force / pair.common_face_width
     loads = quasi_static_loads(
         cycle, teeth, total_load, touching, pinion_speed, film_model, options, progress
     )
-    warn_of_rigid_films(loads, options)
+    warn_of_rigid_films(loads.film_at)
     load_per_width = total_load * loads.share[cycle.in_contact]
     tribology = tribological_contact(motion, touching, load_per_width, composite_roughness)
     columns: dict[str, FloatArray] = {
@@ -164,9 +161,22 @@ def build(
         stiffness_model=stiffness_model,
         friction_law=friction_law,
         film_model=film_model,
-        film_stiffness_kind=options.get("stiffness", "none"),
+        film_stiffness_kind=options["stiffness"],
         **_spread(columns, cycle.in_contact),
     )
+
+
+def _teeth(
+    cycle: MeshCycle,
+    material: Material,
+    total_force: float,
+    model: str,
+    options: Mapping[str, Any],
+) -> FloatArray:
+    """Stiffness of the teeth of every pair."""
+    places = (cycle.path, cycle.in_contact, cycle.grid.phase)
+    found = MODELS[model](cycle.contact.pair, material, *places, total_force, **options)
+    return usable_stiffness(found, cycle.in_contact, model)
 
 
 def _friction(

@@ -62,8 +62,8 @@ class MeshColumns:
     film_pressure : array (n, pairs) [Pa] or None
         Greatest pressure in the film, where it is solved.
     film_stiffness : array (n, pairs) [N/m] or None
-        Stiffness of the film of the pair: the tangent one, or the kind that is in series with the
-        teeth.
+        Stiffness of the film of the pair, of the kind asked for; the tangent one if none is. A
+        film that does not fall with the load counts as rigid: its stiffness has a bound.
     gear_pair : SpurPair
         Both gears in their working position.
     pinion_speed : float [rad/s]
@@ -75,7 +75,8 @@ class MeshColumns:
     stiffness_model, friction_law, film_model : str
         Which models made the table.
     film_stiffness_kind : str
-        Film stiffness in series with the teeth; ``"none"`` where the film does not yield.
+        Film stiffness asked for: ``"tangent"`` and ``"secant"`` are in series with the teeth,
+        ``"none"`` and ``"seed"`` are not.
     """
 
     grid: PhaseGrid

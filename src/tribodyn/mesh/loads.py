@@ -14,11 +14,13 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import ComputationError, Problem, warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle
-from tribodyn.mesh.path_film import FilmAt, PathFilm, SolvedPath, Touching, path_film
+from tribodyn.mesh.path_film import FilmAt, PathFilm, SolvedPath, path_film
 from tribodyn.mesh.series import in_series
+from tribodyn.mesh.touching import Touching
 from tribodyn.progress import Progress
 
 __all__ = [
+    "IN_SERIES",
     "Loads",
     "quasi_static_loads",
     "tribological_contact",
@@ -27,6 +29,8 @@ __all__ = [
 ]
 
 FloatArray = NDArray[np.float64]
+#: Kinds of film stiffness that are springs; the printed sum of one source has the unit of a length.
+IN_SERIES = ("tangent", "secant")
 BoolArray = NDArray[np.bool_]
 
 
@@ -89,7 +93,7 @@ def usable_stiffness(found: FloatArray, in_contact: BoolArray, model: str) -> Fl
 
 def quasi_static_loads(
     cycle: MeshCycle,
-    teeth: FloatArray,
+    tooth_stiffness: FloatArray,
     total_load: float,
     touching: Touching,
     pinion_speed: float,
@@ -103,7 +107,7 @@ def quasi_static_loads(
     ----------
     cycle : MeshCycle
         Places of the pairs.
-    teeth : array (n, pairs) [N/m]
+    tooth_stiffness : array (n, pairs) [N/m]
         Stiffness of the teeth of each pair.
     total_load : float [N/m]
         Load of all pairs together per face width.
@@ -140,37 +144,33 @@ def quasi_static_loads(
             model, options, cycle.contact, pinion_speed, touching, cycle.side
         )
         film_of = of_path
-    if options.get("stiffness", "none") != "none":
-        found = in_series(teeth, cycle.in_contact, total_load, film_of, cycle.named)
+    if options["stiffness"] in IN_SERIES:
+        found = in_series(tooth_stiffness, cycle.in_contact, total_load, film_of, cycle.named)
         return Loads(*found)
-    share = teeth / teeth.sum(axis=1, keepdims=True)
-    return Loads(teeth, share, film_of(total_load * share))
+    share = tooth_stiffness / tooth_stiffness.sum(axis=1, keepdims=True)
+    return Loads(tooth_stiffness, share, film_of(total_load * share))
 
 
-def warn_of_rigid_films(loads: Loads, options: Mapping[str, Any]) -> None:
-    """Say where a film that should yield does not: near the line of centres it rises with the load.
+def warn_of_rigid_films(film_at: FilmAt) -> None:
+    """Say where a solved film has no tangent stiffness, because it does not fall with the load.
 
     Parameters
     ----------
-    loads : Loads
-        Loads with their films.
-    options : mapping
-        Options of the film model.
+    film_at : callable
+        Films as a function of their loads.
 
     Warns
     -----
     ModelWarning
-        Code ``film-stiffness`` where a film in series counts as rigid.
+        Code ``film-stiffness`` where a film counts as rigid.
     """
-    if options.get("stiffness") != "tangent" or not isinstance(loads.film_at, SolvedPath):
-        return
-    share = loads.film_at.rigid_share
+    share = film_at.rigid_share if isinstance(film_at, SolvedPath) else 0.0
     if share > 0.0:
         warn(
             "film-stiffness",
             f"in {100.0 * share:.2g} % of the contacts of the mesh cycle the central film does not "
             "fall with the load, so that it has no tangent stiffness: there it counts as rigid. "
-            "Light loads do that, where the contact turns from rigid to elastic",
+            "Light loads do that, where contacts turn from rigid to elastic, and starved inlets",
             stacklevel=4,
         )
 

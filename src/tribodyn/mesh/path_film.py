@@ -15,20 +15,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.contact import Kinematics, PathOfContact, effective_modulus, hertz_line
-from tribodyn.ehl import FILM_MODELS, moes_central
-from tribodyn.ehl.load_exponent import moes_load_exponent
+from tribodyn.contact import PathOfContact
 from tribodyn.ehl.solved_films import Films
 from tribodyn.errors import warn
-from tribodyn.gear import Material
-from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.cycle import MeshCycle
 from tribodyn.mesh.film_places import film_places
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.positions import MOST, PathPositions, path_positions
+from tribodyn.mesh.touching import Touching
 from tribodyn.progress import SILENT, Progress
 
-__all__ = ["FilmAt", "PathFilm", "SolvedPath", "Touching", "path_film", "touching_pairs"]
+__all__ = ["FilmAt", "PathFilm", "SolvedPath", "path_film"]
 
 FloatArray = NDArray[np.float64]
 
@@ -36,90 +32,9 @@ FloatArray = NDArray[np.float64]
 FilmAt = Callable[[FloatArray], Films]
 
 #: Estimated error of the film between the positions that deserves a warning.
-_ROUGH = 1e-3
+_ROUGH = 3e-3
 #: Compliance over its estimate below which a film counts as rigid: its stiffness has a bound.
 _RIGID = 1e-3
-
-
-@dataclass(frozen=True, eq=False)
-class Touching:
-    """Pairs in contact without their load, as arrays of one shape.
-
-    Parameters
-    ----------
-    age : array
-        Mesh cycles since the pair entered contact.
-    equivalent_radius : array [m]
-        Reduced radius of curvature.
-    entrainment_speed : array [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        Oil at working temperature.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-    common_face_width : float [m]
-        Length of the contact line.
-    """
-
-    age: FloatArray
-    equivalent_radius: FloatArray
-    entrainment_speed: FloatArray
-    lubricant: Lubricant
-    effective_modulus: float
-    common_face_width: float
-
-    def films(self, model: str, load_per_width: FloatArray, **options: Any) -> Films:
-        """Films of every one of these contacts.
-
-        Parameters
-        ----------
-        model : str
-            Name in ``tribodyn.ehl.FILM_MODELS``.
-        load_per_width : array [N/m]
-            Their loads.
-        **options : object
-            Options of the model.
-
-        Returns
-        -------
-        Films
-        """
-        return FILM_MODELS[model].films(
-            load_per_width,
-            self.equivalent_radius,
-            self.entrainment_speed,
-            self.lubricant,
-            self.effective_modulus,
-            length=self.common_face_width,
-            **options,
-        )
-
-    def scales(self, load_per_width: FloatArray) -> dict[str, FloatArray]:
-        """Estimates of the films that are right in every regime, to a factor near one.
-
-        Parameters
-        ----------
-        load_per_width : array [N/m]
-            Their loads.
-
-        Returns
-        -------
-        dict of str to array
-            One for each array of :class:`tribodyn.ehl.solved_films.Films`.
-        """
-        arguments = (
-            load_per_width, self.equivalent_radius, self.entrainment_speed,
-            self.lubricant.dynamic_viscosity, self.lubricant.pressure_viscosity_coefficient,
-            self.effective_modulus,
-        )  # fmt: skip
-        film, slope = moes_central(*arguments), moes_load_exponent(*arguments)
-        hertz = hertz_line(load_per_width, self.equivalent_radius, self.effective_modulus)
-        return {
-            "central_film": film,
-            "minimum_film": film,
-            "film_pressure": hertz.maximum_pressure,
-            "film_stiffness": -self.common_face_width * load_per_width / (slope * film),
-        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,11 +121,12 @@ class PathFilm:
         error = self.places.truncation(ratios[0])
         if error > _ROUGH:
             count = self.options["positions"]
+            more = f"film.positions = {min(2 * count, MOST)}" if count < MOST else "no more exist"
             warn(
                 "film-positions",
-                f"between the {count} positions at which the film is solved it is known to about "
-                f"{100.0 * error:.2g} % only; {100.0 * _ROUGH:g} % is usual. Give for example "
-                f"film.positions = {min(2 * count, MOST)}",
+                f"between the {count} positions at which the film is solved it is known to no "
+                f"better than {100.0 * error:.2g} %: load and film change much along the path of "
+                f"contact. More positions help: {more}",
             )
         between = self.places.interpolate(np.stack(ratios, axis=1), self.touching.age, self.zone).T
         return SolvedPath(self, load_per_width, films, np.exp(between[:3]), between[3])
@@ -316,34 +232,4 @@ def path_film(
         solved=solved,
         touching=touching,
         zone=places.zone_of(side),
-    )
-
-
-def touching_pairs(
-    cycle: MeshCycle, motion: Kinematics, lubricant: Lubricant, material: Material
-) -> Touching:
-    """Gather what the films of the touching pairs depend on, their loads excepted.
-
-    Parameters
-    ----------
-    cycle : MeshCycle
-        Places of the pairs.
-    motion : Kinematics
-        Curvatures and speeds of the touching ones.
-    lubricant : Lubricant
-        Oil at working temperature.
-    material : Material
-        Material of both gears.
-
-    Returns
-    -------
-    Touching
-    """
-    return Touching(
-        age=cycle.age,
-        equivalent_radius=motion.equivalent_radius,
-        entrainment_speed=motion.entrainment_speed,
-        lubricant=lubricant,
-        effective_modulus=effective_modulus(material, material),
-        common_face_width=cycle.contact.pair.common_face_width,
     )

@@ -34,6 +34,8 @@ LEAST, MOST = 8, 200
 _LEAST_IN_ZONE = 4
 #: Zones narrower than this are rounding [mesh cycles].
 _ROUNDING = 1e-9
+#: Fall from term to term that is assumed where terms do not fall at all.
+_SLOWEST = 0.9
 #: Distance from the end of a zone that tells its two sides apart [mesh cycles].
 _SIDE = 1e-10
 
@@ -128,7 +130,7 @@ class PathPositions:
         Returns
         -------
         float
-            Greatest next Chebyshev term of any zone, in the unit of the values.
+            Greatest rest of the Chebyshev series of any zone, in the unit of the values.
         """
         return max(_rest(values[part]) for part in self.zones)
 
@@ -176,7 +178,7 @@ def lobatto_polynomial(knots: FloatArray, at: FloatArray) -> FloatArray:
 
 
 def _rest(values: FloatArray) -> float:
-    """What the series leaves out, as its terms fall: the next one after the last pair of terms."""
+    """What the series leaves out if its terms go on falling as the last ones do."""
     order = values.size - 1
     ends = np.ones(order + 1)
     ends[[0, -1]] = 0.5
@@ -187,7 +189,8 @@ def _rest(values: FloatArray) -> float:
     ]
     terms[-1] *= 0.5
     last, before = max(terms[1:]), max(terms[:2])
-    return float(min(last, last * last / before) if before > 0.0 else last)
+    ratio = min(last / before, _SLOWEST) if before > 0.0 else 0.0
+    return float(last * ratio / (1.0 - ratio))
 
 
 def path_positions(contact: PathOfContact, positions: int) -> PathPositions:

@@ -18,7 +18,7 @@ BoolArray = NDArray[np.bool_]
 
 #: The film is solved anew until the load shares move by less than this.
 _TOLERANCE = 1e-6
-_PASSES = 12
+_PASSES = 20
 #: Between two solutions the shares settle to this; each pass gains one digit or two, and after
 #: every few of them the limit is extrapolated.
 _SETTLED = 1e-13
@@ -31,17 +31,17 @@ _LOST = 1e-9
 
 
 def in_series(
-    teeth: FloatArray,
+    tooth_stiffness: FloatArray,
     in_contact: BoolArray,
     total_load: float,
     film_of: Callable[[FloatArray], FilmAt],
     where: Callable[[int, int], str],
 ) -> tuple[FloatArray, FloatArray, FilmAt]:
-    """Put the film of each pair in series with its teeth, at the load share that follows.
+    """Put the film of each pair in series with its tooth_stiffness, at the load share that follows.
 
     Parameters
     ----------
-    teeth : array (n, pairs) [N/m]
+    tooth_stiffness : array (n, pairs) [N/m]
         Stiffness of the teeth of each pair, zero where it is not in contact.
     in_contact : bool array (n, pairs)
         Whether the pair is in contact.
@@ -62,7 +62,7 @@ def in_series(
     Raises
     ------
     ComputationError
-        If the share does not settle: the film is softer than the teeth.
+        If the share does not settle: the film is softer than the tooth_stiffness.
 
     Notes
     -----
@@ -71,10 +71,10 @@ def in_series(
     load, hence the search for a fixed point. The teeth keep the stiffness that they have at the
     share without film, which differs by parts of a percent.
     """
-    share = teeth / teeth.sum(axis=1, keepdims=True)
+    share = tooth_stiffness / tooth_stiffness.sum(axis=1, keepdims=True)
     for _ in range(_PASSES):
         film_at = film_of(total_load * share)
-        settled, stiffness = _settle(teeth, in_contact, total_load, film_at, share, where)
+        settled, stiffness = _settle(tooth_stiffness, in_contact, total_load, film_at, share, where)
         change = float(np.max(np.abs(settled - share)))
         share = settled
         if change < _TOLERANCE:
@@ -83,7 +83,7 @@ def in_series(
 
 
 def _settle(
-    teeth: FloatArray,
+    tooth_stiffness: FloatArray,
     in_contact: BoolArray,
     total_load: float,
     film_at: FilmAt,
@@ -93,7 +93,7 @@ def _settle(
     """Find the fixed point of share and stiffness with the films as a function of their load."""
     earlier = [share]
     for _ in range(_STEPS):
-        stiffness = _stiffness(teeth, in_contact, total_load * share, film_at)
+        stiffness = _stiffness(tooth_stiffness, in_contact, total_load * share, film_at)
         share = stiffness / stiffness.sum(axis=1, keepdims=True)
         change = np.abs(share - earlier[-1])
         if change.max() < _SETTLED:
@@ -114,15 +114,15 @@ def _settle(
 
 
 def _stiffness(
-    teeth: FloatArray, in_contact: BoolArray, load_per_width: FloatArray, film_at: FilmAt
+    tooth_stiffness: FloatArray, in_contact: BoolArray, load_per_width: FloatArray, film_at: FilmAt
 ) -> FloatArray:
     """Stiffness of teeth and film in series, zero where the pair is not in contact."""
     with warnings.catch_warnings():
         # What a formula has to say, it says of the load share that is found.
         warnings.simplefilter("ignore", ModelWarning)
         film = film_at(load_per_width[in_contact]).film_stiffness
-    stiffness = np.zeros(teeth.shape)
-    stiffness[in_contact] = 1.0 / (1.0 / teeth[in_contact] + 1.0 / np.asarray(film))
+    stiffness = np.zeros(tooth_stiffness.shape)
+    stiffness[in_contact] = 1.0 / (1.0 / tooth_stiffness[in_contact] + 1.0 / np.asarray(film))
     return stiffness
 
 

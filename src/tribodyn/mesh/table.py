@@ -204,6 +204,24 @@ class MeshTable(MeshColumns):
         """
         return self._figure("friction")
 
+    def plot_film(self) -> Any:
+        """Draw the oil film of a tooth pair and its ratio to the roughness over the path.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return self._figure("film")
+
+    def plot_film_stiffness(self) -> Any:
+        """Draw the stiffness of the oil film against that of the teeth over the path.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return self._figure("film_stiffness")
+
     def _figure(self, name: str) -> Any:
         # The one step upward of the layers: a result draws itself. Figures take whatever has
         # a mesh and a case with a gear pair, of which this table is the part they need.

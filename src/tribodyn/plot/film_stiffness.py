@@ -20,14 +20,19 @@ from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
 __all__ = ["film_stiffness"]
 
+#: Kinds of film stiffness that are in series with the teeth.
+_SPRINGS = ("tangent", "secant")
+
 
 def _caption(result: Any) -> str:
     kind = result.mesh.film_stiffness_kind
-    if kind == "none":
+    if kind not in _SPRINGS:
+        sum_of_source = "The film stiffness is the sum as one source prints it. "
         return (
             "Stiffness of the oil film of one tooth pair and of its teeth, on a logarithmic scale. "
-            "In this case the film does not yield: the mesh has the stiffness of the teeth alone. "
-            'Choose film.stiffness = "tangent" to put both in series.'
+            + (sum_of_source if kind == "seed" else "")
+            + "In this case the film does not yield: the mesh has the stiffness of the teeth "
+            'alone. Choose film.stiffness = "tangent" to put both in series.'
         )
     return (
         f"Stiffness of the oil film of one tooth pair ({kind}) and of its teeth, on a logarithmic "
@@ -79,7 +84,7 @@ def film_stiffness(result: Any) -> Any:
             {"type": "log", "dtick": 1},
         )
     ]
-    if mesh.film_stiffness_kind != "none":
+    if mesh.film_stiffness_kind in _SPRINGS:
         pair_curve = line(angle, pair, "teeth and film", TOTAL, unit=unit)
         panels.append(Panel(axis_label("pair_stiffness"), [teeth_curve, pair_curve]))
     least, greatest = (significant(float(f(film / teeth))) for f in (np.min, np.max))

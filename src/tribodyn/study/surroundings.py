@@ -77,7 +77,7 @@ class Film(Section):
     model: str = choice("none", _film_models, meaning="how the oil film is found")
     stiffness: str = choice(
         "none", ("none", "tangent", "secant", "seed"),
-        meaning="stiffness of the oil film in series with the teeth",
+        meaning="stiffness of the oil film; tangent and secant are in series with the teeth",
     )  # fmt: skip
     nodes: int | None = integer(
         None, 65, 16385, "a power of two plus one", example="513",

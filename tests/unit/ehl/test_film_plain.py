@@ -313,3 +313,26 @@ def test_solver_in_si_equals_plain():
     plain = solve_plain(same)
     np.testing.assert_allclose(found.film, plain.H * half_width**2 / 9e-3, rtol=1e-8)
     np.testing.assert_allclose(found.pressure, plain.P * hertz, atol=1e-8 * hertz)
+
+
+def test_random_gear_contacts_meet_the_plain_equations():
+    generator = np.random.default_rng(17)
+    for _ in range(25):
+        M, L = math.exp(generator.uniform(0.0, math.log(300.0))), generator.uniform(0.0, 25.0)
+        L = min(L, 2.2e-8 * 2e9 / math.sqrt(M / (2.0 * math.pi)))
+        found = solve_line_contact_moes(M, L, domain="auto", inlet="flooded", nodes=513)
+        contact, P = twin(found), found.pressure
+        H = contact.film(P, found._grid.H0)
+        np.testing.assert_allclose(found.film, H, rtol=1e-10)
+        free, flux = found._grid.free, contact.flux(P, H)
+        assert P.min() == 0.0
+        assert np.all(P[free + 1 :] == 0.0)
+        wet = flux[: free + 1]
+        deviation = np.abs(wet / wet.mean() - 1.0).max()
+        assert deviation < 1e-3
+        assert found.flux_error == pytest.approx(deviation, rel=0.02, abs=1e-9)
+        gain = contact.residual(P, H)[free:] / contact.width
+        assert gain.min() > -1e-8
+        assert found.cavity_residual == pytest.approx(gain.min(), rel=1e-6, abs=1e-8)
+        load = contact.width * (P.sum() - 0.5 * P[0])
+        assert load == pytest.approx(found._grid.load, rel=1e-10)

@@ -128,6 +128,14 @@ def test_a_table_with_its_film_is_kept_and_read(fzg, tmp_path):
     assert "film" in data["tooth_stiffness"].attrs["long_name"]
 
 
+def test_a_table_draws_its_film(fzg):
+    mesh = table(fzg())
+    thickness, stiffness = mesh.plot_film(), mesh.plot_film_stiffness()
+    least = mesh.minimum_film[mesh.in_contact].min() * 1e6
+    assert min(float(np.min(trace.y)) for trace in thickness.data[:2]) == pytest.approx(least)
+    assert stiffness.layout.yaxis.type == "log"
+
+
 def test_a_table_of_the_earlier_format_is_read(fzg, tmp_path):
     mesh = build(fzg(), **CONDITIONS)
     old = mesh.to_xarray().drop_vars("tooth_stiffness")
@@ -162,9 +170,11 @@ def test_a_film_in_proportion_to_its_load_settles_at_its_fixed_point():
 
 
 def test_a_film_softer_than_its_teeth_takes_the_load_away():
+    # the film of the first pair yields by 10 mm at any load, more than the second ever does
     teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
-    with pytest.raises(ComputationError, match=r'film\.stiffness = "none"'):
-        in_series(teeth, both, 1e5, _film(lambda load: 1e-3 * load**1.1), named)
+    film = _film(lambda load: np.array([100.0 * load[0], 1e9]))
+    with pytest.raises(ComputationError, match=r'pair 0 in row 0 loses.*film\.stiffness = "none"'):
+        in_series(teeth, both, 1e5, film, named)
 
 
 def test_a_film_that_is_never_the_same_is_refused():

@@ -50,9 +50,7 @@ def coarse_tangent(
     cH, cP = np.empty((m + 1, 4)), np.empty((m + 1, 4))
     oil_state(m, p, oil, rows[2], rows[3], rows[4], rows[5])
     mobility(m, h, lam, rows[2], rows[4], rows[6])
-    coefficients(
-        m, wide, lam, u, squeeze, p, h, rows[3], rows[4], rows[5], rows[6], cH, cP
-    )
+    coefficients(m, wide, lam, u, squeeze, p, h, rows[3], rows[4], rows[5], rows[6], cH, cP)
     K = influence(m, wide)
     size = last + 1 if imposed else last
     a, pivot = np.zeros((size, size)), np.empty(m + 2, np.int64)

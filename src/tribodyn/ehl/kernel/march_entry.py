@@ -13,6 +13,7 @@ from tribodyn.compiled import source_digest
 from tribodyn.ehl.kernel.coarse import no_coarse
 from tribodyn.ehl.kernel.film_sum import film_plan, influence
 from tribodyn.ehl.kernel.film_tangent import film_tangent
+from tribodyn.ehl.kernel.instant import instant_work
 from tribodyn.ehl.kernel.krylov import newton_work
 from tribodyn.ehl.kernel.newton import CONVERGED, newton_level
 from tribodyn.ehl.kernel.options import JIT
@@ -65,7 +66,7 @@ def _build_settle(digest: str) -> Any:
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         K = influence(n, dx) + dx * np.log(reference) / np.pi
-        plan, work = film_plan(n, K), newton_work(n)
+        plan, work = film_plan(n, K), instant_work(n)
         p, h, trial, now = P.copy(), H.copy(), state.copy(), row.copy()
         furthest = 0.0
         for c in (LOAD, SPEED, CURVATURE):
@@ -136,7 +137,7 @@ def _build_level(digest: str) -> Any:
     return level_contact
 
 
-_MARCH = source_digest(_FOLDER, (*_COMMON, "newton", "profile", "squeeze"))
+_MARCH = source_digest(_FOLDER, (*_COMMON, "newton", "profile", "instant", "squeeze"))
 march_contact = _build_march(_MARCH)
 settle_contact = _build_settle(_MARCH)
 level_contact = _build_level(source_digest(_FOLDER, (*_COMMON, "newton")))

@@ -103,7 +103,10 @@ def _build(digest: str) -> Any:
             tried.
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        m, level, last = np.int64(first), np.int64(0), np.int64(0)
+        # Typed, or each literal would make the compiler translate the callees anew.
+        m: Any = np.int64(first)
+        level: Any = np.int64(0)
+        last: Any = np.int64(0)
         before, film_before, coarse = np.empty(0), np.empty(0), no_coarse()
         while True:
             dx = (end - start) / m
@@ -114,7 +117,7 @@ def _build(digest: str) -> Any:
             p, h, final = P[: m + 1], H[: m + 1], limits.copy()
             if level > 0:
                 if m >= _TWO_GRIDS and coarse[0].size == 0:
-                    ratio = np.int64(1)
+                    ratio: Any = np.int64(1)
                     while m // (4 * ratio) >= _COARSE and m % (4 * ratio) == 0:
                         ratio *= 2
                     coarse = coarse_tangent(

@@ -12,18 +12,17 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.ehl.kernel.coarse import no_coarse
 from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
-from tribodyn.ehl.kernel.krylov import newton_work
-from tribodyn.ehl.kernel.newton import CONVERGED, ROUNDED, newton_level
+from tribodyn.ehl.kernel.instant import instant_work, solve_instant
+from tribodyn.ehl.kernel.newton import CONVERGED, ROUNDED
 from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import INNER
 from tribodyn.ehl.kernel.profile import add_profile
 from tribodyn.ehl.kernel.transfer import central
 
 __all__ = [
-    "CURVATURE", "FIRST_SHIFT", "HEIGHT", "INPUTS", "LOAD", "OFFSET", "RECORD", "RUPTURED",
-    "SECOND_SHIFT", "SPEED", "march", "settle",
+    "CURVATURE", "FIRST_SHIFT", "HEIGHT", "INPUTS", "LOAD", "OFFSET", "RECORD", "SECOND_SHIFT",
+    "SPEED", "march", "settle",
 ]  # fmt: skip
 
 Array = NDArray[np.float64]
@@ -36,15 +35,12 @@ LOAD, OFFSET, SPEED, CURVATURE, FIRST_SHIFT, SECOND_SHIFT, HEIGHT = 0, 1, 2, 3, 
 INPUTS = 7
 #: Columns of the record: offset, sum of the pressures, load with that of the inlet, central and
 #: minimum film, last free node, Newton steps, flux error, parts of the step, highest pressure,
-#: share of the load in the last sixteenth of the grid.
-RECORD = 11
+#: share of the load in the last sixteenth of the grid, nodes of cavities before the outlet.
+RECORD = 12
 #: Load of the reference, in b p_h.
 _FULL = 0.5 * np.pi
 #: Flux error that is accepted where rounding keeps it above its tolerance.
 _ROUNDED_FLUX = 1e-4
-#: Status of a film with negative pressure away from the outlet, and what of it, over the highest
-#: pressure, is none.
-RUPTURED, _SUCTION = 6, 1e-7
 
 
 @nb.njit(**INNER)
@@ -81,7 +77,7 @@ def _inlet(
 def _solve(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, row: Array, film: float, load: float, squeeze: float,
-    history: Array, shape: Array, work: Any, P: Array, H: Array, state: Array,
+    history: Array, shape: Array, work: Any, P: Array, H: Array, cavity: Array, state: Array,
 ) -> int:  # fmt: skip
     """Solve one instant; ``state[5]`` receives the load with that of the inlet.
 
@@ -89,21 +85,14 @@ def _solve(
     """
     carried = row[LOAD] if imposed else load / _FULL
     tail, outside = _inlet(start, film, carried, lam, flooded, row)
-    if not imposed:
-        state[0] = row[OFFSET]
-    status = newton_level(
-        n, dx, lam, row[SPEED], squeeze, _FULL * row[LOAD] - outside, imposed, tail, oil, shape,
-        history, K, plan, limits, no_coarse(), work, P, H, state,
+    given = _FULL * row[LOAD] - outside if imposed else row[OFFSET]
+    status = solve_instant(
+        n, dx, lam, row[SPEED], squeeze, given, imposed, tail, oil, shape, history, K,
+        plan, limits, work, P, H, cavity, state,
     )  # fmt: skip
     state[5] += outside
     if status == ROUNDED and state[4] < _ROUNDED_FLUX:
         status = CONVERGED
-    if status == CONVERGED:
-        highest, least = 0.0, 0.0
-        for i in range(n):
-            highest, least = max(highest, P[i]), min(least, P[i])
-        if least < -_SUCTION * highest:
-            return RUPTURED
     return status
 
 
@@ -117,13 +106,13 @@ def settle(
 
     The pressure of the inlet follows from the central film and is found by iteration.
     """
-    shape, history = np.empty(n + 1), np.zeros(n + 1)
+    shape, history, cavity = np.empty(n + 1), np.zeros(n + 1), np.zeros(n + 1)
     _gap(n, start, dx, row, rough, shape)
     film = central(n, start, dx, H)
     for _ in range(40):
         status = _solve(
             n, start, dx, lam, oil, K, plan, limits, imposed, flooded, row, film, state[5], 0.0,
-            history, shape, work, P, H, state,
+            history, shape, work, P, H, cavity, state,
         )  # fmt: skip
         if status != CONVERGED:
             return status
@@ -137,8 +126,9 @@ def settle(
 
 @nb.njit(**INNER)
 def _keep(
-    n: int, start: float, dx: float, P: Array, H: Array, state: Array, parts: int, record: Array
-) -> None:
+    n: int, start: float, dx: float, P: Array, H: Array, cavity: Array, state: Array, parts: int,
+    record: Array,
+) -> None:  # fmt: skip
     k = int(state[1])
     total, highest, late = 0.0, 0.0, 0.0
     for i in range(k + 1):
@@ -154,6 +144,7 @@ def _keep(
     record[5], record[6], record[7] = state[1], state[2], state[4]
     record[8], record[9] = parts, highest
     record[10] = late / total if total > 0.0 else 0.0
+    record[11] = np.sum(cavity)
 
 
 @nb.njit(**INNER)
@@ -197,7 +188,8 @@ def march(
     (int, int)
         Status of the solver and the instant that it belongs to.
     """
-    work = newton_work(n)
+    work = instant_work(n)
+    cavity, broken = np.zeros(n + 1), np.zeros(n + 1)
     shape, history = np.empty(n + 1), np.empty(n + 1)
     lneta, dlneta, rho, drho = np.empty((4, n + 1))
     before, earlier = np.empty(n + 1), np.empty(n + 1)
@@ -209,7 +201,7 @@ def march(
     film, film_before = central(n, start, dx, H), 0.0
     load, load_before = state[5], 0.0
     last = 0.0
-    _keep(n, start, dx, P, H, state, 0, records[0])
+    _keep(n, start, dx, P, H, cavity, state, 0, records[0])
     if every > 0:
         pressures[0], films[0] = P, H
     for m in range(1, time.size):
@@ -233,17 +225,17 @@ def march(
                     history[i] = near * before[i] - far * earlier[i]
                 expected = film + r * (film - film_before)
                 expected_load = load + r * (load - load_before)
-            p[:], h[:], trial[:] = P, H, state
+            p[:], h[:], broken[:], trial[:] = P, H, cavity, state
             status = _solve(
                 n, start, dx, lam, oil, K, plan, limits, imposed, flooded, row, expected,
-                expected_load, squeeze, history, shape, work, p, h, trial,
+                expected_load, squeeze, history, shape, work, p, h, broken, trial,
             )  # fmt: skip
             if status != CONVERGED:
                 part *= 0.5
                 if part < 0.5**halvings:
                     return status, m
                 continue
-            P[:], H[:], state[:] = p, h, trial
+            P[:], H[:], cavity[:], state[:] = p, h, broken, trial
             oil_state(n, P, oil, lneta, dlneta, rho, drho)
             for i in range(n + 1):
                 earlier[i] = before[i]
@@ -254,7 +246,7 @@ def march(
             parts += 1
             steps += state[2]
         state[2] = steps
-        _keep(n, start, dx, P, H, state, parts, records[m])
+        _keep(n, start, dx, P, H, cavity, state, parts, records[m])
         if every > 0 and m % every == 0:
             pressures[m // every], films[m // every] = P, H
     return CONVERGED, time.size - 1

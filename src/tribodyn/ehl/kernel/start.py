@@ -111,12 +111,12 @@ def cold_start(
     ----------
     n, start, dx : int, float, float
         Grid.
-    lam, oil, load, tail, shape
+    lam, oil : float, array
         As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
     film : float
         Estimate of the central film.
-    K, plan, work
-        Influence, and room from :func:`~tribodyn.ehl.kernel.newton.newton_work`.
+    load, tail, shape, K, plan, work
+        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
     P, H : (n + 1,) arrays
         Receive pressure and film.
 
@@ -149,9 +149,7 @@ def cold_start(
         _rigid_pressure(n, start, dx, lam, film, tail, q)
     for i in range(n + 1):
         x = start + i * dx
-        if rigid:
-            P[i] = _thickened(q[i], slope)
-        elif x <= -1.0:
+        if rigid or x <= -1.0:
             P[i] = _thickened(q[i], slope)
         else:
             inside = np.sqrt(max(1.0 - x * x, 0.0))

@@ -1,0 +1,258 @@
+"""The engine ``multigrid``: full multigrid, full approximation scheme, distributive relaxation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.ehl.discrete import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.newton_engine import first_intervals, resample
+from tribodyn.errors import InputError, Problem
+
+__all__ = ["FIVE_LEVELS", "Cycles", "count_grids", "multigrid_engine", "run_multigrid"]
+
+Array = NDArray[np.float64]
+
+#: The set-up of the source documents: five grids, the finest with 1024 intervals, pressure to
+#: 1e-4, a starved domain. Keyword arguments of
+#: :func:`~tribodyn.ehl.line_contact.solve_line_contact`.
+FIVE_LEVELS = MappingProxyType(
+    {
+        "method": "multigrid",
+        "levels": 5,
+        "nodes": 1025,
+        "tolerance": 1e-4,
+        "domain": (-2.5, 1.5),
+        "inlet": "zero",
+    }
+)
+
+#: Intervals of the coarsest grid: as chosen here, and the fewest and most that one may ask for.
+_USUAL, _FEWEST, _MOST = 64, 32, 256
+#: Newton steps of the start, tolerance of its linear solver, greatest change in a step.
+_STEPS, _LINEAR, _NEWTON_CAP = 40, 3e-2, 0.3
+#: Tolerance of the load, cycles on the last grid, and lines of the record.
+_LOAD, _CYCLES, _LINES = 1e-6, 60, 400
+
+_REASONS = {
+    1: "not converged in {cycles} cycles (change of pressure {change:.2g}, flux error {flux:.2g})",
+    2: "no correction on the coarsest grid kept the gap open",
+    3: "the tangent is singular",
+    4: "the pressure is not finite",
+    5: "rounding keeps the flux error at {flux:.2g}",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Cycles:
+    """What every V cycle left, on all grids in turn.
+
+    Parameters
+    ----------
+    intervals : (cycles,) array of int
+        Intervals of the grid that the cycle belongs to.
+    change : (cycles,) array
+        Relative change of the pressure in the cycle.
+    flux_error : (cycles,) array
+        Greatest relative deviation of the mass flux from its mean.
+    load_error : (cycles,) array
+        Relative difference between the sum of the pressure and the load.
+    cavity_residual : (cycles,) array
+        Least mass balance per length behind the outlet, zero where none is negative.
+    free : (cycles,) array of int
+        Last node with pressure.
+    """
+
+    intervals: NDArray[np.int64]
+    change: Array
+    flux_error: Array
+    load_error: Array
+    cavity_residual: Array
+    free: NDArray[np.int64]
+
+    def rates(self, intervals: int) -> Array:
+        """Factor by which each cycle shrinks the change of the one before.
+
+        Parameters
+        ----------
+        intervals : int
+            Intervals of the grid.
+
+        Returns
+        -------
+        array
+            One number less than cycles on that grid.
+        """
+        change = self.change[self.intervals == intervals]
+        return np.asarray(change[1:] / change[:-1])
+
+
+def count_grids(intervals: int, levels: int | None = None) -> int:
+    """Grids of the multigrid cycle, the finest included.
+
+    Parameters
+    ----------
+    intervals : int
+        Intervals of the finest grid.
+    levels : int, optional
+        Number of grids that is asked for; else the coarsest grid has 64 intervals or more.
+
+    Returns
+    -------
+    int
+        One where the intervals cannot be halved.
+
+    Raises
+    ------
+    InputError
+        If so many grids and intervals do not fit.
+    """
+    if levels is None:
+        count, m = 1, intervals
+        while m % 2 == 0 and m // 2 >= (_USUAL if count > 1 else _FEWEST):
+            count, m = count + 1, m // 2
+        return count
+    possible = [
+        count
+        for count in range(2, 12)
+        if intervals % 2 ** (count - 1) == 0 and _FEWEST <= intervals >> (count - 1) <= _MOST
+    ]
+    if isinstance(levels, bool) or levels not in possible:
+        fits = ", ".join(str(count) for count in possible)
+        raise InputError(
+            Problem(
+                what=f"levels = {levels!r} with {intervals} intervals",
+                where="argument levels",
+                why=f"every grid has half the intervals of the next, the coarsest {_FEWEST} to "
+                f"{_MOST} of them",
+                remedy=f"Take levels = {fits}"
+                if possible
+                else "Take nodes = 2^k + 1, such as 1025 with levels = 5",
+            )
+        )
+    return int(levels)
+
+
+def multigrid_engine(problem: ContactProblem) -> Outcome:
+    """Solve a steady contact by full multigrid.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        The contact.
+
+    Returns
+    -------
+    Outcome
+
+    Raises
+    ------
+    InputError
+        If the levels that are asked for and the nodes do not fit.
+    """
+    return run_multigrid(problem)[0]
+
+
+def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
+    """Solve a steady contact by full multigrid, with the record of its cycles.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        The contact.
+
+    Returns
+    -------
+    (Outcome, Cycles)
+
+    Raises
+    ------
+    InputError
+        If the levels that are asked for and the nodes do not fit.
+    """
+    from tribodyn.ehl.kernel.multigrid import RECORD, multigrid_solve
+
+    n = problem.nodes - 1
+    count = count_grids(n, problem.levels)
+    record = np.zeros((_LINES, RECORD))
+    if count < 2:
+        message = f"multigrid: {n} intervals cannot be halved to {_FEWEST} or more"
+        return Outcome(False, None, 0, (), message), _cycles(record[:0])
+    first = max(first_intervals(problem), n >> (count - 1))
+    start, end = problem.domain
+    P, H, shape = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
+    state, films = np.zeros(12), np.zeros(20)
+    warm = problem.start is not None
+    if problem.start is not None:
+        grid = problem.start
+        first = max(first, grid.n) if n % grid.n == 0 else first
+        state[0], state[1] = _warm_start(problem, grid, first, P)
+    limits = np.array(
+        [
+            problem.tolerance, problem.flux_tolerance, _STEPS, _LINEAR, _NEWTON_CAP, 0.0, _LOAD,
+            _CYCLES,
+        ]
+    )  # fmt: skip
+    profile = np.zeros(n + 1) if problem.profile is None else problem.profile
+    status = multigrid_solve(
+        n, count, first, warm, start, end, problem.lam, problem.oil, problem.film, problem.load,
+        problem.tail, profile, limits, problem.film_tolerance, P, H, shape, state, films, record,
+    )  # fmt: skip
+    m, grids = int(state[8]), int(state[10])
+    found = films[: grids if status == 0 else max(grids - 1, 0)]
+    outcome = Outcome(
+        converged=status == 0,
+        grid=_record(problem, m, P, H, shape, state),
+        iterations=int(state[2]),
+        films=tuple(float(film) for film in found),
+        message=_message(status, m, state),
+    )
+    return outcome, _cycles(record[: int(state[11])])
+
+
+def _message(status: int, intervals: int, state: Array) -> str:
+    if status == 0:
+        return ""
+    if state[11] == 0.0:
+        return f"multigrid: no start on {intervals} intervals"
+    reason = _REASONS[status].format(cycles=int(state[2]), change=state[3], flux=state[4])
+    return f"multigrid from {int(state[9])} intervals: {reason} on {intervals} intervals"
+
+
+def _cycles(record: Array) -> Cycles:
+    return Cycles(
+        intervals=record[:, 0].astype(np.int64),
+        change=record[:, 1].copy(),
+        flux_error=record[:, 2].copy(),
+        load_error=record[:, 3].copy(),
+        cavity_residual=record[:, 4].copy(),
+        free=record[:, 5].astype(np.int64),
+    )
+
+
+def _record(
+    problem: ContactProblem, m: int, P: Array, H: Array, shape: Array, state: Array
+) -> DiscreteContact:
+    start, end = problem.domain
+    dx = (end - start) / m
+    return DiscreteContact(
+        n=m, dx=dx, X=np.asarray(start + dx * np.arange(m + 1)), P=P[: m + 1].copy(),
+        H=H[: m + 1].copy(), H0=float(state[0]), lam=problem.lam, oil=problem.oil,
+        free=int(state[1]), load=problem.load, tail=problem.tail, shape=shape[: m + 1].copy(),
+    )  # fmt: skip
+
+
+def _warm_start(
+    problem: ContactProblem, grid: DiscreteContact, first: int, P: Array
+) -> tuple[float, int]:
+    """Fill ``P`` on the first grid from an earlier solution; offset and last free node."""
+    start, end = problem.domain
+    values, free = resample(grid, np.linspace(start, end, first + 1))
+    dx = (end - start) / first
+    values[0] = problem.tail
+    values[1:] *= (problem.load - 0.5 * problem.tail * dx) / (dx * float(np.sum(values[1:])))
+    P[: first + 1] = values
+    return grid.H0, free
