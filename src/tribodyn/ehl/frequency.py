@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.ehl.discrete import ContactProblem, DiscreteContact
 from tribodyn.ehl.film_stiffness import central_film_slope
 from tribodyn.ehl.inlet_change import InletChange, inlet_change
-from tribodyn.errors import ComputationError, InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, Problem, require_between, require_positive
 
 if TYPE_CHECKING:
-    from tribodyn.ehl.discrete import DiscreteContact
     from tribodyn.ehl.solution import LineContactSolution
 
 __all__ = ["film_compliance", "frequency_response"]
@@ -138,7 +138,7 @@ def film_compliance(
             )
         )
     unit, rate = _units(solution, length)
-    linear = _linearize(_on_coarse_grid(solution._grid), inlet_change(solution))
+    linear = _linearize(_on_coarse_grid(solution), inlet_change(solution))
     central, offset = linear.answer(0.0, None)
     at_rest = -central_film_slope(solution) / solution.film_unit
     result = np.empty(values.size, dtype=complex)
@@ -224,33 +224,27 @@ def _linearize(grid: DiscreteContact, inlet: InletChange) -> _Linear:
     return _Linear(steady, squeeze, middle, inlet)
 
 
-def _on_coarse_grid(grid: DiscreteContact) -> DiscreteContact:
+def _on_coarse_grid(solution: LineContactSolution) -> DiscreteContact:
     """Steady state on a grid of at most 512 intervals."""
-    from dataclasses import replace
+    from tribodyn.ehl.attempts import solve_problem
 
-    from tribodyn.ehl.kernel.march_entry import level_contact
-
+    grid = solution._grid
     if grid.n <= _INTERVALS:
         return grid
-    n = _INTERVALS
-    X = np.linspace(grid.X[0], grid.X[-1], n + 1)
-    P, H = np.interp(X, grid.X, grid.P), np.empty(n + 1)
-    dx = float(X[1] - X[0])
-    state = np.zeros(8)
-    state[0], state[1] = grid.H0, np.floor(grid.free * n / grid.n)
-    shape = np.interp(X, grid.X, grid.shape)
-    status = level_contact(
-        n, dx, grid.lam, 1.0, grid.load, grid.tail, grid.oil, shape,
-        np.array([1e-9, 1e-9, 40.0, 1e-2, 0.3, 0.0]), P, H, state,
-    )  # fmt: skip
-    if status != 0:
-        raise ComputationError(
-            Problem(
-                what=f"The steady state was not found on {n} intervals (status {status})",
-                why=f"it was solved on {grid.n}, and the vibration needs a dense matrix",
-                remedy=f"Solve the contact with nodes = {n + 1} or less",
-            )
-        )
-    return replace(
-        grid, n=n, dx=dx, X=X, P=P, H=H, H0=float(state[0]), free=int(state[1]), shape=shape
+    X = np.linspace(grid.X[0], grid.X[-1], _INTERVALS + 1)
+    problem = ContactProblem(
+        nodes=_INTERVALS + 1,
+        domain=(float(grid.X[0]), float(grid.X[-1])),
+        lam=grid.lam,
+        oil=grid.oil,
+        film=float(np.interp(0.0, grid.X, grid.H)),
+        load=grid.load,
+        tail=grid.tail,
+        moes_load=solution.moes_load,
+        profile=np.interp(X, grid.X, grid.shape - 0.5 * grid.X**2),
+        tolerance=1e-8,
+        flux_tolerance=1e-7,
     )
+    coarse = solve_problem(problem, "newton").outcome.grid
+    assert coarse is not None  # a solved problem has its grid
+    return coarse

@@ -152,6 +152,6 @@ def contact_scales(
         moes_viscosity=L,
         lam=3.0 * math.pi**2 / (8.0 * M * M),
         oil=oil,
-        density_ratio=1.0 + oil[4] / (1.0 + oil[5]),
+        density_ratio=float(1.0 + oil[4] / (1.0 + oil[5])),
         viscosity_law=viscosity_law,
     )

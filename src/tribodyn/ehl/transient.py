@@ -164,7 +164,7 @@ def solve_transient_line_contact(
         law=viscosity_law,
         compressible=compressible,
         length=length,
-        limits=np.array([tolerance, tolerance, 30.0, 1e-3, 0.3, 0.0]),
+        limits=np.array([tolerance, tolerance, 40.0, 1e-3, 0.3, 0.0]),
     )
     for _ in range(_EXTENSIONS if domain == "auto" else 0):
         contact.check_roughness()
@@ -227,7 +227,7 @@ def _march(
     pressures, films = np.zeros((2, kept.size, n + 1))
     status, instant = march_contact(
         n, contact.domain[0], contact.dx, 1.0 if imposed else contact.depth,
-        contact.numbers.lam, contact.numbers.oil, contact.limits, imposed, contact.flooded,
+        contact.numbers.lam, contact.numbers.oil, contact.limits, imposed, contact.flooded, 1.25,
         contact.time, contact.table(), contact.rough(), step_halvings, keep_every, state.P,
         state.H, state.numbers, records, pressures, films,
     )  # fmt: skip

@@ -300,12 +300,13 @@ class TransientContact:
         self, state: State, first: Array, row: Array, imposed: bool, depth: float
     ) -> None:
         """Carry a steady state from one set of inputs to another, in place."""
-        from tribodyn.ehl.kernel.march_entry import settle_contact
+        from tribodyn.ehl.kernel.march_entry import march_contact
 
-        status = settle_contact(
+        none = np.zeros((0, 0))
+        status, _ = march_contact(
             self.nodes - 1, self.domain[0], self.dx, depth, self.numbers.lam, self.numbers.oil,
-            self.limits, imposed, self.flooded, first, row, _RATIO, self.rough(), state.P,
-            state.H, state.numbers,
+            self.limits, imposed, self.flooded, _RATIO, np.zeros(0), np.stack((first, row)),
+            self.rough(), 0, 0, state.P, state.H, state.numbers, none, none, none,
         )  # fmt: skip
         if status != 0:
             inputs = self.inputs

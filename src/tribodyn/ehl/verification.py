@@ -124,7 +124,7 @@ def verify(grid: DiscreteContact) -> Verification:
     total = dx * (float(np.sum(P)) - 0.5 * P[0])
     return Verification(
         flux_error=float(np.max(np.abs(wetted / mean - 1.0))),
-        load_error=abs(total / grid.load - 1.0),
+        load_error=float(abs(total / grid.load - 1.0)),
         cavity_residual=float(np.min(cavity)) if cavity.size else 0.0,
         lowest_pressure=float(np.min(P)),
         film_error=float(np.max(np.abs(H - grid.H)) / np.min(H)),

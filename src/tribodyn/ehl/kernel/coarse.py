@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tribodyn.ehl.kernel.dense import lu_factor, lu_solve
 from tribodyn.ehl.kernel.film_sum import film_plan, film_sum, influence
 from tribodyn.ehl.kernel.oil import oil_state
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility
 
 __all__ = ["coarse_tangent", "correct", "no_coarse"]
@@ -23,13 +23,13 @@ __all__ = ["coarse_tangent", "correct", "no_coarse"]
 Array = NDArray[np.float64]
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def no_coarse() -> Any:
     """No coarse grid."""
     return (np.empty((0, 0)), np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty((0, 0)))
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def coarse_tangent(
     n: int, dx: float, k: int, ratio: int, lam: float, u: float, squeeze: float, imposed: bool,
     oil: Array, P: Array, H: Array,
@@ -75,7 +75,7 @@ def coarse_tangent(
     return (a, pivot, K, film_plan(m, K), rows)
 
 
-@nb.njit(inline="always", **INNER)
+@nb.njit(inline="always", **BURIED)
 def correct(
     n: int, dx: float, k: int, imposed: bool, cH: Array, cP: Array, scale: Array, target: float,
     coarse: Any, work: Array, z: Array, x: Array,

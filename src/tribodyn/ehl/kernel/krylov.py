@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tribodyn.ehl.kernel.band import band_factor, band_solve
 from tribodyn.ehl.kernel.coarse import correct
 from tribodyn.ehl.kernel.film_sum import film_sum, film_work_size
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 
 __all__ = ["HALF_BAND", "linear_solve", "newton_work", "prepare"]
 
@@ -35,7 +35,7 @@ _SCALE, _BORDER, _VECTOR, _RISE, _ROOM = 8, 9, 10, 11, 12
 _FIRST = 16
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def newton_work(n: int) -> Any:
     """Room for :func:`~tribodyn.ehl.kernel.newton.newton_level` on ``n`` intervals."""
     return (
@@ -49,7 +49,7 @@ def newton_work(n: int) -> Any:
     )
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def prepare(
     n: int, dx: float, k: int, imposed: bool, K: Array, cH: Array, cP: Array, work: Any
 ) -> bool:
@@ -91,7 +91,7 @@ def prepare(
     return True
 
 
-@nb.njit(inline="always", **INNER)
+@nb.njit(inline="always", **BURIED)
 def _precondition(
     n: int, dx: float, k: int, imposed: bool, cH: Array, cP: Array, target: float, coarse: Any,
     work: Any, z: Array,
@@ -115,7 +115,7 @@ def _precondition(
             z[i] += room[i]
 
 
-@nb.njit(inline="always", **INNER)
+@nb.njit(inline="always", **BURIED)
 def _apply(
     n: int, k: int, imposed: bool, K: Array, plan: Array, cH: Array, cP: Array, work: Any,
     x: Array, y: Array,
@@ -143,7 +143,7 @@ def _apply(
         )  # fmt: skip
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def linear_solve(
     n: int, dx: float, k: int, imposed: bool, K: Array, plan: Array, cH: Array, cP: Array,
     tolerance: float, coarse: Any, work: Any, rhs: Array, x: Array,

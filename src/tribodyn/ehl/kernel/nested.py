@@ -14,7 +14,7 @@ from tribodyn.ehl.kernel.coarse import coarse_tangent, no_coarse
 from tribodyn.ehl.kernel.film_sum import film_plan, influence
 from tribodyn.ehl.kernel.krylov import newton_work
 from tribodyn.ehl.kernel.newton import CONVERGED, newton_level
-from tribodyn.ehl.kernel.options import INNER, JIT
+from tribodyn.ehl.kernel.options import BURIED, JIT
 from tribodyn.ehl.kernel.start import cold_start, free_nodes
 from tribodyn.ehl.kernel.transfer import central, refine
 
@@ -34,7 +34,7 @@ _TWO_GRIDS, _COARSE = 2048, 128
 _PASSING_FLUX = 1e-2
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _gap(n: int, start: float, dx: float, factor: int, profile: Array) -> Array:
     """Undeformed gap on a grid ``factor`` times as wide: the profile by its local mean."""
     shape = np.empty(n + 1)

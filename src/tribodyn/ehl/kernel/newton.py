@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tribodyn.ehl.kernel.film_sum import film_sum
 from tribodyn.ehl.kernel.krylov import linear_solve, newton_work, prepare
 from tribodyn.ehl.kernel.oil import oil_state
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.outlet import cut_negative, extend
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility, residual
 
@@ -33,7 +33,7 @@ _VECTOR, _RISE, _DELTA, _VISITS = 10, 11, 13, 14
 _ROUNDING = 1e-13
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def flux_error(k: int, work: Any) -> float:
     """Greatest deviation of the summed mass balance from its mean, over the mean flux.
 
@@ -56,7 +56,7 @@ def flux_error(k: int, work: Any) -> float:
     return worst / unit
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _step_length(n: int, k: int, cap: float, H: Array, work: Any) -> float:
     """Greatest step that changes no pressure by more than ``cap`` and keeps the gap open."""
     rows = work[0]
@@ -77,7 +77,7 @@ def _step_length(n: int, k: int, cap: float, H: Array, work: Any) -> float:
     return 0.0
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def newton_level(
     n: int, dx: float, lam: float, u: float, squeeze: float, load: float, imposed: bool,
     tail: float, oil: Array, shape: Array, history: Array, K: Array, plan: Array, limits: Array,
@@ -132,7 +132,9 @@ def newton_level(
         P[i] = 0.0
     for i in range(n + 1):
         visits[i] = 0.0
-    streak, moved, change, step, status = 0, False, 1.0, 1.0, STALLED
+    # Typed: a literal would make the compiler translate the callee anew.
+    streak: Any = np.int64(0)
+    moved, change, step, status = False, 1.0, 1.0, STALLED
     fresh = True
     for steps in range(int(limits[2]) + 1):
         if fresh:
@@ -210,7 +212,7 @@ def newton_level(
         k = cut_negative(n, k, change, P)
         moved = fresh = k < before
         if moved:
-            streak = 0
+            streak = np.int64(0)
         else:
             for i in range(n + 1):
                 H[i] += step * rise[i]

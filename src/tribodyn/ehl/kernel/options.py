@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["INNER", "JIT"]
+__all__ = ["BURIED", "INNER", "JIT"]
 
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: dict[str, Any] = {
@@ -15,3 +15,6 @@ JIT: dict[str, Any] = {
 
 #: For what only compiled functions call: no entry from C has to be compiled.
 INNER: dict[str, Any] = {**JIT, "no_cfunc_wrapper": True}
+
+#: For what not even a test calls from Python: no entry from there either, which is much to compile.
+BURIED: dict[str, Any] = {**INNER, "no_cpython_wrapper": True}

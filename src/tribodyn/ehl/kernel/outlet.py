@@ -6,14 +6,14 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 
 __all__ = ["cut_negative", "extend", "outlet_position"]
 
 Array = NDArray[np.float64]
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def cut_negative(n: int, k: int, change: float, P: Array) -> int:
     """Last free node after all from the first negative pressure near the outlet are released.
 
@@ -32,13 +32,13 @@ def cut_negative(n: int, k: int, change: float, P: Array) -> int:
     return last
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def extend(n: int, k: int, streak: int) -> int:
     """Last free node after the outlet has moved on: one node, then two, then four."""
     return min(n - 1, k + min(2**streak, max(1, n // 16)))
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def outlet_position(k: int, n: int, P: Array) -> float:
     """Index, with fraction, at which the pressure ends.
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
-from tribodyn.ehl.kernel.instant import instant_work, solve_instant
+from tribodyn.ehl.kernel.instant import solve_instant
 from tribodyn.ehl.kernel.newton import CONVERGED, ROUNDED
 from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import INNER
@@ -22,7 +22,7 @@ from tribodyn.ehl.kernel.transfer import central
 
 __all__ = [
     "CURVATURE", "FIRST_SHIFT", "HEIGHT", "INPUTS", "LOAD", "OFFSET", "RECORD", "SECOND_SHIFT",
-    "SPEED", "march", "settle",
+    "SPEED", "carry", "march",
 ]  # fmt: skip
 
 Array = NDArray[np.float64]
@@ -97,31 +97,71 @@ def _solve(
 
 
 @nb.njit(**INNER)
-def settle(
+def _settle(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
-    imposed: bool, flooded: bool, row: Array, rough: Any, work: Any, P: Array, H: Array,
-    state: Array,
+    imposed: bool, flooded: bool, row: Array, rough: Any, shape: Array, history: Array, work: Any,
+    P: Array, H: Array, cavity: Array, state: Array,
 ) -> int:  # fmt: skip
     """Steady state under the inputs of one row, from a state nearby.
 
     The pressure of the inlet follows from the central film and is found by iteration.
     """
-    shape, history, cavity = np.empty(n + 1), np.zeros(n + 1), np.zeros(n + 1)
     _gap(n, start, dx, row, rough, shape)
-    film = central(n, start, dx, H)
+    film, status = central(n, start, dx, H), CONVERGED
     for _ in range(40):
         status = _solve(
             n, start, dx, lam, oil, K, plan, limits, imposed, flooded, row, film, state[5], 0.0,
             history, shape, work, P, H, cavity, state,
         )  # fmt: skip
-        if status != CONVERGED:
-            return status
-        now = central(n, start, dx, H)
-        change = abs(now - film)
-        film = now
-        if not flooded or change < 1e-13 * abs(film):
+        before, film = film, central(n, start, dx, H)
+        if status != CONVERGED or not flooded or abs(film - before) < 1e-13 * abs(film):
             break
     return status
+
+
+@nb.njit(**INNER)
+def carry(
+    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
+    imposed: bool, flooded: bool, ratio: float, table: Array, rough: Any, work: Any, P: Array,
+    H: Array, state: Array,
+) -> int:  # fmt: skip
+    """Carry a steady state, in place, from the inputs of the first row to those of the last.
+
+    Load, speed and curvature go by factors of at most ``ratio``, all others linearly in as many
+    steps; a step that fails is halved.
+    """
+    first, last, now = table[0], table[table.shape[0] - 1], np.empty(table.shape[1])
+    shape, history, cavity = np.empty(n + 1), np.zeros(n + 1), np.zeros(n + 1)
+    p, h, trial = np.empty(n + 1), np.empty(n + 1), np.empty(state.size)
+    furthest = 0.0
+    for c in range(now.size):
+        if (c == LOAD or c == SPEED or c == CURVATURE) and first[c] > 0.0 and last[c] > 0.0:
+            furthest = max(furthest, abs(np.log(last[c] / first[c])))
+    largest = 1.0 / max(1.0, np.ceil(furthest / np.log(ratio)))
+    done, part = 0.0, largest
+    while done < 1.0:
+        reached = done + part
+        if reached > 1.0 - 1e-9:
+            reached = 1.0
+        for c in range(now.size):
+            now[c] = first[c] + reached * (last[c] - first[c])
+            if (c == LOAD or c == SPEED or c == CURVATURE) and first[c] > 0.0:
+                now[c] = first[c] * (last[c] / first[c]) ** reached
+        p[:], h[:], trial[:] = P, H, state
+        status = _settle(
+            n, start, dx, lam, oil, K, plan, limits, imposed, flooded, now, rough, shape, history,
+            work, p, h, cavity, trial,
+        )  # fmt: skip
+        if status != CONVERGED:
+            cavity[:] = 0.0
+            part *= 0.5
+            if part < 1e-3:
+                return status
+            continue
+        P[:], H[:], state[:] = p, h, trial
+        done = reached
+        part = min(2.0 * part, largest)
+    return CONVERGED
 
 
 @nb.njit(**INNER)
@@ -151,7 +191,7 @@ def _keep(
 def march(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, time: Array, table: Array, rough: Any, halvings: int, every: int,
-    P: Array, H: Array, state: Array, records: Array, pressures: Array, films: Array,
+    work: Any, P: Array, H: Array, state: Array, records: Array, pressures: Array, films: Array,
 ) -> tuple[int, int]:  # fmt: skip
     """March a contact over time, from the state of the first instant.
 
@@ -176,6 +216,8 @@ def march(
         How often a step may be halved.
     every : int
         Steps from one kept pressure to the next; zero to keep none.
+    work : tuple
+        From :func:`~tribodyn.ehl.kernel.instant.instant_work`.
     P, H, state
         State at the first instant, in and out.
     records : (m, RECORD) array
@@ -188,7 +230,6 @@ def march(
     (int, int)
         Status of the solver and the instant that it belongs to.
     """
-    work = instant_work(n)
     cavity, broken = np.zeros(n + 1), np.zeros(n + 1)
     shape, history = np.empty(n + 1), np.empty(n + 1)
     lneta, dlneta, rho, drho = np.empty((4, n + 1))

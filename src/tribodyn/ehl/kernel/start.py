@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.film_sum import film_sum
 from tribodyn.ehl.kernel.oil import BARUS, ROELANDS
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.transfer import scale_to_load
 
 __all__ = ["cold_start", "dry_gap", "free_nodes", "piezoviscosity"]
@@ -28,7 +28,7 @@ _FADED = -0.5
 _RIGID, _PARTING = 2.0, 0.4754
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def dry_gap(x: float) -> float:
     """Gap of the dry contact outside of it, in b^2/R."""
     a = abs(x)
@@ -38,7 +38,7 @@ def dry_gap(x: float) -> float:
     return 0.5 * (a * root - np.log(a + root))
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def piezoviscosity(oil: Array) -> float:
     """Slope of ln(viscosity) over the dimensionless pressure at ambient pressure."""
     if oil[0] == ROELANDS:
@@ -46,7 +46,7 @@ def piezoviscosity(oil: Array) -> float:
     return oil[1] if oil[0] == BARUS else 0.0
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def free_nodes(n: int, P: Array) -> int:
     """Last node with pressure."""
     k = n - 1
@@ -55,7 +55,7 @@ def free_nodes(n: int, P: Array) -> int:
     return k
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _reduced_pressure(
     n: int, start: float, dx: float, lam: float, film: float, tail: float, q: Array
 ) -> float:
@@ -75,7 +75,7 @@ def _reduced_pressure(
     return last
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _rigid_pressure(
     n: int, start: float, dx: float, lam: float, film: float, tail: float, q: Array
 ) -> None:
@@ -92,7 +92,7 @@ def _rigid_pressure(
         before = here
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _thickened(q: float, slope: float) -> float:
     """Pressure of the reduced pressure ``q`` under Barus' law."""
     if slope > 2.0:
@@ -100,7 +100,7 @@ def _thickened(q: float, slope: float) -> float:
     return min(q, _HIGHEST)
 
 
-@nb.njit(inline="always", **INNER)
+@nb.njit(inline="always", **BURIED)
 def cold_start(
     n: int, start: float, dx: float, lam: float, oil: Array, film: float, load: float,
     tail: float, shape: Array, K: Array, plan: Array, work: Any, P: Array, H: Array,
@@ -162,7 +162,7 @@ def cold_start(
     least = np.inf
     for i in range(n + 1):
         H[i] += shape[i]
-        if abs(start + i * dx) < 0.9:
+        if abs(start + i * dx) < max(0.9, dx):
             least = min(least, H[i])
     offset = film - least
     for i in range(n + 1):

@@ -6,7 +6,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED, INNER
 from tribodyn.ehl.kernel.outlet import outlet_position
 
 __all__ = ["central", "refine", "scale_to_load"]
@@ -14,7 +14,7 @@ __all__ = ["central", "refine", "scale_to_load"]
 Array = NDArray[np.float64]
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def scale_to_load(n: int, dx: float, k: int, load: float, tail: float, P: Array) -> None:
     """Scale the pressure behind the first node to the load, the first node counted half."""
     total = 0.0
@@ -27,7 +27,7 @@ def scale_to_load(n: int, dx: float, k: int, load: float, tail: float, P: Array)
             P[i] *= factor
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def refine(n: int, dx: float, P: Array, k: int, load: float, tail: float, fine: Array) -> int:
     """Interpolate a pressure to the grid of half the interval.
 

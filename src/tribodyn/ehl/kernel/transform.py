@@ -126,7 +126,8 @@ def transform(size: int, x: Array, y: Array, table: Array) -> bool:
         and after gives the inverse transform times the size.
     """
     _first_pass(size, x, y, table)
-    left, stride, in_x = size // 4, 4, False
+    # Typed: a literal would make the compiler translate the pass anew.
+    left, stride, in_x = size // 4, np.int64(4), False
     while left >= 4:
         if in_x:
             _pass(left // 4, stride, x, y, table)

@@ -1,0 +1,123 @@
+"""What is tried when an engine fails, what is logged, and that wrong solutions are not returned."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tribodyn.ehl import attempts, solve_line_contact_moes
+from tribodyn.ehl.attempts import ENGINES, solve_problem
+from tribodyn.ehl.contact_case import moes_case
+from tribodyn.ehl.continuation import continue_to
+from tribodyn.ehl.discrete import ContactProblem, Outcome
+from tribodyn.ehl.domain import choose_domain, estimate_film
+from tribodyn.ehl.newton_engine import first_intervals, newton_engine
+from tribodyn.ehl.verification import verify
+from tribodyn.errors import ComputationError
+
+
+def problem(M=20.0, L=10.0, nodes=257, **changes):
+    scales = moes_case(M, L, 0.68, 2.2e-8, "roelands", True).scales
+    film = estimate_film(M, L, scales.density_ratio)
+    domain = choose_domain("auto", "flooded", film, scales)
+    return replace(
+        ContactProblem(
+            nodes=nodes, domain=(domain.start, domain.end), lam=scales.lam, oil=scales.oil,
+            film=film, load=0.5 * np.pi - domain.tail_load, tail=domain.tail, moes_load=M,
+        ),
+        **changes,
+    )  # fmt: skip
+
+
+def broken(_):
+    return Outcome(False, None, 0, (), "it is broken")
+
+
+def test_other_engine_steps_in_and_is_told(monkeypatch):
+    monkeypatch.setitem(ENGINES._items, "multigrid", broken)
+    found = solve_problem(problem(), "multigrid")
+    assert found.method == "newton"
+    assert found.attempts[0] == "it is broken"
+    assert found.check.complaint(1e-3) == ""
+
+
+def test_error_tells_all_attempts(monkeypatch):
+    for name in ("newton", "multigrid"):
+        monkeypatch.setitem(ENGINES._items, name, broken)
+    stuck = Outcome(False, None, 0, (), "continuation stopped at 0.3 of the way")
+    monkeypatch.setattr(attempts, "continue_to", lambda _: stuck)
+    with pytest.raises(ComputationError) as caught:
+        solve_problem(problem(), "newton")
+    message = str(caught.value)
+    assert message.count("it is broken") >= 2
+    assert "stopped at 0.3" in message
+    assert "M = 20" in message
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda g: replace(g, P=np.where(g.X > 0.9, 0.9 * g.P, g.P)), "flux error"),
+        (lambda g: replace(g, P=np.where(np.arange(g.n + 1) == 9, -1e-3, g.P)), "negative"),
+        (lambda g: replace(g, load=1.001 * g.load), "load error"),
+        (lambda g: replace(g, H=g.H + 1e-4), "film differs"),
+        (lambda g: replace(g, H0=g.H0 + 1e-3), "flux error"),
+        (lambda g: replace(g, lam=1.01 * g.lam), "flux error"),
+    ],
+)
+def test_wrong_solutions_are_found_out(monkeypatch, spoil, words):
+    right = newton_engine(problem())
+    assert verify(right.grid).complaint(1e-3) == ""
+    wrong = replace(right, grid=spoil(right.grid))
+    assert words in verify(wrong.grid).complaint(1e-3)
+    for name in ("newton", "multigrid"):
+        monkeypatch.setitem(ENGINES._items, name, lambda _: wrong)
+    monkeypatch.setattr(attempts, "continue_to", lambda _: wrong)
+    with pytest.raises(ComputationError, match=words):
+        solve_problem(problem(), "newton")
+
+
+def test_outlet_in_the_wrong_place_is_found_out():
+    right = newton_engine(problem())
+    early = problem(tail=right.grid.tail)
+    k = right.grid.free - 6
+    P = right.grid.P.copy()
+    P[k + 1 :] = 0.0
+    wrong = replace(right.grid, P=P, free=k)
+    assert verify(wrong).cavity_residual < -1e-8
+    assert "behind the outlet" in verify(wrong).complaint(1e3, 1e3)
+    assert early.nodes == 257
+
+
+def test_continuation_reaches_the_contact():
+    direct = newton_engine(problem(100.0, 10.0, 513))
+    along = continue_to(problem(100.0, 10.0, 513))
+    assert along.converged
+    assert along.films[-1] == pytest.approx(direct.films[-1], rel=1e-4)
+
+
+def test_grid_without_a_solution_is_refined():
+    # with an interval of twice the length of the inlet the discrete equations have no solution
+    thin = solve_line_contact_moes(300, 0.5, nodes=257, domain="auto", inlet="flooded")
+    assert thin.nodes > 257
+    assert thin.attempts
+    assert "gap" in thin.attempts[0]
+
+
+def test_first_grid_resolves_the_inlet():
+    thick, thin = problem(2.0, 10.0, 4097), problem(250.0, 0.5, 4097)
+    assert first_intervals(thick) == 64
+    m = first_intervals(thin)
+    width = thin.domain[1] - thin.domain[0]
+    assert width / m < 0.7 * thin.film ** (2 / 3) < 2.0 * width / m
+    assert first_intervals(problem(20.0, 10.0, 1001)) == 125
+
+
+def test_rounding_is_told():
+    with pytest.raises(ComputationError, match="rounding keeps the flux error"):
+        solve_line_contact_moes(
+            300, 4, nodes=8193, domain="auto", inlet="flooded", flux_tolerance=1e-11,
+            tolerance=1e-8,
+        )  # fmt: skip
