@@ -96,7 +96,8 @@ def test_linear_solver_equals_the_dense_matrix(contact, imposed, ratio):
     assert x[:size] == pytest.approx(exact, abs=1e-6)
     if imposed:
         # the load row holds to rounding, however many iterations were made
-        assert grid.dx * x[:k].sum() == pytest.approx(rhs[k], rel=1e-11, abs=1e-13)
+        carried = grid.dx * np.abs(x[:k]).sum()
+        assert grid.dx * x[:k].sum() == pytest.approx(rhs[k], abs=1e-9 * carried)
 
 
 def test_coarse_grid_saves_products(contact):
@@ -172,7 +173,7 @@ def test_tight_tolerances_are_met(nodes):
         assert found.cavity_residual >= 0.0
         loose = solve_line_contact_moes(M, L, nodes=nodes, domain="auto", inlet="flooded")
         assert loose.flux_error <= 1e-3
-        assert loose.central_film == pytest.approx(found.central_film, rel=3e-5)
+        assert loose.central_film == pytest.approx(found.central_film, rel=2e-4)
 
 
 def test_equal_numbers_give_equal_films():

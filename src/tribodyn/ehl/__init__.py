@@ -1,4 +1,4 @@
-"""The elastohydrodynamic film of a tooth contact: film formulas by author."""
+"""The elastohydrodynamic film of a tooth contact: solved, or by formulas named by author."""
 
 from __future__ import annotations
 
@@ -15,9 +15,12 @@ from tribodyn.ehl.moes import moes_central, moes_dimensionless_central
 from tribodyn.ehl.newtonian import newtonian_shear_stress
 from tribodyn.ehl.pan_hamrock import pan_hamrock_central, pan_hamrock_minimum
 from tribodyn.ehl.ree_eyring import ree_eyring_shear_stress
+from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.shear_models import SHEAR_MODELS
 from tribodyn.ehl.solution import LineContactSolution
 from tribodyn.ehl.traction import Traction, film_traction
+from tribodyn.ehl.transient import solve_transient_line_contact
+from tribodyn.ehl.transient_result import TransientLineContact
 
 __all__ = [
     "FILM_MODELS",
@@ -27,7 +30,9 @@ __all__ = [
     "Groups",
     "LineContactBatch",
     "LineContactSolution",
+    "RoughnessProfile",
     "Traction",
+    "TransientLineContact",
     "blok_flash_temperature",
     "dowson_1968_minimum",
     "dowson_toyoda_central",
@@ -43,4 +48,5 @@ __all__ = [
     "solve_line_contact",
     "solve_line_contact_moes",
     "solve_line_contacts",
+    "solve_transient_line_contact",
 ]

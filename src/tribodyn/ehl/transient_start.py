@@ -239,8 +239,6 @@ class TransientContact:
         InputError
             If the gap is not open, or the load is imposed.
         """
-        from tribodyn.ehl.kernel.profile import add_profile
-
         if self.inputs.approach is None:
             raise InputError(
                 Problem(
@@ -253,13 +251,9 @@ class TransientContact:
         n, row = self.nodes - 1, self.table()[0]
         X = np.linspace(*self.domain, n + 1)
         H = row[1] + 0.5 * row[3] * X**2
-        heights = self.rough()
-        for side in range(2):
-            first, spacing, periodic = heights[2][side]
-            add_profile(
-                n, self.domain[0], self.dx, row[4 + side], 1.0, heights[side], first, spacing,
-                bool(periodic), H,
-            )  # fmt: skip
+        for travel, profile in zip(self.inputs.travel, self.inputs.profiles, strict=True):
+            if profile is not None:
+                H += profile(X * self.scale.half_width - travel[0]) / self.scale.film
         if not float(H.min()) > 0.0:
             raise InputError(
                 Problem(

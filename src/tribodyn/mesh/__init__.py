@@ -5,6 +5,7 @@ from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.film import film_columns
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid, phase_grid
+from tribodyn.mesh.moving_film import moving_film
 from tribodyn.mesh.operation import FilmOverOperation, film_over_operation
 from tribodyn.mesh.table import MeshTable
 
@@ -18,5 +19,6 @@ __all__ = [
     "build",
     "film_columns",
     "film_over_operation",
+    "moving_film",
     "phase_grid",
 ]

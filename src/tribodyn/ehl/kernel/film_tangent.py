@@ -12,7 +12,7 @@ from tribodyn.ehl.kernel.coarse import no_coarse
 from tribodyn.ehl.kernel.film_sum import film_sum
 from tribodyn.ehl.kernel.krylov import linear_solve, prepare
 from tribodyn.ehl.kernel.oil import oil_state
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility
 from tribodyn.ehl.kernel.transfer import central
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 _TOLERANCE = 1e-8
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def film_tangent(
     n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float, load: float,
     K: Array, plan: Array, work: Any, P: Array, H: Array,

@@ -17,7 +17,7 @@ from tribodyn.ehl.kernel.film_sum import film_sum
 from tribodyn.ehl.kernel.krylov import linear_solve, newton_work, prepare
 from tribodyn.ehl.kernel.newton import CONVERGED, GAP, NOT_FINITE, ROUNDED, SINGULAR, STALLED
 from tribodyn.ehl.kernel.oil import oil_state
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.outlet import extend
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility, residual
 
@@ -35,13 +35,13 @@ _RETURNS = 10.0
 _LEFT = 0.3
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def instant_work(n: int) -> Any:
     """Room for :func:`solve_instant` on ``n`` intervals."""
     return (newton_work(n), np.zeros((12, n + 2)))
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _step_length(n: int, k: int, cap: float, delta: Array, rise: Array, H: Array) -> float:
     """Greatest step that changes no pressure by more than ``cap`` and keeps the gap open."""
     largest, least = 0.0, H[0]
@@ -60,7 +60,7 @@ def _step_length(n: int, k: int, cap: float, delta: Array, rise: Array, H: Array
     return 0.0
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _balance_error(
     k: int, squeeze: float, cavity: Array, rho: Array, H: Array, rows: Array
 ) -> float:
@@ -74,7 +74,7 @@ def _balance_error(
     return wrong / max(flux / k, 1e-3 * squeezed)
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _refill(k: int, streak: int, cavity: Array, visits: Array, G: Array) -> bool:
     """Fill cavities from those of their nodes where oil is left over: one more node, two, four."""
     filled, i = False, 1
@@ -94,7 +94,7 @@ def _refill(k: int, streak: int, cavity: Array, visits: Array, G: Array) -> bool
     return filled
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def solve_instant(
     n: int, dx: float, lam: float, u: float, squeeze: float, load: float, imposed: bool,
     tail: float, oil: Array, shape: Array, history: Array, K: Array, plan: Array, limits: Array,

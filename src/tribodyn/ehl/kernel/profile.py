@@ -6,14 +6,14 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 
 __all__ = ["add_profile"]
 
 Array = NDArray[np.float64]
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def add_profile(
     n: int, start: float, dx: float, shift: float, factor: float, heights: Array, first: float,
     spacing: float, periodic: bool, shape: Array,

@@ -16,7 +16,7 @@ from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
 from tribodyn.ehl.kernel.instant import solve_instant
 from tribodyn.ehl.kernel.newton import CONVERGED, ROUNDED
 from tribodyn.ehl.kernel.oil import oil_state
-from tribodyn.ehl.kernel.options import INNER
+from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.profile import add_profile
 from tribodyn.ehl.kernel.transfer import central
 
@@ -43,7 +43,7 @@ _FULL = 0.5 * np.pi
 _ROUNDED_FLUX = 1e-4
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _gap(n: int, start: float, dx: float, row: Array, rough: Any, shape: Array) -> None:
     """Gap of the undeformed bodies at one instant."""
     for i in range(n + 1):
@@ -58,7 +58,7 @@ def _gap(n: int, start: float, dx: float, row: Array, rough: Any, shape: Array) 
         )  # fmt: skip
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _inlet(
     start: float, film: float, carried: float, lam: float, flooded: bool, row: Array
 ) -> tuple[float, float]:
@@ -73,7 +73,7 @@ def _inlet(
     return pressure, outside
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _solve(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, row: Array, film: float, load: float, squeeze: float,
@@ -96,7 +96,7 @@ def _solve(
     return status
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _settle(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, row: Array, rough: Any, shape: Array, history: Array, work: Any,
@@ -119,7 +119,7 @@ def _settle(
     return status
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def carry(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, ratio: float, table: Array, rough: Any, work: Any, P: Array,
@@ -164,7 +164,7 @@ def carry(
     return CONVERGED
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def _keep(
     n: int, start: float, dx: float, P: Array, H: Array, cavity: Array, state: Array, parts: int,
     record: Array,
@@ -187,7 +187,7 @@ def _keep(
     record[11] = np.sum(cavity)
 
 
-@nb.njit(**INNER)
+@nb.njit(**BURIED)
 def march(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, time: Array, table: Array, rough: Any, halvings: int, every: int,
