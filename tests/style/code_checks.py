@@ -26,7 +26,7 @@ LONGEST_FUNCTION = 60
 TOP_IMPORTS = {
     "numpy": None,
     "numba": None,
-    "llvmlite": {"dynamics"},
+    "llvmlite": {"dynamics", "ehl"},
     "pydantic": {"study"},
     "pydantic_core": {"study"},
     "cyclopts": {"cli"},
