@@ -127,9 +127,13 @@ def _races(nodes: int, rounds: int, *, quick: bool) -> None:
     pair = study(3 if quick else 30)
     whole = race({"study": batch(pair, nodes, 2)}, 1 if quick else 3)["study"]
     seconds = pair.load_per_width.size * min(whole.wall)
-    print(f"two threads: {scaling:.3g} times as fast by the wall clock")
+    processor = pair.load_per_width.size * whole.best
     points, positions = pair.load_per_width.shape
-    print(f"{points} operating points x {positions} positions, {nodes} nodes: {seconds:.3g} s\n")
+    print(f"two threads: {scaling:.3g} times as fast by the wall clock")
+    print(
+        f"{points} operating points x {positions} positions, {nodes} nodes, 2 threads: "
+        f"{seconds:.3g} s by the wall clock, {processor:.3g} s CPU\n"
+    )
     if not quick:
         rate = 1.0 / times["batch, 1 thread"].best
         print_goals(

@@ -107,9 +107,16 @@ def peak(contact: Any) -> tuple[float, float]:
     return behind[at] / contact.hertz_pressure, contact.position[at] / contact.half_width
 
 
+def single(contact: Any) -> bool:
+    """Whether the pressure rises to its maximum, and falls from there."""
+    top = int(contact.pressure.argmax())
+    steps = np.diff(contact.pressure)
+    return bool(np.all(steps[:top] >= 0.0) and np.all(steps[top:] <= 0.0))
+
+
 def _peak(contact: Any) -> str:
     height, place = peak(contact)
-    alone = ", alone" if contact.spike_position is None else ""
+    alone = ", alone" if single(contact) else ""
     return f"{height:.2f} at {place:.3f}{alone}"
 
 

@@ -16,6 +16,7 @@ from film_tables import (
     on_page,
     peak,
     ratios,
+    single,
     source_figure,
 )
 
@@ -102,5 +103,17 @@ def test_the_spike_goes_to_the_outlet_with_torque_and_to_the_inlet_with_speed() 
 def test_light_load_is_not_close_to_hertz() -> None:
     # the only maximum is the spike, far above the dry pressure
     contact = source_figure(50, 1400, False)
-    assert contact.spike_position is None
+    assert single(contact)
+    assert not single(source_figure(150, 1400, False))
     assert contact.pressure.max() > 1.5 * contact.hertz_pressure
+
+
+def test_film_stiffness_on_the_page() -> None:
+    printed = {"1.93e10": (50, 1400), "2.50e10": (150, 1400), "5.12e10": (300, 1400),
+               "3.45e10": (150, 800), "1.68e10": (150, 3000)}  # fmt: skip
+    for words, (torque, rpm) in printed.items():
+        assert words in TEXT
+        stiffness = source_figure(torque, rpm, False).film_stiffness(20e-3)
+        assert stiffness == pytest.approx(float(words), rel=0.005)
+    secant = source_figure(150, 1400, False).film_stiffness(20e-3, "secant")
+    assert secant == pytest.approx(2.77e9, rel=0.005)

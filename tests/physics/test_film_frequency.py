@@ -70,7 +70,9 @@ def test_trapped_film_yields_by_its_volume_only(solution: LineContactSolution) -
     density = 1.0 + rise * pressure / (1.0 + bound * pressure)
     slope = rise / (1.0 + bound * pressure) ** 2
     # dp_c/dw of the dry contact is p_h/2w; the film of the inlet takes a part of the load
-    hertz = solution.central_film * slope / density * solution.hertz_pressure / (2.0 * LOAD * LENGTH)
+    hertz = (
+        solution.central_film * slope / density * solution.hertz_pressure / (2.0 * LOAD * LENGTH)
+    )
     assert 0.5 * hertz < trapped.real < 1.2 * hertz
     assert abs(none) < 0.05 * trapped.real
 

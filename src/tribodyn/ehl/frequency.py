@@ -75,9 +75,7 @@ def frequency_response(
     values = np.asarray(frequencies, dtype=float)
     _, rate = _units(solution, length)
     slow = _SLOW / (2.0 * np.pi) * rate
-    compliance = film_compliance(
-        solution, np.maximum(values, slow), length, deflection=deflection
-    )
+    compliance = film_compliance(solution, np.maximum(values, slow), length, deflection=deflection)
     at_rest = film_compliance(solution, 0.0, length, deflection=deflection)
     stiffness = np.where(values > 0.0, (1.0 / compliance).real, (1.0 / at_rest).real)
     damping = (1.0 / compliance).imag / (2.0 * np.pi * np.maximum(values, slow))

@@ -36,6 +36,8 @@ _USUAL, _FEWEST, _MOST = 64, 32, 256
 _STEPS, _LINEAR, _NEWTON_CAP = 40, 3e-2, 0.3
 #: Tolerance of the load, cycles on the last grid, and lines of the record.
 _LOAD, _CYCLES, _LINES = 1e-6, 60, 400
+#: Tolerances of pressure and flux at the start.
+_PASSING, _PASSING_FLUX = 1e-4, 1e-2
 
 _REASONS = {
     1: "not converged in {cycles} cycles (change of pressure {change:.2g}, flux error {flux:.2g})",
@@ -181,45 +183,82 @@ def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
     if count < 2:
         message = f"multigrid: {n} intervals cannot be halved to {_FEWEST} or more"
         return Outcome(False, None, 0, (), message), _cycles(record[:0])
-    first = max(first_intervals(problem), n >> (count - 1))
-    start, end = problem.domain
     P, H, shape = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
-    state, films = np.zeros(12), np.zeros(20)
-    warm = problem.start is not None
-    if problem.start is not None:
-        grid = problem.start
-        first = max(first, grid.n) if n % grid.n == 0 else first
-        state[0], state[1] = _warm_start(problem, grid, first, P)
-    limits = np.array(
-        [
-            problem.tolerance, problem.flux_tolerance, _STEPS, _LINEAR, _NEWTON_CAP, 0.0, _LOAD,
-            _CYCLES,
-        ]
-    )  # fmt: skip
+    state, films = np.zeros(8), np.zeros(20)
+    first, message = _start(problem, n >> (count - 1), P, H, state)
+    if message:
+        return Outcome(False, None, 0, (), message), _cycles(record[:0])
+    limits = np.array([problem.tolerance, problem.flux_tolerance, _LOAD, _CYCLES])
     profile = np.zeros(n + 1) if problem.profile is None else problem.profile
+    start, end = problem.domain
     status = multigrid_solve(
-        n, count, first, warm, start, end, problem.lam, problem.oil, problem.film, problem.load,
-        problem.tail, profile, limits, problem.film_tolerance, P, H, shape, state, films, record,
+        n, count, first, start, end, problem.lam, problem.oil, problem.load, problem.tail, profile,
+        limits, problem.film_tolerance, P, H, shape, state, films, record,
     )  # fmt: skip
-    m, grids = int(state[8]), int(state[10])
-    found = films[: grids if status == 0 else max(grids - 1, 0)]
+    m, grids = int(state[5]), int(state[6])
+    if status != 0:
+        reason = _REASONS[status].format(cycles=int(state[2]), change=state[3], flux=state[4])
+        message = f"multigrid from {first} intervals: {reason} on {m} intervals"
     outcome = Outcome(
         converged=status == 0,
         grid=_record(problem, m, P, H, shape, state),
         iterations=int(state[2]),
-        films=tuple(float(film) for film in found),
-        message=_message(status, m, state),
+        films=tuple(float(film) for film in films[: grids if status == 0 else grids - 1]),
+        message=message,
     )
-    return outcome, _cycles(record[: int(state[11])])
+    return outcome, _cycles(record[: int(state[7])])
 
 
-def _message(status: int, intervals: int, state: Array) -> str:
-    if status == 0:
-        return ""
-    if state[11] == 0.0:
-        return f"multigrid: no start on {intervals} intervals"
-    reason = _REASONS[status].format(cycles=int(state[2]), change=state[3], flux=state[4])
-    return f"multigrid from {int(state[9])} intervals: {reason} on {intervals} intervals"
+def _start(
+    problem: ContactProblem, coarsest: int, P: Array, H: Array, state: Array
+) -> tuple[int, str]:
+    """Fill pressure and state on a first grid; its intervals, and what went wrong.
+
+    An earlier solution goes straight into the cycles. Without one the first grid is solved by
+    Newton's method; if that fails, the next finer one.
+    """
+    from tribodyn.ehl.kernel.nested import newton_solve
+
+    n, warm = problem.nodes - 1, problem.start is not None
+    m = max(first_intervals(problem), coarsest)
+    if problem.start is not None:
+        grid = problem.start
+        m = max(m, grid.n) if n % grid.n == 0 else m
+        state[0], state[1] = _resampled(problem, grid, m, P)
+        if m > coarsest:
+            return m, ""
+    start, end = problem.domain
+    while True:
+        last = m == n or problem.film_tolerance > 0.0
+        limits = np.array(
+            [
+                problem.tolerance if last else max(problem.tolerance, _PASSING),
+                problem.flux_tolerance if last else max(problem.flux_tolerance, _PASSING_FLUX),
+                _STEPS, _LINEAR, _NEWTON_CAP, 0.0,
+            ]
+        )  # fmt: skip
+        found, films = np.zeros(12), np.zeros(20)
+        found[:2] = state[:2]
+        status = newton_solve(
+            m, m, warm, start, end, problem.lam, problem.oil, problem.film, problem.load,
+            problem.tail, _mean_heights(problem, n // m), limits, 0.0, P, H, found, films,
+        )  # fmt: skip
+        state[:2] = found[:2]
+        if status == 0:
+            return m, ""
+        if m == n or warm:
+            return m, f"multigrid: no start by Newton's method on {m} intervals"
+        m *= 2
+
+
+def _mean_heights(problem: ContactProblem, factor: int) -> Array:
+    """Profile on the grid ``factor`` times as wide: the mean under a hat about every node."""
+    if problem.profile is None:
+        return np.zeros((problem.nodes - 1) // factor + 1)
+    hat = 1.0 - np.abs(np.arange(1 - factor, factor)) / factor
+    weight = np.convolve(np.ones(problem.nodes), hat, mode="same")
+    mean = np.convolve(problem.profile, hat, mode="same") / weight
+    return np.ascontiguousarray(mean[::factor])
 
 
 def _cycles(record: Array) -> Cycles:
@@ -245,7 +284,7 @@ def _record(
     )  # fmt: skip
 
 
-def _warm_start(
+def _resampled(
     problem: ContactProblem, grid: DiscreteContact, first: int, P: Array
 ) -> tuple[float, int]:
     """Fill ``P`` on the first grid from an earlier solution; offset and last free node."""

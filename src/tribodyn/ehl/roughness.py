@@ -218,8 +218,8 @@ class RoughnessProfile:
         float
             Between 0 and 1.
         """
-        window = np.ones(self.height.size) if self.beyond == "periodic" else np.hanning(
-            self.height.size
+        window = (
+            np.ones(self.height.size) if self.beyond == "periodic" else np.hanning(self.height.size)
         )
         power = np.abs(np.fft.rfft((self.height - np.mean(self.height)) * window)) ** 2
         wave_number = np.fft.rfftfreq(self.height.size, self.spacing)
@@ -273,9 +273,7 @@ class RoughnessProfile:
             If a part of it lies beyond the ends of a profile that ends.
         """
         tolerance = 1e-9 * self.spacing
-        covered = (
-            first >= self.position[0] - tolerance and last <= self.position[-1] + tolerance
-        )
+        covered = first >= self.position[0] - tolerance and last <= self.position[-1] + tolerance
         if self.beyond == "refuse" and not covered:
             raise InputError(
                 Problem(
@@ -283,7 +281,7 @@ class RoughnessProfile:
                     where="roughness profile",
                     why=f"it was measured from {self.position[0] * 1e3:.6g} to "
                     f"{self.position[-1] * 1e3:.6g} mm",
-                    remedy='Measure a longer profile, shift it by its start, or choose beyond = '
+                    remedy="Measure a longer profile, shift it by its start, or choose beyond = "
                     '"periodic" or "level"',
                 )
             )

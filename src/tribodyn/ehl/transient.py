@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 #: often the grid is made longer for it.
 _LATE_LOAD, _EXTENSIONS = 1e-3, 4
 
+
 def solve_transient_line_contact(
     time: ArrayLike,
     load_per_width: Series,
@@ -84,8 +85,8 @@ def solve_transient_line_contact(
         an unloaded film at rest.
     nodes : int
         Nodes of the grid.
-    domain : "auto" or (float, float)
-        First and last position, in half widths of the widest dry contact.
+    domain : "auto" or (float, float) [b]
+        First and last position, b being the half width of the widest dry contact.
     inlet : {"flooded", "zero"}
         Whether the wedge before the first node is full of oil, or the oil begins there.
     viscosity_law : {"roelands", "barus", "isoviscous"}
@@ -134,39 +135,38 @@ def solve_transient_line_contact(
     """
     _require_options(effective_modulus, start, nodes, inlet, tolerance, keep_every)
     inputs = read_inputs(
-        time,
-        load_per_width,
-        equivalent_radius,
-        entrainment_speed,
-        impose=impose,
-        approach=approach,
-        surface_speeds=surface_speeds,
-        roughness=roughness,
-    )
+        time, load_per_width, equivalent_radius, entrainment_speed, impose=impose,
+        approach=approach, surface_speeds=surface_speeds, roughness=roughness,
+    )  # fmt: skip
     scale = reference_scale(
-        inputs.time, inputs.load, inputs.radius, inputs.speed, effective_modulus
+        inputs.time, inputs.load, inputs.radius, inputs.entrainment_speed, effective_modulus
     )
     extent = domain
     if extent == "auto":
         extent = flooded_domain(
-            scale, inputs.load, inputs.radius, inputs.speed, lubricant, effective_modulus
+            scale,
+            inputs.load,
+            inputs.radius,
+            inputs.entrainment_speed,
+            lubricant,
+            effective_modulus,
         )
     length = float(np.max(inputs.radius)) if reference_length is None else reference_length
     require_positive("reference_length", length, "m")
     contact = TransientContact(
-        inputs=inputs,
-        scale=scale,
-        lubricant=lubricant,
-        modulus=effective_modulus,
-        nodes=nodes,
-        domain=(float(extent[0]), float(extent[1])),
-        inlet=inlet,
-        law=viscosity_law,
-        compressible=compressible,
-        length=length,
+        inputs=inputs, scale=scale, lubricant=lubricant, modulus=effective_modulus, nodes=nodes,
+        domain=(float(extent[0]), float(extent[1])), inlet=inlet, law=viscosity_law,
+        compressible=compressible, length=length,
         limits=np.array([tolerance, tolerance, 40.0, 1e-3, 0.3, 0.0]),
-    )
-    for _ in range(_EXTENSIONS if domain == "auto" else 0):
+    )  # fmt: skip
+    return _extended(contact, start, step_halvings, keep_every, domain == "auto")
+
+
+def _extended(
+    contact: TransientContact, start: str, step_halvings: int, keep_every: int, automatic: bool
+) -> TransientLineContact:
+    """March, on a longer grid where the film turns out to reach over the end of this one."""
+    for _ in range(_EXTENSIONS if automatic else 0):
         contact.check_roughness()
         result, late = _march(contact, start, step_halvings, keep_every)
         if late < _LATE_LOAD:
@@ -251,7 +251,7 @@ def _failure(
             what=f"The contact did not converge at instant {instant} of {inputs.time.size - 1}, "
             f"t = {inputs.time[instant]:.6g} s: {REASONS[status]}",
             where=f"{given}, radius {inputs.radius[instant]:.6g} m, entrainment speed "
-            f"{inputs.speed[instant]:.6g} m/s",
+            f"{inputs.entrainment_speed[instant]:.6g} m/s",
             why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
             f"{step_halvings} times",
             remedy="Take more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
@@ -264,7 +264,9 @@ def _result(
     contact: TransientContact, records: Array, kept: Array, pressures: Array, films: Array
 ) -> TransientLineContact:
     inputs, scale = contact.inputs, contact.scale
-    offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = records.T
+    offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = (
+        records.T
+    )
     X = np.linspace(*contact.domain, contact.nodes)
     if inputs.approach is None:
         # The kernel counts the deflection from the distance b.
@@ -278,7 +280,7 @@ def _result(
         maximum_pressure=highest * scale.pressure,
         outlet=X[free.astype(int)] * scale.half_width,
         equivalent_radius=inputs.radius,
-        entrainment_speed=inputs.speed,
+        entrainment_speed=inputs.entrainment_speed,
         position=X * scale.half_width,
         kept=kept,
         pressure=pressures * scale.pressure,

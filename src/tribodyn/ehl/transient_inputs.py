@@ -32,8 +32,8 @@ class TransientInputs:
         Load per width, or its estimate where the approach is imposed.
     radius : (m,) array [m]
         Reduced radius of curvature.
-    speed : (m,) array [m/s]
-        Entrainment speed.
+    entrainment_speed : (m,) array [m/s]
+        HALF the sum of the surface speeds.
     approach : (m,) array, optional [m]
         Imposed approach.
     travel : (2, m) array [m]
@@ -45,7 +45,7 @@ class TransientInputs:
     time: Array
     load: Array
     radius: Array
-    speed: Array
+    entrainment_speed: Array
     approach: Array | None
     travel: Array
     profiles: tuple[RoughnessProfile | None, RoughnessProfile | None]

@@ -53,7 +53,7 @@ class TransientLineContact:
         Newton steps of each time step.
     parts : (m,) array of int
         Parts that each time step was divided into; one unless it failed as a whole.
-    balance_error : (m,) array
+    balance_error : (m,) array [1]
         Sum of the mass balances over the mean flux.
     ruptured : (m,) array [m]
         Width of the cavities inside the film, before the outlet. A fast unloading tears it.
@@ -61,8 +61,8 @@ class TransientLineContact:
         Half width of the widest dry contact, the unit of the grid.
     hertz_pressure : float [Pa]
         Hertz pressure of that contact.
-    domain : (float, float)
-        First and last position, in half widths.
+    domain : (float, float) [b]
+        First and last position, b being ``half_width``.
     reference_length : float [m]
         Distance from the line of centres at which a half space has the deflection zero.
     impose : str

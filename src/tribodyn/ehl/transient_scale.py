@@ -32,7 +32,7 @@ class ReferenceScale:
         Load there.
     radius : float [m]
         Radius there.
-    speed : float [m/s]
+    entrainment_speed : float [m/s]
         Greatest entrainment speed; where nothing moves, half width over duration.
     half_width : float [m]
         Half width of the dry contact.
@@ -43,14 +43,14 @@ class ReferenceScale:
     instant: int
     load: float
     radius: float
-    speed: float
+    entrainment_speed: float
     half_width: float
     pressure: float
 
     @property
     def time(self) -> float:
         """Time ``b/u`` [s]."""
-        return self.half_width / self.speed
+        return self.half_width / self.entrainment_speed
 
     @property
     def film(self) -> float:
@@ -59,7 +59,7 @@ class ReferenceScale:
 
 
 def reference_scale(
-    time: Array, load: Array, radius: Array, speed: Array, effective_modulus: float
+    time: Array, load: Array, radius: Array, entrainment_speed: Array, effective_modulus: float
 ) -> ReferenceScale:
     """Scale of the widest dry contact of a series.
 
@@ -71,8 +71,8 @@ def reference_scale(
         Load per width.
     radius : (m,) array [m]
         Reduced radius of curvature.
-    speed : (m,) array [m/s]
-        Entrainment speed.
+    entrainment_speed : (m,) array [m/s]
+        HALF the sum of the surface speeds.
     effective_modulus : float [Pa]
         ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
 
@@ -85,7 +85,7 @@ def reference_scale(
     width = np.sqrt(8.0 * load * radius / (np.pi * effective_modulus))
     instant = int(np.argmax(width))
     b = float(width[instant])
-    fastest = float(np.max(speed))
+    fastest = float(np.max(entrainment_speed))
     if fastest == 0.0:
         fastest = b / float(time[-1] - time[0])
     pressure = 2.0 * float(load[instant]) / (np.pi * b)
@@ -98,7 +98,7 @@ def flooded_domain(
     scale: ReferenceScale,
     load: Array,
     radius: Array,
-    speed: Array,
+    entrainment_speed: Array,
     lubricant: Lubricant,
     effective_modulus: float,
 ) -> tuple[float, float]:
@@ -112,8 +112,8 @@ def flooded_domain(
         Load per width.
     radius : (m,) array [m]
         Reduced radius of curvature.
-    speed : (m,) array [m/s]
-        Entrainment speed.
+    entrainment_speed : (m,) array [m/s]
+        HALF the sum of the surface speeds.
     lubricant : Lubricant
         The oil.
     effective_modulus : float [Pa]
@@ -128,7 +128,7 @@ def flooded_domain(
     to films of its half width; beyond, where the bodies stay round, 3.6 widths
     ``sqrt(2 R h)`` of the film, at which the inlet before the grid is known as well.
     """
-    moving = np.maximum(speed, 1e-6 * scale.speed)
+    moving = np.maximum(entrainment_speed, 1e-6 * scale.entrainment_speed)
     numbers = 2.0 * lubricant.dynamic_viscosity * moving / (effective_modulus * radius)
     M = load / (effective_modulus * radius * np.sqrt(numbers))
     L = lubricant.pressure_viscosity_coefficient * effective_modulus * numbers**0.25

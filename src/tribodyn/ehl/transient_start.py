@@ -104,7 +104,7 @@ class TransientContact:
     def numbers(self) -> ContactScales:
         """Factor lambda of the equation and the oil for the kernel, at the reference."""
         scale, oil = self.scale, self.lubricant
-        M, L = moes_numbers(scale.load, scale.radius, scale.speed, oil, self.modulus)
+        M, L = moes_numbers(scale.load, scale.radius, scale.entrainment_speed, oil, self.modulus)
         return contact_scales(
             M,
             L,
@@ -146,7 +146,7 @@ class TransientContact:
         inputs, scale = self.inputs, self.scale
         table = np.zeros((inputs.time.size, INPUTS))
         table[:, LOAD] = inputs.load / scale.load
-        table[:, SPEED] = inputs.speed / scale.speed
+        table[:, SPEED] = inputs.entrainment_speed / scale.entrainment_speed
         table[:, CURVATURE] = scale.radius / inputs.radius
         table[:, FIRST_SHIFT : SECOND_SHIFT + 1] = inputs.travel.T / scale.half_width
         table[:, HEIGHT] = 1.0
@@ -204,7 +204,7 @@ class TransientContact:
             If no steady state is found.
         """
         table, imposed = self.table(), self.inputs.approach is None
-        if not self.inputs.speed[0] > 0.0:
+        if not self.inputs.entrainment_speed[0] > 0.0:
             raise InputError(
                 Problem(
                     what="entrainment_speed = 0 at the first instant",
@@ -276,7 +276,7 @@ class TransientContact:
         solution = solve_line_contact(
             self.scale.load,
             self.scale.radius,
-            float(self.inputs.speed[0]),
+            float(self.inputs.entrainment_speed[0]),
             self.lubricant,
             self.modulus,
             nodes=self.nodes,
@@ -290,9 +290,7 @@ class TransientContact:
         numbers[0], numbers[1], numbers[5] = grid.H0, grid.free, 0.5 * np.pi
         return State(grid.P.copy(), grid.H.copy(), numbers)
 
-    def _carry(
-        self, state: State, first: Array, row: Array, imposed: bool, depth: float
-    ) -> None:
+    def _carry(self, state: State, first: Array, row: Array, imposed: bool, depth: float) -> None:
         """Carry a steady state from one set of inputs to another, in place."""
         from tribodyn.ehl.kernel.march_entry import march_contact
 
@@ -309,7 +307,7 @@ class TransientContact:
                     what=f"The steady state of the first instant, t = {inputs.time[0]:.6g} s, was "
                     f"not found: {REASONS[status]}",
                     why=f"load {inputs.load[0]:.6g} N/m, radius {inputs.radius[0]:.6g} m, "
-                    f"entrainment speed {inputs.speed[0]:.6g} m/s",
+                    f"entrainment speed {inputs.entrainment_speed[0]:.6g} m/s",
                     remedy="Begin with a moderate load and without roughness, or take more nodes",
                 )
             )

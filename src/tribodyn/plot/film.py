@@ -65,7 +65,7 @@ def _ratio(mesh: Any, angle: Any) -> list[Panel]:
         return []
     traces = [
         line(angle, pair_life(mesh, "film_ratio")[1], "film ratio", TOTAL),
-        line(angle, np.ones_like(angle), "asperities touch below", MUTED, dash="dot"),
+        line(angle, np.ones_like(angle), "mixed below", MUTED, dash="dot"),
     ]
     return [Panel(axis_label("film_ratio"), traces, {"rangemode": "tozero"}, height=0.8)]
 

@@ -40,7 +40,7 @@ def test_the_film_ratio_has_a_panel_of_its_own(result: Any) -> None:
     ratio = curve(figure, "film ratio", "y2")
     least = result.mesh.minimum_film[result.mesh.in_contact].min()
     assert min(ratio.y) == pytest.approx(least / 0.5e-6)
-    assert set(curve(figure, "asperities touch below", "y2").y) == {1.0}
+    assert set(curve(figure, "mixed below", "y2").y) == {1.0}
     assert (
         figure.layout.title.text
         == f"The oil film at its thinnest is never below {least * 1e6:.3f} µm"

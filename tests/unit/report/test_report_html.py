@@ -134,7 +134,7 @@ def test_chips_name_the_method_and_the_models(page: str, drawable: Any) -> None:
     assert "<span>Method</span> steady" in page
     assert "<span>Composite roughness</span> 0.53 µm" in page
     assert "<span>Friction law</span> benedict-kelly" in page
-    assert "<span>Film model</span> newton" in page
+    assert "<span>Film model</span> dowson-higginson" in page
     assert "<span>Stiffness model</span> potential-energy" in page
     chips = dict(operating_point(case))
     assert (chips["Method"], chips["Friction law"]) == ("transient", "none")

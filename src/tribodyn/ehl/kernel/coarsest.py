@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.dense import lu_factor, lu_solve
 from tribodyn.ehl.kernel.film_sum import film_sum
+from tribodyn.ehl.kernel.newton import CONVERGED, GAP, SINGULAR
 from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import INNER
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility, residual
@@ -45,10 +46,12 @@ def evaluate(
         Rigid offset of the film.
     shape, excess : (n + 1,) arrays
         Gap of the undeformed bodies, and what the film of the finer grid has beyond this one's.
-    K, plan, room : array
+    K, plan : array
         From :mod:`tribodyn.ehl.kernel.film_sum`.
     rows : (8, ...) array
         Receives oil, mobility, fluxes and residual; the last row holds zeros.
+    room : array
+        Room for the film sum.
     P, H : (n + 1,) arrays
         Pressure; receives the film.
     """
@@ -63,9 +66,7 @@ def balance(n: int, dx: float, lam: float, oil: Array, rows: Array, P: Array, H:
     """Oil, mobility, fluxes and residual of a pressure and a film; see :func:`evaluate`."""
     oil_state(n, P, oil, rows[LNETA], rows[DLNETA], rows[RHO], rows[DRHO])
     mobility(n, H, lam, rows[LNETA], rows[RHO], rows[EPS])
-    residual(
-        n, dx, 1.0, 0.0, rows[NOUGHT], P, H, rows[RHO], rows[EPS], rows[FLUX], rows[BALANCE]
-    )
+    residual(n, dx, 1.0, 0.0, rows[NOUGHT], P, H, rows[RHO], rows[EPS], rows[FLUX], rows[BALANCE])
 
 
 @nb.njit(**INNER)
@@ -111,19 +112,23 @@ def solve_coarsest(
     n: int, k: int, dx: float, lam: float, oil: Array, load: float, shape: Array, excess: Array,
     right: Array, K: Array, plan: Array, rows: Array, room: Array, cH: Array, cP: Array,
     work: Any, P: Array, H: Array, state: Array,
-) -> bool:  # fmt: skip
+) -> int:  # fmt: skip
     """Newton's method for pressure and offset at fixed free nodes, factors kept while they serve.
 
     Parameters
     ----------
     n, k : int
         Intervals, and last free node.
-    dx, lam, oil, shape, excess, K, plan, rows, room
+    dx, lam, oil
         As for :func:`evaluate`, which has been called for ``P``.
     load : float
         Target of ``dx`` times the sum of P, the first node counted half.
+    shape, excess
+        As for :func:`evaluate`.
     right : (n + 1,) array
         Target of the residual.
+    K, plan, rows, room
+        As for :func:`evaluate`.
     cH, cP : (n + 1, 4) arrays
         Room.
     work : tuple
@@ -136,8 +141,8 @@ def solve_coarsest(
 
     Returns
     -------
-    bool
-        False if the tangent is singular or no step keeps the gap open.
+    int
+        ``CONVERGED``, also after all steps; ``SINGULAR``; ``GAP`` where no step keeps it open.
     """
     a, pivot, scale, delta, film, kept = work
     first, last = -1.0, -1.0
@@ -148,7 +153,7 @@ def solve_coarsest(
             )
             kept[0] = 0
             if not _factor(k, K, cH, cP, work):
-                return False
+                return SINGULAR
             kept[0] = k
             kept[1] += 1
         total = 0.5 * P[0]
@@ -180,12 +185,12 @@ def solve_coarsest(
             step *= 0.5
         if not is_open:
             kept[0] = 0
-            return False
+            return GAP
         if first < 0.0:
             first = size
         if size <= _ENOUGH * first or size < 1e-13:
-            return True
+            return CONVERGED
         if step < 1.0 or (last >= 0.0 and size > _SHRINK * last):
             kept[0] = 0
         last = size
-    return True
+    return CONVERGED

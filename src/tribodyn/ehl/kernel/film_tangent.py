@@ -71,9 +71,7 @@ def film_tangent(
     rhs[0] -= cP[1, 1] * tail
     rhs[1] -= cP[2, 0] * tail
     rhs[k] = load - 0.5 * dx * tail
-    products = linear_solve(
-        n, dx, k, True, K, plan, cH, cP, _TOLERANCE, no_coarse(), work, rhs, x
-    )
+    products = linear_solve(n, dx, k, True, K, plan, cH, cP, _TOLERANCE, no_coarse(), work, rhs, x)
     change, film = np.zeros(n + 1), np.empty(n + 1)
     change[0] = tail
     for i in range(k):

@@ -104,11 +104,13 @@ def solve_instant(
 
     Parameters
     ----------
-    n, dx, lam, u, squeeze, tail, oil, shape, history, K, plan, limits
-        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`; the second limit is that of the
-        sum of all mass balances over the mean flux.
+    n, dx, lam, u, squeeze
+        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
     load, imposed : float, bool
         Imposed load, or where it is not imposed, the imposed offset.
+    tail, oil, shape, history, K, plan, limits
+        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`; the second limit is that of the
+        sum of all mass balances over the mean flux.
     work : tuple
         From :func:`instant_work`.
     P, H : (n + 1,) arrays

@@ -91,7 +91,7 @@ def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band
             if 1 <= j <= k:
                 row[c] += value
             # The dipoles beside node j take half of their strength from it.
-            if 1 <= j:
+            if j >= 1:
                 row[c - 1] -= 0.5 * value * dipole[min(j - 1, k)]
             if 0 <= j < k:
                 row[c + 1] -= 0.5 * value * dipole[j + 1]

@@ -27,6 +27,8 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
+# What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
+
 #: Columns of the table of inputs: load over that of the reference, offset, speed over that of the
 #: reference, reference radius over radius, distances travelled by the two surfaces, factor of
 #: the heights of both.
@@ -58,7 +60,7 @@ def _gap(n: int, start: float, dx: float, row: Array, rough: Any, shape: Array) 
         )  # fmt: skip
 
 
-@nb.njit(**BURIED)
+@nb.njit(inline="always", **BURIED)
 def _inlet(
     start: float, film: float, carried: float, lam: float, flooded: bool, row: Array
 ) -> tuple[float, float]:
@@ -73,7 +75,7 @@ def _inlet(
     return pressure, outside
 
 
-@nb.njit(**BURIED)
+@nb.njit(inline="always", **BURIED)
 def _solve(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, row: Array, film: float, load: float, squeeze: float,
@@ -96,7 +98,7 @@ def _solve(
     return status
 
 
-@nb.njit(**BURIED)
+@nb.njit(inline="always", **BURIED)
 def _settle(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, row: Array, rough: Any, shape: Array, history: Array, work: Any,
@@ -119,7 +121,7 @@ def _settle(
     return status
 
 
-@nb.njit(**BURIED)
+@nb.njit(inline="always", **BURIED)
 def carry(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, ratio: float, table: Array, rough: Any, work: Any, P: Array,
@@ -187,7 +189,7 @@ def _keep(
     record[11] = np.sum(cavity)
 
 
-@nb.njit(**BURIED)
+@nb.njit(inline="always", **BURIED)
 def march(
     n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
     imposed: bool, flooded: bool, time: Array, table: Array, rough: Any, halvings: int, every: int,
