@@ -121,7 +121,8 @@ def film_compliance(
 
     Valid for amplitudes small against the film. Above ``u_e/2b`` the oil in the contact is
     trapped: the compliance of the centre falls to that of the oil's volume,
-    ``h_c rho'/rho dp_c/dw``. The pressure of the inlet before the first node follows load and film at once.
+    ``h_c rho'/rho dp_c/dw``. The pressure of the inlet before the first node follows load and film
+    at once.
     Source: linearized transient Reynolds equation.
     """
     values = np.asarray(frequencies, dtype=float)
@@ -144,7 +145,7 @@ def film_compliance(
         film, rigid = linear.answer(2.0 * np.pi * frequency / rate, central)
         change = film - central if deflection == "central" else rigid - offset
         result[i] = at_rest - change
-    return np.asarray(unit * result.reshape(values.shape))[()]
+    return np.asarray(unit * result.reshape(values.shape), dtype=complex)[()]
 
 
 def _units(solution: LineContactSolution, length: float) -> tuple[float, float]:

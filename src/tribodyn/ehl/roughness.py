@@ -147,9 +147,9 @@ class RoughnessProfile:
         index = np.arange(height.size)
         if height.size >= 8 and np.all(np.isfinite(height)):
             line = np.polyfit(index, height, 1) if remove_tilt else [0.0, float(np.mean(height))]
-            height = height - np.polyval(line, index)
+            height = np.asarray(height - np.polyval(line, index), dtype=float)
         first = -0.5 * spacing * (height.size - 1) if start is None else start
-        return cls(first + spacing * index, height, beyond)
+        return cls(np.asarray(first + spacing * index, dtype=float), height, beyond)
 
     @property
     def spacing(self) -> float:

@@ -26,6 +26,7 @@ from tribodyn.lubricant import Lubricant
 __all__ = ["solve_transient_line_contact"]
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 #: Share of the load near the last node up to which the grid does not cut the film off, and how
 #: often the grid is made longer for it.
@@ -223,7 +224,7 @@ def _march(
     state = contact.steady() if start == "steady" else contact.unloaded()
     m, n = inputs.time.size, contact.nodes - 1
     records = np.zeros((m, RECORD))
-    kept = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, dtype=int)
+    kept = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, np.int64)
     pressures, films = np.zeros((2, kept.size, n + 1))
     status, instant = march_contact(
         n, contact.domain[0], contact.dx, 1.0 if imposed else contact.depth,
@@ -261,7 +262,7 @@ def _failure(
 
 
 def _result(
-    contact: TransientContact, records: Array, kept: Array, pressures: Array, films: Array
+    contact: TransientContact, records: Array, kept: Index, pressures: Array, films: Array
 ) -> TransientLineContact:
     inputs, scale = contact.inputs, contact.scale
     offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = (

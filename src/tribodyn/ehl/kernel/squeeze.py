@@ -137,7 +137,7 @@ def carry(
     p, h, trial = np.empty(n + 1), np.empty(n + 1), np.empty(state.size)
     furthest = 0.0
     for c in range(now.size):
-        if (c == LOAD or c == SPEED or c == CURVATURE) and first[c] > 0.0 and last[c] > 0.0:
+        if c in (LOAD, SPEED, CURVATURE) and first[c] > 0.0 and last[c] > 0.0:
             furthest = max(furthest, abs(np.log(last[c] / first[c])))
     largest = 1.0 / max(1.0, np.ceil(furthest / np.log(ratio)))
     done, part = 0.0, largest
@@ -147,7 +147,7 @@ def carry(
             reached = 1.0
         for c in range(now.size):
             now[c] = first[c] + reached * (last[c] - first[c])
-            if (c == LOAD or c == SPEED or c == CURVATURE) and first[c] > 0.0:
+            if c in (LOAD, SPEED, CURVATURE) and first[c] > 0.0:
                 now[c] = first[c] * (last[c] / first[c]) ** reached
         p[:], h[:], trial[:] = P, H, state
         status = _settle(
