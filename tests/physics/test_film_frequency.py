@@ -78,14 +78,31 @@ def test_trapped_film_yields_by_its_volume_only(solution: LineContactSolution) -
 
 
 def test_same_answer_without_units() -> None:
-    """The dimensionless contact takes frequencies in u_e/b."""
-    plain = solve_line_contact_moes(5.0, 5.0, nodes=257)
-    fine = solve_line_contact_moes(5.0, 5.0, nodes=1025)
-    values = np.array([0.01, 0.05, 0.1])
-    stiffness, damping = plain.frequency_response(values)
-    finer, more = fine.frequency_response(values)
-    assert finer == pytest.approx(stiffness, rel=0.01)
-    assert more == pytest.approx(damping, rel=0.01)
+    """The dimensionless contact takes frequencies in u_e/b and answers in p_h R/b."""
+    contact = solve_line_contact(LOAD, RADIUS, SPEED, OIL, MODULUS, nodes=257, tolerance=1e-9)
+    plain = solve_line_contact_moes(
+        contact.moes_load, contact.moes_viscosity, pressure_viscosity_index=OIL.roelands_index,
+        pressure_viscosity_coefficient=OIL.pressure_viscosity_coefficient, nodes=257,
+        domain=contact.domain, inlet="flooded", tolerance=1e-9,
+    )  # fmt: skip
+    values = np.array([0.0, 0.05, 0.2])
+    unit = contact.hertz_pressure * contact.half_width / contact.film_unit
+    rate = SPEED / contact.half_width
+    stiffness, damping = contact.frequency_response(values * rate)
+    other, less = plain.frequency_response(values)
+    assert stiffness == pytest.approx(other * unit, rel=1e-5)
+    assert damping == pytest.approx(less * unit / rate, rel=1e-5)
+
+
+def test_a_finer_solution_is_answered_on_a_grid_of_513_nodes(
+    solution: LineContactSolution,
+) -> None:
+    fine = solve_line_contact(LOAD, RADIUS, SPEED, OIL, MODULUS, nodes=2049)
+    frequencies = corner(fine) * np.array([0.0, 0.1, 0.3])
+    compliance = film_compliance(fine, frequencies)
+    assert 1.0 / compliance[0].real == pytest.approx(fine.film_stiffness(), rel=1e-9)
+    apart = np.abs(compliance - film_compliance(solution, frequencies))
+    assert np.all(apart < 0.02 * np.abs(compliance[0]))
 
 
 @pytest.mark.parametrize("ratio", [0.1, 0.3])

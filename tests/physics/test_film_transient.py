@@ -156,7 +156,7 @@ def test_the_reference_length_shifts_the_approach_with_the_load() -> None:
     """``4 w ln(d_2/d_1)/(pi E')``: what a half space yields between two depths."""
     time = np.linspace(0.0, 10.0 * TRANSIT, 11)
     load = LOAD * (1.0 + 0.2 * np.sin(time / TRANSIT))
-    near, far = (solve(time, load, reference_length=d, domain=(-9.0, 1.6)) for d in (5e-3, 10e-3))
+    near, far = (solve(time, load, reference_length=d, domain=(-9.0, 2.5)) for d in (5e-3, 10e-3))
     shift = 4.0 * load * np.log(2.0) / (np.pi * MODULUS)
     assert far.approach - near.approach == pytest.approx(shift, rel=2e-3)
     assert far.central_film == pytest.approx(near.central_film, rel=1e-12)
@@ -177,5 +177,5 @@ def test_a_contact_that_cannot_follow_names_the_instant() -> None:
     time = np.linspace(0.0, 10.0 * TRANSIT, 21)
     # the bodies are pressed into each other by a millimetre within half a transit
     approach = np.where(time < 5.0 * TRANSIT, 5e-6, 1e-3)
-    with pytest.raises(ComputationError, match=r"instant 10 of 20, t = .* approach 0\.001 m"):
+    with pytest.raises(ComputationError, match=r"approach 0\.001 m.* instant 10 of 20, t ="):
         solve(time, impose="approach", approach=approach, reference_length=8e-3, step_halvings=1)

@@ -98,11 +98,22 @@ def tangent_stiffness(solution: LineContactSolution, length: float = 1.0) -> flo
         warn(
             "film-stiffness",
             f"The central film rises with the load by {slope:.3g} m per unit of ln(w), so that "
-            "its tangent stiffness is negative. A flooded film falls with the load: the inlet "
-            f"at X = {solution.domain[0]:.3g} starves this one. Take the flooded inlet or an "
-            "earlier first node",
+            f"its tangent stiffness is negative. {_reason(solution)}",
         )
     return -load * length / slope
+
+
+def _reason(solution: LineContactSolution) -> str:
+    """Why a film rises with the load."""
+    if solution.inlet == "flooded":
+        return (
+            f"With M = {solution.moes_load:.3g} the contact turns from rigid to elastic: there the "
+            "film hardly depends on the load and counts as rigid in a series of springs"
+        )
+    return (
+        f"The inlet at X = {solution.domain[0]:.3g} starves it: take the flooded inlet or an "
+        "earlier first node"
+    )
 
 
 def secant_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:

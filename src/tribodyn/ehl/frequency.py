@@ -75,11 +75,14 @@ def frequency_response(
     values = np.asarray(frequencies, dtype=float)
     _, rate = _units(solution, length)
     slow = _SLOW / (2.0 * np.pi) * rate
-    compliance = film_compliance(solution, np.maximum(values, slow), length, deflection=deflection)
-    at_rest = film_compliance(solution, 0.0, length, deflection=deflection)
-    stiffness = np.where(values > 0.0, (1.0 / compliance).real, (1.0 / at_rest).real)
-    damping = (1.0 / compliance).imag / (2.0 * np.pi * np.maximum(values, slow))
-    return np.asarray(stiffness)[()], np.asarray(damping)[()]
+    every = film_compliance(
+        solution, np.append(values.reshape(-1), slow), length, deflection=deflection
+    )
+    inverse = (1.0 / every[:-1]).reshape(values.shape)
+    limit = (1.0 / every[-1]).imag / (2.0 * np.pi * slow)
+    rest = values == 0.0
+    damping = np.where(rest, limit, inverse.imag / (2.0 * np.pi * np.where(rest, 1.0, values)))
+    return np.asarray(inverse.real)[()], np.asarray(damping)[()]
 
 
 def film_compliance(
