@@ -40,7 +40,7 @@ def test_slow_limit_is_the_tangent(solution: LineContactSolution, deflection: st
 def test_stiffness_falls_and_damping_is_positive_up_to_a_third_of_the_corner(
     solution: LineContactSolution,
 ) -> None:
-    frequencies = corner(solution) * np.linspace(0.0, 0.33, 12)
+    frequencies = corner(solution) * np.linspace(0.0, 0.33, 6)
     stiffness, damping = solution.frequency_response(frequencies, LENGTH)
     assert np.all(damping > 0.0)
     assert np.all(np.diff(stiffness) < 0.0)
@@ -50,7 +50,7 @@ def test_stiffness_falls_and_damping_is_positive_up_to_a_third_of_the_corner(
 
 
 def test_compliance_dissipates_and_stays_bounded(solution: LineContactSolution) -> None:
-    frequencies = corner(solution) * np.geomspace(1e-3, 0.4, 9)
+    frequencies = corner(solution) * np.geomspace(1e-2, 0.4, 5)
     compliance = film_compliance(solution, frequencies, LENGTH)
     assert np.all(compliance.imag < 0.0)
     assert np.all(np.abs(compliance) < 2.0 / solution.film_stiffness(LENGTH))

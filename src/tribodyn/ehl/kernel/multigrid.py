@@ -87,13 +87,16 @@ def _make_grids(n: int, count: int, start: float, end: float, profile: Array) ->
         m = n >> g
         dx = (end - start) / m
         K = influence(m, dx)
-        field[_K, offset[g] : offset[g + 1]] = K
         plan = film_plan(m, K)
-        plans[begin[g] : begin[g + 1]] = plan
+        for i in range(m + 1):
+            field[_K, offset[g] + i] = K[i]
+        for i in range(plan.size):
+            plans[begin[g] + i] = plan[i]
         near_influence(dx, near[g])
         heights = field[_SHAPE, offset[g] : offset[g + 1]]
         if g == 0:
-            heights[:] = profile
+            for i in range(n + 1):
+                heights[i] = profile[i]
         else:
             mean_gap(m, field[_SHAPE, offset[g - 1] : offset[g]], heights)
     for g in range(count):
