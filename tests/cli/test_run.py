@@ -131,14 +131,14 @@ def test_ctrl_c_leaves_nothing(folder: Path, moment: str) -> None:
     # A long transient is interrupted while it marches; a result while its report is written.
     hook = folder.parent / f"{folder.name}-hook"
     hook.mkdir()
-    (hook / "sitecustomize.py").write_text(_SLOW_REPORT if moment == "writing" else "")
+    (hook / "sitecustomize.py").write_text(_SLOW_REPORT if moment == "writing" else _AT_WORK)
     march = ["--set", "solver.method=transient", "--set", "solver.cycles=20000"]
     words = [*_TRIBODYN, "run", "fzg-roughness", *(march if moment == "computing" else _FAST)]
     process = subprocess.Popen(
         words, cwd=folder, text=True, stderr=subprocess.PIPE, stdout=subprocess.PIPE,
         start_new_session=True, env={**os.environ, "PYTHONPATH": str(hook)},
     )  # fmt: skip
-    _wait_until(folder, moment)
+    _wait_until(folder, hook, moment)
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -155,13 +155,27 @@ tribodyn.report.write_report = lambda result, path: time.sleep(60)
 """
 
 
-def _wait_until(folder: Path, moment: str) -> None:
-    """Wait for the temporary directory when writing, else for the process to be at work."""
-    if moment == "computing":
-        time.sleep(3.0)
-        return
-    for _ in range(600):
-        if any((place / "response.nc").exists() for place in folder.iterdir()):
+# Says beside itself that the motion is being computed.
+_AT_WORK = """
+import pathlib
+import tribodyn.study.pipeline as pipeline
+original = pipeline.motion_of
+def motion_of(*words):
+    pathlib.Path(__file__).with_name("at-work").touch()
+    return original(*words)
+pipeline.motion_of = motion_of
+"""
+
+
+def _wait_until(folder: Path, hook: Path, moment: str) -> None:
+    """Wait until the process computes the motion, or has begun to write its result."""
+    for _ in range(1200):
+        if moment == "computing" and (hook / "at-work").exists():
+            time.sleep(1.0)
+            return
+        if moment == "writing" and any(
+            (place / "response.nc").exists() for place in folder.iterdir()
+        ):
             return
         time.sleep(0.1)
-    pytest.fail("the result was never written")
+    pytest.fail("the process never came so far")

@@ -40,7 +40,7 @@ def test_slow_limit_is_the_tangent(solution: LineContactSolution, deflection: st
 def test_stiffness_falls_and_damping_is_positive_up_to_a_third_of_the_corner(
     solution: LineContactSolution,
 ) -> None:
-    frequencies = corner(solution) * np.linspace(0.0, 0.33, 6)
+    frequencies = corner(solution) * np.array([0.0, 0.03, 0.1, 0.2, 0.33])
     stiffness, damping = solution.frequency_response(frequencies, LENGTH)
     assert np.all(damping > 0.0)
     assert np.all(np.diff(stiffness) < 0.0)

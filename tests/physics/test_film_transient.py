@@ -50,6 +50,18 @@ def test_constant_inputs_stay_steady(load: float, speed: float) -> None:
     assert contact.central_film[0] == pytest.approx(steady.central_film, rel=2e-2)
 
 
+@pytest.mark.filterwarnings("ignore:\\[starved-inlet\\]:tribodyn.errors.ModelWarning")
+def test_the_start_is_the_steady_solution() -> None:
+    """Two Newton methods on one grid; the inlet of a stated length needs no estimate."""
+    domain = {"domain": (-4.5, 1.5), "inlet": "zero", "nodes": 257}
+    steady = solve_line_contact(
+        LOAD, RADIUS, SPEED, OIL, MODULUS, tolerance=1e-9, flux_tolerance=1e-9, **domain
+    )
+    contact = solve(np.array([0.0, TRANSIT]), keep_every=1, **domain)
+    assert contact.film[-1] == pytest.approx(steady.film, rel=1e-8)
+    assert contact.pressure[-1] == pytest.approx(steady.pressure, abs=1e-7 * steady.hertz_pressure)
+
+
 def test_slow_cycle_follows_the_steady_curve() -> None:
     fast, slow, slowest = (
         solve(np.linspace(0.0, period, 101), nodes=513, **mesh_cycle(period))
@@ -179,3 +191,19 @@ def test_a_contact_that_cannot_follow_names_the_instant() -> None:
     approach = np.where(time < 5.0 * TRANSIT, 5e-6, 1e-3)
     with pytest.raises(ComputationError, match=r"approach 0\.001 m.* instant 10 of 20, t ="):
         solve(time, impose="approach", approach=approach, reference_length=8e-3, step_halvings=1)
+
+
+def test_an_approaching_contact_takes_up_load() -> None:
+    """From an open gap under rolling: the load rises from nothing to that of the steady film."""
+    time = np.linspace(0.0, 60.0 * TRANSIT, 241)
+    closing = np.minimum(time / (30.0 * TRANSIT), 1.0)
+    steady = solve(np.array([0.0, TRANSIT]), nodes=513)
+    depth = float(steady.approach[0])
+    contact = solve(
+        time, impose="approach", approach=-4e-6 + (4e-6 + depth) * closing, start="unloaded",
+        nodes=513, domain=steady.domain,
+    )  # fmt: skip
+    assert contact.load_per_width[0] == 0.0
+    assert np.all(np.diff(contact.load_per_width[1:100]) > 0.0)
+    assert contact.load_per_width[-1] == pytest.approx(LOAD, rel=2e-3)
+    assert contact.central_film[-1] == pytest.approx(steady.central_film[0], rel=1e-3)

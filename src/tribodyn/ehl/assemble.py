@@ -50,13 +50,17 @@ def pressure_spike(grid: DiscreteContact) -> tuple[float, float] | None:
     Returns
     -------
     (float, float) or None
-        In Hertz pressures and half widths; ``None`` where the pressure has a single maximum.
+        In Hertz pressures and half widths; ``None`` where the pressure has a single maximum that
+        stays below the Hertz pressure. A single one above it is a spike that has swallowed the
+        rounded maximum of the dry contact.
     """
     P = grid.P
     peaks = np.flatnonzero((P[1:-1] > P[:-2]) & (P[1:-1] >= P[2:])) + 1
-    if peaks.size < 2:
+    if peaks.size == 0:
         return None
     last = int(peaks[-1])
+    if peaks.size == 1 and P[last] <= 1.0:
+        return None
     return float(P[last]), float(grid.X[last])
 
 

@@ -8,16 +8,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.errors import InputError, Problem, require_positive, warn
+from tribodyn.errors import InputError, Problem, require_positive
 
-__all__ = ["BEYOND", "RoughnessProfile", "warn_if_unresolved"]
+__all__ = ["BEYOND", "RoughnessProfile"]
 
 Array = NDArray[np.float64]
 
 #: What lies beyond the ends of a profile.
 BEYOND = ("refuse", "periodic", "level")
-#: Grid points that a wavelength needs, and the share of the mean square that may lie below.
-_POINTS, _SHARE = 16, 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,30 +283,3 @@ class RoughnessProfile:
                     '"periodic" or "level"',
                 )
             )
-
-
-def warn_if_unresolved(profile: RoughnessProfile, spacing: float, stacklevel: int = 2) -> None:
-    """Warn where a grid does not resolve the waves of a profile.
-
-    Parameters
-    ----------
-    profile : RoughnessProfile
-        Heights.
-    spacing : float [m]
-        Distance of the nodes of the grid.
-    stacklevel : int
-        Frames to skip, as in :func:`warnings.warn`.
-
-    The second-order scheme needs 16 to 32 nodes a wavelength.
-    """
-    shortest = _POINTS * spacing
-    share = profile.short_wave_share(shortest)
-    if share > _SHARE:
-        warn(
-            "roughness-resolution",
-            f"{share:.1%} of the mean square roughness lies in waves shorter than "
-            f"{shortest * 1e6:.3g} um, which have fewer than {_POINTS} nodes a wavelength at a "
-            f"spacing of {spacing * 1e6:.3g} um. Take more nodes, or profile.filtered("
-            f"{shortest:.2g})",
-            stacklevel=stacklevel + 1,
-        )

@@ -47,8 +47,9 @@ class LineContactSolution:
     outlet : float [m]
         Position where the oil film parts.
     spike_pressure : float, optional [Pa]
-        Highest local maximum of the pressure nearest to the outlet; ``None`` where the pressure
-        has a single maximum. Not converged on uniform grids: too low by 10 % and more.
+        Local maximum of the pressure nearest to the outlet; ``None`` where the pressure has a
+        single maximum below the Hertz pressure. Not converged on uniform grids: too low by
+        10 % and more.
     spike_position : float, optional [m]
         Where the spike lies.
     flux_error : float [-]

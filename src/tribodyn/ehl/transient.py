@@ -12,7 +12,8 @@ from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.transient_inputs import Series, read_inputs
 from tribodyn.ehl.transient_result import TransientLineContact
 from tribodyn.ehl.transient_scale import flooded_domain, reference_scale
-from tribodyn.ehl.transient_start import REASONS, TransientContact
+from tribodyn.ehl.transient_start import TransientContact
+from tribodyn.ehl.transient_state import REASONS
 from tribodyn.errors import (
     ComputationError,
     InputError,

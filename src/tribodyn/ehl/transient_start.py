@@ -8,44 +8,21 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
+from tribodyn.ehl.roughness import RoughnessProfile
+from tribodyn.ehl.roughness_resolution import warn_if_unresolved
 from tribodyn.ehl.scales import ContactScales, contact_scales, moes_numbers
 from tribodyn.ehl.transient_inputs import TransientInputs
 from tribodyn.ehl.transient_scale import ReferenceScale
+from tribodyn.ehl.transient_state import REASONS, State
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.lubricant import Lubricant
 
-__all__ = ["REASONS", "State", "TransientContact"]
+__all__ = ["TransientContact"]
 
 Array = NDArray[np.float64]
 
-#: What stopped the solver, by its status.
-REASONS = {
-    1: "Newton's method used up its steps",
-    2: "no step length kept the gap open",
-    3: "the linear system is singular",
-    4: "a value is not finite",
-    5: "rounding keeps the mass balance above its tolerance",
-}
 #: Greatest factor of load, speed or curvature from one steady state to the next of the start.
 _RATIO = 1.25
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """State of the contact at one instant, dimensionless.
-
-    Parameters
-    ----------
-    P, H : (n,) array
-        Pressure and film.
-    numbers : (8,) array
-        Offset, last free node and further numbers of the kernel.
-    """
-
-    P: Array
-    H: Array
-    numbers: Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,38 @@
+"""State of a transient contact between two instants, and why the next one failed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["REASONS", "State"]
+
+Array = NDArray[np.float64]
+
+#: What stopped the solver, by its status.
+REASONS = {
+    1: "Newton's method used up its steps",
+    2: "no step length kept the gap open",
+    3: "the linear system is singular",
+    4: "a value is not finite",
+    5: "rounding keeps the mass balance above its tolerance",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """State of the contact at one instant, dimensionless.
+
+    Parameters
+    ----------
+    P, H : (n,) array
+        Pressure and film.
+    numbers : (8,) array
+        Offset, last free node and further numbers of the kernel.
+    """
+
+    P: Array
+    H: Array
+    numbers: Array
