@@ -46,8 +46,8 @@ class RoughnessProfile:
     >>> x = np.linspace(-1e-3, 1e-3, 401)
     >>> profile = RoughnessProfile(x, 1e-7 * np.sin(2 * np.pi * x / 1e-4))
     >>> round(profile.rms * 1e6, 4), round(profile.mean_roughness * 1e6, 4)
-    (0.0706, 0.0635)
-    >>> float(profile(0.25e-4).round(12))
+    (0.0706, 0.063)
+    >>> float(np.round(profile(0.25e-4), 12))
     -1e-07
     """
 
