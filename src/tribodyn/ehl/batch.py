@@ -86,7 +86,7 @@ def solve_line_contacts(
     viscosity_law: str = "roelands",
     compressible: bool = True,
     tolerance: float = 1e-4,
-    flux_tolerance: float = 1e-3,
+    flux_tolerance: float = 3e-4,
     film_tolerance: float = 5e-4,
     stiffness: bool = True,
     length: float = 1.0,

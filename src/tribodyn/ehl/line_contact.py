@@ -59,7 +59,7 @@ class SolverOptions:
     domain: Any = "auto"
     inlet: str = "flooded"
     tolerance: float = 1e-4
-    flux_tolerance: float = 1e-3
+    flux_tolerance: float = 3e-4
     film_tolerance: float = 5e-4
     levels: int | None = None
     start: LineContactSolution | None = None
@@ -80,7 +80,7 @@ def solve_line_contact(
     viscosity_law: str = "roelands",
     compressible: bool = True,
     tolerance: float = 1e-4,
-    flux_tolerance: float = 1e-3,
+    flux_tolerance: float = 3e-4,
     film_tolerance: float = 5e-4,
     levels: int | None = None,
     start: LineContactSolution | None = None,
@@ -185,7 +185,7 @@ def solve_line_contact_moes(
     method: str = "newton",
     viscosity_law: str = "roelands",
     tolerance: float = 1e-4,
-    flux_tolerance: float = 1e-3,
+    flux_tolerance: float = 3e-4,
     film_tolerance: float = 5e-4,
     levels: int | None = None,
     start: LineContactSolution | None = None,
