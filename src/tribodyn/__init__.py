@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tribodyn.cases import cases, load_case, run
     from tribodyn.errors import ComputationError, InputError, ModelWarning
-    from tribodyn.study import Case, Result, film_over_operation
+    from tribodyn.study import Case, Result, film_over_operation, loaded_contact
 
 __version__ = "0.1.0"
 
@@ -32,6 +32,7 @@ __all__ = [
     "cases",
     "film_over_operation",
     "load_case",
+    "loaded_contact",
     "run",
 ]
 
@@ -43,6 +44,7 @@ _HOMES = {
     "Result": "study",
     "film_over_operation": "study",
     "load_case": "cases",
+    "loaded_contact": "study",
     "run": "cases",
 }
 

@@ -106,6 +106,12 @@ gear_loss_factor | H_V | | | mean sliding work over transmitted work at unit fri
 tooth_stiffness | k_t | N/m | N/um | stiffness of the teeth of one pair without their oil film
 pair_stiffness | k_i | N/m | N/um | stiffness of one tooth pair along the line of action
 mesh_stiffness | K_m | N/m | N/um | stiffness of all tooth pairs in contact
+mesh_stiffness_secant | | N/m | N/um | force of all tooth pairs over the deflection that it causes
+mesh_stiffness_tangent | | N/m | N/um | slope of the force of all tooth pairs over the deflection
+maximum_single_pair_stiffness | | N/m | N/um | greatest stiffness of one tooth pair that carries the load alone
+ramp_deflection | | m | um | deflection at which a straight piece of the force law of the mesh begins
+ramp_stiffness | | N/m | N/um | stiffness that a straight piece adds to the force law of the mesh
+corner_share | | | | part of the load on tip corners beyond the path of contact
 mesh_force | N | N | N | dynamic force along the line of action
 friction_force | F_f | N | N | dynamic friction force of all tooth pairs
 power | P | W | W | power
@@ -115,6 +121,7 @@ bearing_stiffness | k_b | N/m | N/um | radial stiffness of each gear's support
 bearing_damping | c_b | N*s/m | N*s/m | radial damping of each gear's support
 bearing_force | F_b | N | N | force of a gear on its support
 backlash | j_bt | m | mm | total play along the line of action
+static_transmission_error | STE | m | um | approach of the gears along the line of action under load at rest
 transmission_error | e | m | um | displacement of the wheel behind its ideal place on the line of action
 dynamic_transmission_error | DTE | m | um | compression of the mesh along the line of action while running
 deflection | delta | m | um | compression of a contact
@@ -144,6 +151,25 @@ mean_friction_coefficient | mu_m | | | friction coefficient weighted with the lo
 compliance | | m/N | um/kN | deflection over force
 bore_radius | r_i | m | mm | radius of the bore
 root_radius | r_f | m | mm | radius of the root circle
+tip_relief | C_a | m | um | material taken away from the flank at the tip
+tip_relief_length | L_Ca | m | mm | distance from the tip inwards over which the relief ends, as roll length
+root_relief | C_f | m | um | material taken away at the lowest point that the mate touches
+root_relief_length | L_Cf | m | mm | distance from that point outwards over which the relief ends, as roll length
+profile_crowning | C_alpha | m | um | material taken away at both ends of the used flank against its middle
+profile_slope | C_Halpha | m | um | material taken away at the tip, in proportion from the lowest point that the mate touches
+crowning | C_beta | m | um | material taken away at both ends of the face against its middle
+lead_slope | C_Hbeta | m | um | material taken away at the positive end of the face, more than at the other
+misalignment | F_beta | m | um | difference of the gap between the flanks over the common face width
+single_pitch_deviation | f_p | m | um | deviation of the pitch from the flank before, one for each tooth
+cumulative_pitch_deviation | F_p | m | um | by how much each flank stands further on than evenly spaced ones
+run_out | F_r | m | um | run-out of the toothing, twice its eccentricity
+run_out_phase | phi_r | rad | deg | rotation from where tooth 0 comes into contact to where the flanks stand most proud
+wear_depth | h_w | m | um | depth of wear, alone or at equal distances from the lowest point to the tip
+roll_length | L_y | m | mm | radius of curvature of the involute as a place on the profile
+face_position | y | m | mm | place along the face from its middle
+profile_deviation | f_alpha | m | um | measured excess of material along the normal of the flank
+flank_gap | | m | um | distance that the shapes of both flanks leave where involutes would touch
+separation | | m | um | approach along the line of action that brings the teeth of a pair into touch
 """
 
 

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,18 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from tribodyn.contact import path_of_contact
+from tribodyn.contact import extended_contact, path_of_contact
 from tribodyn.errors import InputError, ModelWarning
-from tribodyn.gear import SpurPair, half_tooth, mass_properties, spur_pair, tooth_outline
+from tribodyn.gear import (
+    FlankModification,
+    SpurPair,
+    flank_gap,
+    flank_ranges,
+    half_tooth,
+    mass_properties,
+    spur_pair,
+    tooth_outline,
+)
 from tribodyn.gear.involute import involute
 
 FEW = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
@@ -134,3 +144,48 @@ def test_solid_lies_between_root_and_tip_cylinder(pair: SpurPair) -> None:
         assert low < solid.mass < high
         gyration = math.sqrt(2.0 * solid.moment_of_inertia / solid.mass)
         assert gear.root_radius < gyration < gear.tip_radius
+
+
+@FEW
+@given(pairs())
+def test_separation_begins_with_the_relative_curvature(pair: SpurPair) -> None:
+    """gap = rho L x^2 / (2 r_b^2 rho_mate): rho and r_b of the gear whose corner it is."""
+    length, (low, high) = pair.line_of_action_length, pair.path_limits
+    ends = ((high, 1.0, high, pair.pinion), (low, -1.0, length - low, pair.wheel))
+    for end, sense, tip, gear in ends:
+        mate = length - tip
+        assume(mate > 0.05 * pair.base_pitch)
+        off = 1e-3 * min(mate, tip)
+        found = extended_contact(pair, end + sense * off)
+        expected = tip * length * off**2 / (2.0 * gear.base_radius**2 * mate)
+        if bool(found.possible):
+            assert float(found.separation) == pytest.approx(expected, rel=0.02)
+
+
+@FEW
+@given(pairs())
+def test_separation_grows_away_from_the_path_of_contact(pair: SpurPair) -> None:
+    low, high = pair.path_limits
+    off = pair.base_pitch * np.linspace(0.0, 0.3, 31)
+    for path in (high + off, low - off):
+        found = extended_contact(pair, path)
+        assert np.all(np.diff(found.separation[found.possible]) > 0.0)
+
+
+@FEW
+@given(pairs(), st.floats(0.0, 100e-6), st.floats(0.0, 100e-6), st.floats(0.0, 1.0))
+def test_gaps_of_both_gears_add(pair: SpurPair, tip: float, root: float, place: float) -> None:
+    given_ = FlankModification(tip_relief=tip, root_relief=root, profile_crowning=-0.5 * tip)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        pinion = replace(pair, pinion=replace(pair.pinion, modification=given_))
+        wheel = replace(pair, wheel=replace(pair.wheel, modification=given_))
+        both = replace(pinion, wheel=wheel.wheel)
+    low, high = pair.path_limits
+    path = low + place * (high - low)
+    radii = (path, pair.line_of_action_length - path)
+    total = float(flank_gap(pinion, *radii) + flank_gap(wheel, *radii))
+    assert float(flank_gap(both, *radii)) == pytest.approx(total, abs=1e-18)
+    assert float(flank_gap(pair, *radii)) == 0.0
+    ends = flank_ranges(pair)[0]
+    assert ends.lowest - 1e-12 <= radii[0] <= ends.highest + 1e-12

@@ -105,7 +105,11 @@ def drawable() -> Any:
             case=case,
             mesh=mesh,
             response=response_of(mesh, names, periods=periods, steady=steady),
-            system=SimpleNamespace(stiffness=1e9 * np.eye(6), damping=np.zeros((6, 6))),
+            system=SimpleNamespace(
+                stiffness=1e9 * np.eye(6),
+                damping=np.zeros((6, 6)),
+                contacts=(SimpleNamespace(gap=1e-6),),
+            ),
             half_backlash=1e-6,
             static_error=np.zeros_like,
             warnings=(),

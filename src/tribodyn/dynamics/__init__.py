@@ -2,6 +2,7 @@
 
 from tribodyn.dynamics.energy import EnergyAudit, energy_audit
 from tribodyn.dynamics.ensemble import Ensemble, LaneStatistics, simulate_ensemble
+from tribodyn.dynamics.force_law import MeshForce, law_contacts
 from tribodyn.dynamics.response import FineSamples, Response
 from tribodyn.dynamics.simulate import simulate
 from tribodyn.dynamics.spur6 import SPUR6_NAMES, spur6
@@ -19,9 +20,11 @@ __all__ = [
     "Entry",
     "FineSamples",
     "LaneStatistics",
+    "MeshForce",
     "Response",
     "System",
     "energy_audit",
+    "law_contacts",
     "recommended_steps",
     "simulate",
     "simulate_ensemble",

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.force_law import MeshForce, gear_contacts
 from tribodyn.dynamics.gear_pair import (
     Driver,
     TorqueBalance,
     balance_direction,
-    gear_contact,
     pair_of,
     torques,
 )
@@ -40,6 +40,7 @@ def spur6(
     error: Entry = 0.0,
     damping_in_gap: bool = False,
     torque_balance: TorqueBalance = "drive",
+    mesh_force: MeshForce = "stiffness",
 ) -> System:
     """Build the 6-DOF spur gear pair.
 
@@ -64,13 +65,18 @@ def spur6(
     driver : "pinion" or "wheel"
         Which gear drives.
     backlash : float
-        Total play along the line of action [m]; zero makes the mesh linear.
+        Total play along the line of action [m]. Zero keeps the flanks together: the force of one
+        stiffness is then linear, that of a force law the same for tension as for compression.
     error : float or function
         Displacement error taken off the compression [m].
     damping_in_gap : bool
         Keep the mesh damping in free flight.
     torque_balance : "drive", "load" or "both"
         Which torque is held when friction acts; the other one is found by the steady state.
+    mesh_force : "stiffness", "tangent" or "force-law"
+        How the teeth carry: with the mesh stiffness; with the tangent stiffness, displaced so that
+        the nominal load at rest gives the static transmission error; or with the force law of the
+        mesh, one contact for each of its ramps.
 
     Returns
     -------
@@ -82,7 +88,7 @@ def spur6(
     Raises
     ------
     InputError
-        If a value is out of range.
+        If a value is out of range, or the mesh does not have what ``mesh_force`` needs.
 
     Notes
     -----
@@ -105,8 +111,9 @@ def spur6(
     damping = pair_of("bearing_damping", bearing_damping, "N*s/m", positive=False)
     turning = torques(pair_of("torque", torque, "N*m", positive=False), driver)
     balance = balance_direction(torque_balance, driver)
-    contact = gear_contact(
+    contacts = gear_contacts(
         mesh,
+        mesh_force=mesh_force,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
         mesh_damping=mesh_damping,
@@ -120,7 +127,7 @@ def spur6(
         damping=np.diag([damping[0], damping[0], 0.0, damping[1], damping[1], 0.0]),
         stiffness=np.diag([stiffness[0], stiffness[0], 0.0, stiffness[1], stiffness[1], 0.0]),
         force=[0.0, 0.0, turning[0], 0.0, 0.0, turning[1]],
-        contacts=(contact,),
+        contacts=contacts,
         names=SPUR6_NAMES,
         balance=None if balance is None else [0.0, 0.0, balance[0], 0.0, 0.0, balance[1]],
     )

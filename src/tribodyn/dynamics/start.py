@@ -6,11 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.program import Nodes
 
 __all__ = ["static_start"]
 
+Array = NDArray[np.float64]
 
-def static_start(compiled: Compiled) -> NDArray[np.float64]:
+#: Rounds in which the ramps of a force law open and close; each round goes down the law.
+_ROUNDS = 50
+
+
+def static_start(compiled: Compiled) -> Array:
     """State at rest under the mean loads, every contact on its driving flank.
 
     Parameters
@@ -22,6 +28,11 @@ def static_start(compiled: Compiled) -> NDArray[np.float64]:
     (2 n,) array
         Position and zero velocity; free motions are left at zero.
 
+    Notes
+    -----
+    Contacts with the same compression are the ramps of one force law: of these the one that
+    begins lowest is kept closed, and the others carry where the compression reaches them.
+
     Examples
     --------
     >>> from tribodyn.dynamics import Contact, System
@@ -30,15 +41,48 @@ def static_start(compiled: Compiled) -> NDArray[np.float64]:
     >>> static_start(compile_for(System([[1.0]], [[0.0]], [[0.0]], [0.5], [pair]), 1.0, 8))
     array([1.25, 0.  ])
     """
+    nodes = compiled.nodes
+    kept = _lowest_of_each_law(nodes)
+    carrying = nodes.stiffness
+    position = _equilibrium(compiled, carrying)
+    for _ in range(0 if kept.all() else _ROUNDS):
+        compression = np.einsum("rsji,i->rsj", nodes.direction, position) - nodes.error
+        closed = np.where(kept | (compression > nodes.gap), nodes.stiffness, 0.0)
+        if np.array_equal(closed, carrying):
+            break
+        carrying = closed
+        position = _equilibrium(compiled, carrying)
+    return np.concatenate((position, np.zeros(compiled.system.size)))
+
+
+def _equilibrium(compiled: Compiled, carrying: Array) -> Array:
+    """Position at rest with the stiffness (steps, 3, contacts) that carries."""
     system, nodes = compiled.system, compiled.nodes
     weight = nodes.weight
     outer = np.einsum("rsji,rsjk->rsjik", nodes.force_direction, nodes.direction)
-    stiffness = system.stiffness + np.einsum("rs,rsj,rsjik->ik", weight, nodes.stiffness, outer)
-    shift = nodes.stiffness * (nodes.error + nodes.gap)
+    stiffness = system.stiffness + np.einsum("rs,rsj,rsjik->ik", weight, carrying, outer)
+    shift = carrying * (nodes.error + nodes.gap)
     force = np.einsum("rs,rsi->i", weight, nodes.force)
     force = force + np.einsum("rs,rsj,rsji->i", weight, shift, nodes.force_direction)
     # Least squares in mass-weighted coordinates: free motions get no displacement.
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
     matrix = stiffness * np.outer(scale, scale)
-    position = scale * np.linalg.lstsq(matrix, scale * force, rcond=1e-12)[0]
-    return np.concatenate((position, np.zeros(system.size)))
+    return np.asarray(scale * np.linalg.lstsq(matrix, scale * force, rcond=1e-12)[0])
+
+
+def _lowest_of_each_law(nodes: Nodes) -> NDArray[np.bool_]:
+    """Tell which contacts do not share their compression with one that begins lower."""
+    count = nodes.stiffness.shape[2]
+    places = np.einsum("rs,rsj->j", nodes.weight, nodes.gap)
+    kept = np.ones(count, dtype=bool)
+    for j in range(count):
+        for i in range(count):
+            lower = (places[i], i) < (places[j], j)
+            if lower and nodes.stiffness[:, :, i].any() and _same_compression(nodes, i, j):
+                kept[j] = False
+    return kept
+
+
+def _same_compression(nodes: Nodes, i: int, j: int) -> bool:
+    pairs = (nodes.direction[:, :, (i, j)], nodes.error[:, :, (i, j)])
+    return all(np.array_equal(both[:, :, 0], both[:, :, 1]) for both in pairs)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.force_law import MeshForce, gear_contacts
 from tribodyn.dynamics.gear_pair import (
     Driver,
     TorqueBalance,
     balance_direction,
-    gear_contact,
     pair_of,
     torques,
 )
@@ -37,6 +37,7 @@ def torsional(
     error: Entry = 0.0,
     damping_in_gap: bool = False,
     torque_balance: TorqueBalance = "drive",
+    mesh_force: MeshForce = "stiffness",
 ) -> System:
     """Build the torsional gear pair on rigid supports.
 
@@ -55,13 +56,18 @@ def torsional(
     driver : "pinion" or "wheel"
         Which gear drives.
     backlash : float
-        Total play along the line of action [m]; zero makes the mesh linear.
+        Total play along the line of action [m]. Zero keeps the flanks together: the force of one
+        stiffness is then linear, that of a force law the same for tension as for compression.
     error : float or function
         Displacement error taken off the compression [m].
     damping_in_gap : bool
         Keep the mesh damping in free flight.
     torque_balance : "drive", "load" or "both"
         Which torque is held when friction acts; the other one is found by the steady state.
+    mesh_force : "stiffness", "tangent" or "force-law"
+        How the teeth carry: with the mesh stiffness; with the tangent stiffness, displaced so that
+        the nominal load at rest gives the static transmission error; or with the force law of the
+        mesh, one contact for each of its ramps.
 
     Returns
     -------
@@ -71,7 +77,7 @@ def torsional(
     Raises
     ------
     InputError
-        If a value is out of range.
+        If a value is out of range, or the mesh does not have what ``mesh_force`` needs.
 
     Examples
     --------
@@ -83,8 +89,9 @@ def torsional(
     System(2 coordinates, 1 contact)
     """
     inertia = pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2")
-    contact = gear_contact(
+    contacts = gear_contacts(
         mesh,
+        mesh_force=mesh_force,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
         mesh_damping=mesh_damping,
@@ -98,7 +105,7 @@ def torsional(
         damping=np.zeros((2, 2)),
         stiffness=np.zeros((2, 2)),
         force=torques(pair_of("torque", torque, "N*m", positive=False), driver),
-        contacts=(contact,),
+        contacts=contacts,
         names=TORSIONAL_NAMES,
         balance=balance_direction(torque_balance, driver),
     )

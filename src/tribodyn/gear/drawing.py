@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.gear.modification import FlankModification
+from tribodyn.gear.modification_checks import modification_gear_problems
 from tribodyn.gear.rack import BasicRack
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
@@ -48,6 +50,8 @@ class GearDrawing:
         Mass [kg].
     moment_of_inertia : float or None
         Polar moment of inertia [kg*m^2].
+    modification : FlankModification
+        What the loaded flanks have that the involute has not.
     """
 
     name: str
@@ -62,6 +66,7 @@ class GearDrawing:
     bore_diameter: float
     mass: float | None
     moment_of_inertia: float | None
+    modification: FlankModification
 
     def tooth_form(self, tip_diameter: float, tooth_thinning: float) -> ToothForm:
         """Tooth form with the figures that were missing.
@@ -111,6 +116,7 @@ class GearDrawing:
             bore_diameter=self.bore_diameter,
             mass=self.mass,
             moment_of_inertia=self.moment_of_inertia,
+            modification=self.modification,
         )
 
     def named(self, problems: Iterable[Problem]) -> list[Problem]:
@@ -149,6 +155,8 @@ class GearDrawing:
             self.tooth_form(tip, self.tooth_thinning or 0.0)
         except InputError as error:
             problems = [*error.problems, *problems]
+        else:
+            problems += modification_gear_problems(self.modification, self.teeth)
         return self.named(problems)
 
     def completed_tip_diameter(self, tip_shortening_coefficient: float) -> float:

@@ -9,6 +9,8 @@ from tribodyn.errors import InputError, Problem, require_between, require_positi
 from tribodyn.gear.drawing import GearDrawing
 from tribodyn.gear.gear_checks import shape_problems
 from tribodyn.gear.mesh_geometry import MeshGeometry
+from tribodyn.gear.modification import FlankModification
+from tribodyn.gear.modification_checks import misalignment_problems
 from tribodyn.gear.pair_checks import (
     ROUNDING_WARNING,
     fitting_center_distance,
@@ -114,9 +116,11 @@ def _checked(
     center_distance: float | None,
     backlash: float | None,
     driver: str,
+    misalignment: float,
 ) -> SpurPair:
     """Pair from two drawings, or one error with all that is wrong."""
-    _raise_if_any(_value_problems(drawings, center_distance, backlash))
+    values = _value_problems(drawings, center_distance, backlash)
+    _raise_if_any([*values, *misalignment_problems(misalignment)])
     mesh = _forms(drawings, center_distance, backlash)
     problems = match_problems(mesh.pinion, mesh.wheel, driver)
     fitting = fitting_center_distance(mesh)
@@ -127,7 +131,7 @@ def _checked(
     _raise_if_any([*mesh_problems(mesh), *problems])
     pinion = drawings[0].spur_gear(mesh.pinion)
     wheel = drawings[1].spur_gear(mesh.wheel)
-    return SpurPair(pinion, wheel, mesh.center_distance, driver)
+    return SpurPair(pinion, wheel, mesh.center_distance, driver, misalignment)
 
 
 def spur_pair(
@@ -154,6 +158,9 @@ def spur_pair(
     wheel_mass: float | None = None,
     pinion_moment_of_inertia: float | None = None,
     wheel_moment_of_inertia: float | None = None,
+    pinion_modification: FlankModification | None = None,
+    wheel_modification: FlankModification | None = None,
+    misalignment: float = 0.0,
     driver: str = "pinion",
 ) -> SpurPair:
     """Make a spur gear pair from the figures of a drawing.
@@ -189,6 +196,10 @@ def spur_pair(
         Masses [kg] that replace those of the solids.
     pinion_moment_of_inertia, wheel_moment_of_inertia : float, optional
         Polar moments of inertia [kg*m^2] that replace those of the solids.
+    pinion_modification, wheel_modification : FlankModification, optional
+        Modifications and deviations of the loaded flanks; none by default.
+    misalignment : float
+        Difference of the gap over the common face width [m].
     driver : str
         Driving gear, ``"pinion"`` or ``"wheel"``.
 
@@ -234,6 +245,7 @@ def spur_pair(
         bore_diameter=pinion_bore_diameter,
         mass=pinion_mass,
         moment_of_inertia=pinion_moment_of_inertia,
+        modification=pinion_modification or FlankModification(),
     )
     wheel = GearDrawing(
         name="wheel",
@@ -248,5 +260,6 @@ def spur_pair(
         bore_diameter=wheel_bore_diameter,
         mass=wheel_mass,
         moment_of_inertia=wheel_moment_of_inertia,
+        modification=wheel_modification or FlankModification(),
     )
-    return _checked((pinion, wheel), center_distance, backlash, driver)
+    return _checked((pinion, wheel), center_distance, backlash, driver, misalignment)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tribodyn.errors import InputError, Problem, warn
 from tribodyn.gear.gear_checks import shape_problems, shape_warnings
+from tribodyn.gear.modification import FlankModification
+from tribodyn.gear.modification_checks import modification_gear_problems
 from tribodyn.gear.tooth_form import ToothForm
 from tribodyn.gear.value_checks import body_value_problems
 
@@ -41,12 +43,15 @@ class SpurGear(ToothForm):
         Mass [kg] that replaces the one of the solid.
     moment_of_inertia : float, optional
         Polar moment of inertia [kg*m^2] that replaces the one of the solid.
+    modification : FlankModification
+        What the loaded flanks have that the involute has not; nothing by default.
 
     Raises
     ------
     InputError
         Listing every value out of range, or every fault of the shape: tip below the base circle,
-        pointed tip, undercut up to the tip, bore beyond the root circle.
+        pointed tip, undercut up to the tip, bore beyond the root circle, pitch deviations for
+        another number of teeth.
 
     Warns
     -----
@@ -70,6 +75,7 @@ class SpurGear(ToothForm):
     bore_diameter: float = 0.0
     mass: float | None = None
     moment_of_inertia: float | None = None
+    modification: FlankModification = field(default_factory=FlankModification)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -90,7 +96,8 @@ class SpurGear(ToothForm):
         body = body_value_problems(
             self.face_width, self.bore_diameter, self.mass, self.moment_of_inertia
         )
-        return [*super().value_problems(), *body]
+        tooth = [*super().value_problems(), *body]
+        return tooth or modification_gear_problems(self.modification, self.teeth)
 
     def __repr__(self) -> str:
         """One line with units."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from tribodyn.errors import InputError, warn
 from tribodyn.gear.mesh_geometry import MeshGeometry
+from tribodyn.gear.modification_checks import modification_pair_problems
 from tribodyn.gear.pair_checks import match_problems, mesh_problems, mesh_warnings
 from tribodyn.gear.spur_gear import SpurGear
 
@@ -26,11 +27,15 @@ class SpurPair(MeshGeometry):
         Distance of the axes [m].
     driver : str
         ``"pinion"`` or ``"wheel"``.
+    misalignment : float
+        Difference of the gap over the common face width [m] that the position of the axes makes;
+        positive where the gap is wider at positive ``face_position``.
 
     Raises
     ------
     InputError
-        Listing every reason why the two gears cannot run together.
+        Listing every reason why the two gears cannot run together, or why a modification does not
+        fit the flank that is used.
 
     Warns
     -----
@@ -58,9 +63,11 @@ class SpurPair(MeshGeometry):
     wheel: SpurGear
     center_distance: float
     driver: str = "pinion"
+    misalignment: float = 0.0
 
     def __post_init__(self) -> None:
         problems = match_problems(self.pinion, self.wheel, self.driver) or mesh_problems(self)
+        problems = problems or modification_pair_problems(self)
         if problems:
             raise InputError(problems)
         for code, message in mesh_warnings(self):
@@ -88,3 +95,35 @@ class SpurPair(MeshGeometry):
     def common_face_width(self) -> float:
         """Face width in contact [m]."""
         return min(self.pinion.face_width, self.wheel.face_width)
+
+    @property
+    def has_profile_modification(self) -> bool:
+        """Whether the gap of a flank changes over its profile."""
+        return any(gear.modification.changes_profile for gear in (self.pinion, self.wheel))
+
+    @property
+    def has_lead_modification(self) -> bool:
+        """Whether the gap changes over the face width."""
+        leads = any(gear.modification.changes_lead for gear in (self.pinion, self.wheel))
+        return leads or self.misalignment != 0.0
+
+    @property
+    def has_pitch_deviation(self) -> bool:
+        """Whether tooth pairs differ by the places of their teeth."""
+        return any(gear.modification.changes_pitch for gear in (self.pinion, self.wheel))
+
+    @property
+    def has_run_out(self) -> bool:
+        """Whether a gear turns about an axis that is not its own."""
+        return any(gear.modification.run_out != 0.0 for gear in (self.pinion, self.wheel))
+
+    @property
+    def teeth_differ(self) -> bool:
+        """Whether one mesh cycle differs from the next."""
+        return self.has_pitch_deviation or self.has_run_out
+
+    @property
+    def has_modification(self) -> bool:
+        """Whether anything makes the flanks differ from involutes in their places."""
+        shape = self.has_profile_modification or self.has_lead_modification
+        return shape or self.teeth_differ

@@ -3,6 +3,7 @@
 from tribodyn.mesh.build import build
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.film import film_columns
+from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid, phase_grid
 from tribodyn.mesh.moving_film import moving_film
@@ -12,6 +13,7 @@ from tribodyn.mesh.table import MeshTable
 __all__ = [
     "FilmOverOperation",
     "MeshColumns",
+    "MeshForceLaw",
     "MeshFunctions",
     "MeshTable",
     "PhaseFunction",

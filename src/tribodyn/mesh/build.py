@@ -15,21 +15,22 @@ from tribodyn.errors import require_between, require_positive
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.cycle import MeshCycle, mesh_cycle
+from tribodyn.mesh.cycle import mesh_cycle
 from tribodyn.mesh.film import FILM_COLUMNS, as_columns
 from tribodyn.mesh.film_friction import film_friction
+from tribodyn.mesh.force_ramps import force_ramps
 from tribodyn.mesh.loads import (
+    IN_SERIES,
     Loads,
     quasi_static_loads,
     tribological_contact,
-    usable_stiffness,
     warn_of_rigid_films,
 )
 from tribodyn.mesh.path_film import SolvedPath
 from tribodyn.mesh.table import MeshTable
+from tribodyn.mesh.teeth import teeth_of
 from tribodyn.mesh.touching import touching_pairs
 from tribodyn.progress import SILENT, Progress
-from tribodyn.stiffness import MODELS
 
 __all__ = ["build"]
 
@@ -56,6 +57,7 @@ def build(
     pinion_speed: float,
     pinion_torque: float,
     steps: int = 512,
+    force_law: bool = False,
     progress: Progress = SILENT,
 ) -> MeshTable:
     """Compute everything that happens in the tooth contact over one mesh cycle.
@@ -88,6 +90,10 @@ def build(
         Magnitude of the torque on the pinion.
     steps : int
         Wanted number of phase intervals, at least 16.
+    force_law : bool
+        Fit the force law of pairs that are springs of their own too, whose stiffness may grow
+        with their load; else it is their stiffness times the deflection. That of pairs which are
+        solved together is always fitted.
     progress : Progress
         Told how many oil films are solved.
 
@@ -105,8 +111,10 @@ def build(
 
     Notes
     -----
-    Loads are quasi-static: pairs deflect alike, so each carries a share in proportion to its
-    secant stiffness. Hertz pressure, film and friction of a pair come from its own share. A film
+    Loads are quasi-static: those of the loaded tooth contact where the stiffness model couples
+    the pairs or flanks are modified; else pairs deflect alike, so each carries a share in
+    proportion to its secant stiffness. A tip corner that touches beyond the path of contact has
+    the friction of the end that is next to it, and no film of its own. Hertz pressure, film and friction of a pair come from its own share. A film
     that is solved is solved at some positions of the path of contact and interpolated between
     them. Source: the single laws, each named in its function.
 
@@ -128,7 +136,10 @@ def build(
     options = FILM_MODELS[film_model].complete(film_options)
     cycle = mesh_cycle(pair, steps)
     total_force = pinion_torque / pair.pinion.base_radius
-    teeth = _teeth(cycle, material, total_force, stiffness_model, stiffness_options)
+    places = (cycle.grid.phase, cycle.path, cycle.in_contact)
+    teeth = teeth_of(
+        cycle.contact, places, material, total_force, stiffness_model, stiffness_options
+    )
     motion = cycle.motion(pinion_speed)
     touching = touching_pairs(cycle, motion, lubricant, material)
     total_load = total_force / pair.common_face_width
@@ -136,24 +147,38 @@ def build(
         cycle, teeth, total_load, touching, pinion_speed, film_model, options, progress
     )
     warn_of_rigid_films(loads.film_at)
-    load_per_width = total_load * loads.share[cycle.in_contact]
-    tribology = tribological_contact(motion, touching, load_per_width, composite_roughness)
+    tribology = tribological_contact(motion, touching, loads.tribological, composite_roughness)
+    carried = loads.carried
+    load_per_width = total_load * carried.share[cycle.in_contact]
     columns: dict[str, FloatArray] = {
         **_motion_columns(motion),
         "sliding_direction": cycle.sliding_direction,
-        "load_per_width": tribology.load_per_width,
-        "hertz_pressure": tribology.hertz_pressure,
+        "load_per_width": load_per_width,
+        "hertz_pressure": np.where(load_per_width > 0.0, tribology.hertz_pressure, 0.0),
         "friction_coefficient": _friction(friction_law, friction_options, tribology, motion, loads),
-        **as_columns(loads.film_at(load_per_width), composite_roughness),
+        **as_columns(loads.film_at(loads.tribological), composite_roughness),
     }
+    without_film = carried if options["stiffness"] not in IN_SERIES else teeth.carried()
+    if force_law or teeth.stiffness is None:
+        film = _spread_film(columns, cycle.in_contact, options["stiffness"])
+        ramps = force_ramps(teeth.with_film(film), total_force)
+    else:
+        whole = carried.stiffness.sum(axis=1)[:, None]
+        ramps = np.zeros_like(whole), whole
     return MeshTable(
         grid=cycle.grid,
         path=cycle.path,
         in_contact=cycle.in_contact,
-        stiffness=loads.stiffness,
-        tooth_stiffness=teeth,
-        load_share=loads.share,
-        normal_force=total_force * loads.share,
+        stiffness=carried.stiffness,
+        tooth_stiffness=without_film.stiffness,
+        corner_share=carried.corner_share,
+        static_transmission_error=carried.transmission_error,
+        mesh_stiffness_tangent=carried.tangent,
+        maximum_single_pair_stiffness=teeth.maximum_single_pair_stiffness,
+        ramp_deflection=ramps[0],
+        ramp_stiffness=ramps[1],
+        load_share=carried.share,
+        normal_force=total_force * carried.share,
         gear_pair=pair,
         pinion_speed=float(pinion_speed),
         pinion_torque=float(pinion_torque),
@@ -166,17 +191,15 @@ def build(
     )
 
 
-def _teeth(
-    cycle: MeshCycle,
-    material: Material,
-    total_force: float,
-    model: str,
-    options: Mapping[str, Any],
-) -> FloatArray:
-    """Stiffness of the teeth of every pair."""
-    places = (cycle.path, cycle.in_contact, cycle.grid.phase)
-    found = MODELS[model](cycle.contact.pair, material, *places, total_force, **options)
-    return usable_stiffness(found, cycle.in_contact, model)
+def _spread_film(
+    columns: dict[str, FloatArray], in_contact: BoolArray, kind: str
+) -> FloatArray | None:
+    """Stiffness of the films that are in series with the teeth."""
+    if kind not in IN_SERIES:
+        return None
+    found = np.zeros(in_contact.shape)
+    found[in_contact] = columns["film_stiffness"]
+    return found
 
 
 def _friction(

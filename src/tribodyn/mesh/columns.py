@@ -45,6 +45,14 @@ class MeshColumns:
         film counts.
     tooth_stiffness : array (n, pairs) [N/m]
         Stiffness of the teeth of the pair alone.
+    corner_share : array (n, 2)
+        Part of the total normal force on tip corners that touch before A, and after E.
+    static_transmission_error : array (n,) [m]
+        Approach of the gears along the line of action under the quasi-static load.
+    mesh_stiffness_tangent : array (n,) [N/m]
+        Slope of the force of all pairs over that approach.
+    ramp_deflection, ramp_stiffness : array (n, ramps) [m], [N/m]
+        The force law of the mesh as a sum of ramps: where each begins, and its stiffness.
     load_share : array (n, pairs)
         Part of the total normal force on the pair.
     normal_force : array (n, pairs) [N]
@@ -64,6 +72,8 @@ class MeshColumns:
     film_stiffness : array (n, pairs) [N/m] or None
         Stiffness of the film of the pair, of the kind asked for; the tangent one if none is. A
         film that does not fall with the load counts as rigid: its stiffness has a bound.
+    maximum_single_pair_stiffness : float [N/m]
+        Greatest stiffness of one pair that carries the whole load alone.
     gear_pair : SpurPair
         Both gears in their working position.
     pinion_speed : float [rad/s]
@@ -91,6 +101,11 @@ class MeshColumns:
     wheel_curvature_radius: FloatArray
     stiffness: FloatArray
     tooth_stiffness: FloatArray
+    corner_share: FloatArray
+    static_transmission_error: FloatArray
+    mesh_stiffness_tangent: FloatArray
+    ramp_deflection: FloatArray
+    ramp_stiffness: FloatArray
     load_share: FloatArray
     normal_force: FloatArray
     load_per_width: FloatArray
@@ -101,6 +116,7 @@ class MeshColumns:
     film_ratio: FloatArray | None
     film_pressure: FloatArray | None
     film_stiffness: FloatArray | None
+    maximum_single_pair_stiffness: float
     gear_pair: SpurPair
     pinion_speed: float
     pinion_torque: float
@@ -162,24 +178,43 @@ class MeshColumns:
 
     @property
     def mesh_stiffness(self) -> FloatArray:
-        """Stiffness of all pairs together (n,) [N/m]."""
-        return np.asarray(self.stiffness.sum(axis=1))
+        """Secant stiffness of all pairs together, tip corners included (n,) [N/m]."""
+        known = self.stiffness.sum(axis=1)
+        return np.asarray(known + known * self.corner_share.sum(axis=1) / self.load_share.sum(1))
 
     @property
     def friction_sum(self) -> FloatArray:
         """Friction over normal force of all pairs together, with direction (n,)."""
-        return np.asarray(self._directed_friction.sum(axis=1))
+        return self.by_share(self._directed_friction)
 
     @property
     def friction_moment_pinion(self) -> FloatArray:
         """Friction moment on the pinion over total normal force (n,) [m]."""
-        return np.asarray((self._directed_friction * self.pinion_curvature_radius).sum(axis=1))
+        return self.by_share(self._directed_friction * self.pinion_curvature_radius)
 
     @property
     def friction_moment_wheel(self) -> FloatArray:
         """Friction moment on the wheel over total normal force (n,) [m]."""
-        return np.asarray((self._directed_friction * self.wheel_curvature_radius).sum(axis=1))
+        return self.by_share(self._directed_friction * self.wheel_curvature_radius)
 
     @property
     def _directed_friction(self) -> FloatArray:
-        return self.sliding_direction * self.friction_coefficient * self.load_share
+        return self.sliding_direction * self.friction_coefficient
+
+    def by_share(self, column: FloatArray) -> FloatArray:
+        """Sum a column over all pairs and tip corners, each with its part of the load.
+
+        Parameters
+        ----------
+        column : array (n, pairs)
+            Values in any unit; a tip corner beyond the path of contact has that of the end which
+            is next to it.
+
+        Returns
+        -------
+        array (n,)
+        """
+        last = int(np.flatnonzero(self.in_contact.any(axis=0))[-1])
+        leaving = int(np.flatnonzero(self.in_contact[:, last])[-1])
+        ends = np.array([column[0, 0], column[leaving, last]])
+        return np.asarray((column * self.load_share).sum(axis=1) + self.corner_share @ ends)

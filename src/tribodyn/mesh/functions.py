@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from tribodyn.mesh.force_law import MeshForceLaw
 
 __all__ = ["MeshFunctions"]
 
@@ -27,6 +33,14 @@ class MeshFunctions:
         The same sum, each pair with its lever, the radius of curvature of that gear [m].
     event_phases : tuple of float
         Phases at which the functions jump; they return the value after the jump.
+    tangent_stiffness : callable, optional
+        Slope of the force law at the nominal load [N/m].
+    static_transmission_error : callable, optional
+        Deflection under the nominal load at rest [m].
+    total_normal_force : float, optional
+        Nominal load along the line of action [N].
+    force_law : MeshForceLaw, optional
+        Force over deflection at every phase.
     """
 
     stiffness: Callable[[FloatArray | float], FloatArray]
@@ -34,3 +48,39 @@ class MeshFunctions:
     friction_moment_pinion: Callable[[FloatArray | float], FloatArray]
     friction_moment_wheel: Callable[[FloatArray | float], FloatArray]
     event_phases: tuple[float, ...]
+    tangent_stiffness: Callable[[FloatArray | float], FloatArray] | None = None
+    static_transmission_error: Callable[[FloatArray | float], FloatArray] | None = None
+    total_normal_force: float | None = None
+    force_law: MeshForceLaw | None = None
+
+    def tangent_error(self, phase: FloatArray | float) -> FloatArray:
+        """Error that makes the tangent stiffness deflect like the force law at the nominal load.
+
+        Parameters
+        ----------
+        phase : float or array
+            Mesh phase.
+
+        Returns
+        -------
+        array [m]
+            Static transmission error less the load over the tangent stiffness: the tangent to the
+            force law meets zero force at this deflection.
+
+        Raises
+        ------
+        InputError
+            If the mesh has no force law.
+        """
+        tangent, static = self.tangent_stiffness, self.static_transmission_error
+        if tangent is None or static is None or self.total_normal_force is None:
+            raise InputError(
+                Problem(
+                    what="this mesh has no tangent stiffness",
+                    where="argument mesh_force",
+                    why="Tangent stiffness and static transmission error come from a loaded tooth "
+                    "contact",
+                    remedy='Take such a stiffness model, or mesh_force = "stiffness"',
+                )
+            )
+        return np.asarray(static(phase) - self.total_normal_force / np.asarray(tangent(phase)))

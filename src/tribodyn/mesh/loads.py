@@ -16,15 +16,16 @@ from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle
 from tribodyn.mesh.path_film import FilmAt, PathFilm, SolvedPath, path_film
 from tribodyn.mesh.series import in_series
+from tribodyn.mesh.teeth import Carried, Teeth
 from tribodyn.mesh.touching import Touching
 from tribodyn.progress import Progress
 
 __all__ = [
     "IN_SERIES",
+    "LEAST_SHARE",
     "Loads",
     "quasi_static_loads",
     "tribological_contact",
-    "usable_stiffness",
     "warn_of_rigid_films",
 ]
 
@@ -32,68 +33,34 @@ FloatArray = NDArray[np.float64]
 #: Kinds of film stiffness that are springs; the printed sum of one source has the unit of a length.
 IN_SERIES = ("tangent", "secant")
 BoolArray = NDArray[np.bool_]
+#: Part of the load of all pairs for which film and friction of a pair are found at least.
+LEAST_SHARE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Stiffness, load share and film of every tooth pair.
+    """Loads, stiffness and film of every tooth pair.
 
     Parameters
     ----------
-    stiffness : array (n, pairs) [N/m]
-        Teeth, and film where it counts.
-    share : array (n, pairs)
-        Part of the total normal force.
+    carried : Carried
+        How the mesh carries its load, film included where it counts.
+    tribological : array (m,) [N/m]
+        Loads per width of the touching pairs for which film and friction are found; never less
+        than a thousandth of the load of all, where a relieved flank is not touched at all.
     film_at : callable
         Films of the touching pairs as a function of their loads per width; a
         :class:`tribodyn.mesh.path_film.SolvedPath` where they are solved.
     """
 
-    stiffness: FloatArray
-    share: FloatArray
+    carried: Carried
+    tribological: FloatArray
     film_at: FilmAt
-
-
-def usable_stiffness(found: FloatArray, in_contact: BoolArray, model: str) -> FloatArray:
-    """Check what a stiffness model gave; models of third parties are checked here once for all.
-
-    Parameters
-    ----------
-    found : array
-        What the model returned [N/m].
-    in_contact : bool array (n, pairs)
-        Whether the pair is in contact.
-    model : str
-        Name of the model.
-
-    Returns
-    -------
-    array (n, pairs) [N/m]
-
-    Raises
-    ------
-    ComputationError
-        If a pair in contact has no stiffness.
-    """
-    stiffness = np.asarray(found)
-    sound = stiffness.shape == in_contact.shape and bool(
-        np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))
-    )
-    if not sound:
-        raise ComputationError(
-            Problem(
-                what=f'the stiffness model "{model}" gave no usable pair stiffness',
-                where="stiffness of the tooth pairs",
-                why="It must be finite and positive where a pair is in contact, zero elsewhere",
-                remedy="Check the options of the model, or choose another",
-            )
-        )
-    return stiffness
 
 
 def quasi_static_loads(
     cycle: MeshCycle,
-    tooth_stiffness: FloatArray,
+    teeth: Teeth,
     total_load: float,
     touching: Touching,
     pinion_speed: float,
@@ -107,8 +74,8 @@ def quasi_static_loads(
     ----------
     cycle : MeshCycle
         Places of the pairs.
-    tooth_stiffness : array (n, pairs) [N/m]
-        Stiffness of the teeth of each pair.
+    teeth : Teeth
+        Teeth of all pairs.
     total_load : float [N/m]
         Load of all pairs together per face width.
     touching : Touching
@@ -131,12 +98,16 @@ def quasi_static_loads(
     ComputationError
         If a film cannot be solved, or the load share does not settle.
     """
+    least = 0.0 if teeth.stiffness is not None else LEAST_SHARE * total_load
+
+    def raised(loads: FloatArray) -> FloatArray:
+        return np.where(cycle.in_contact, np.maximum(loads, least), 0.0)
 
     def of_formula(loads: FloatArray) -> FilmAt:
-        return lambda load: touching.films(model, load, **options)
+        return lambda load: touching.films(model, np.maximum(load, least), **options)
 
     def of_path(loads: FloatArray) -> FilmAt:
-        return along.solve(along.load_of(cycle.grid, loads), progress)
+        return along.solve(along.load_of(cycle.grid, raised(loads)), progress)
 
     film_of = of_formula
     if FILM_MODELS[model].method:
@@ -145,10 +116,11 @@ def quasi_static_loads(
         )
         film_of = of_path
     if options["stiffness"] in IN_SERIES:
-        found = in_series(tooth_stiffness, cycle.in_contact, total_load, film_of, cycle.named)
-        return Loads(*found)
-    share = tooth_stiffness / tooth_stiffness.sum(axis=1, keepdims=True)
-    return Loads(tooth_stiffness, share, film_of(total_load * share))
+        carried, film_at = in_series(teeth, total_load, film_of, cycle.named)
+    else:
+        carried = teeth.carried()
+        film_at = film_of(total_load * carried.share)
+    return Loads(carried, raised(total_load * carried.share)[cycle.in_contact], film_at)
 
 
 def warn_of_rigid_films(film_at: FilmAt) -> None:

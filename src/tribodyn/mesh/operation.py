@@ -17,11 +17,11 @@ from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.film import as_columns
 from tribodyn.mesh.film_places import film_places
-from tribodyn.mesh.loads import usable_stiffness
+from tribodyn.mesh.loads import LEAST_SHARE
 from tribodyn.mesh.positions import PathPositions, path_positions
+from tribodyn.mesh.teeth import teeth_of
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.stiffness import MODELS
 
 if TYPE_CHECKING:
     import xarray
@@ -262,7 +262,7 @@ def _shares(
     path, in_contact = contact.pair_paths(phase)
     found = []
     for force in torque / pair.pinion.base_radius:
-        teeth = MODELS[model](pair, material, path, in_contact, phase, force, **options)
-        stiffness = usable_stiffness(teeth, in_contact, model)
-        found.append(stiffness[np.arange(age.size), number] / stiffness.sum(axis=1))
+        teeth = teeth_of(contact, (phase, path, in_contact), material, force, model, options)
+        share = teeth.carried().share[np.arange(age.size), number]
+        found.append(np.maximum(share, LEAST_SHARE))
     return np.array(found)

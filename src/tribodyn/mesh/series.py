@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, ModelWarning, Problem
 from tribodyn.mesh.path_film import FilmAt
+from tribodyn.mesh.teeth import Carried, Teeth
 
 __all__ = ["in_series"]
 
@@ -22,6 +23,8 @@ _PASSES = 20
 #: Between two solutions the shares settle to this; each pass gains one digit or two, and after
 #: every few of them the limit is extrapolated.
 _SETTLED = 1e-13
+#: Pairs that are solved together are solved to this.
+_SETTLED_TOGETHER = 1e-10
 _STEPS = 200
 _ROUND = 4
 #: Change of the steps, relative to them, without which nothing can be extrapolated.
@@ -31,20 +34,17 @@ _LOST = 1e-9
 
 
 def in_series(
-    tooth_stiffness: FloatArray,
-    in_contact: BoolArray,
+    teeth: Teeth,
     total_load: float,
     film_of: Callable[[FloatArray], FilmAt],
     where: Callable[[int, int], str],
-) -> tuple[FloatArray, FloatArray, FilmAt]:
-    """Put the film of each pair in series with its tooth_stiffness, at the load share that follows.
+) -> tuple[Carried, FilmAt]:
+    """Put the film of each pair in series with its teeth, at the load share that follows.
 
     Parameters
     ----------
-    tooth_stiffness : array (n, pairs) [N/m]
-        Stiffness of the teeth of each pair, zero where it is not in contact.
-    in_contact : bool array (n, pairs)
-        Whether the pair is in contact.
+    teeth : Teeth
+        Teeth of all pairs.
     total_load : float [N/m]
         Load of all pairs together per face width.
     film_of : callable
@@ -56,8 +56,8 @@ def in_series(
     Returns
     -------
     tuple
-        Stiffness of each pair (n, pairs) [N/m], its share of the load (n, pairs), and the films
-        of the touching pairs as a function of their loads.
+        How the mesh carries its load, and the films of the touching pairs as a function of their
+        loads.
 
     Raises
     ------
@@ -71,40 +71,41 @@ def in_series(
     load, hence the search for a fixed point. The teeth keep the stiffness that they have at the
     share without film, which differs by parts of a percent.
     """
-    share = tooth_stiffness / tooth_stiffness.sum(axis=1, keepdims=True)
+    share = teeth.carried().share
     for _ in range(_PASSES):
         film_at = film_of(total_load * share)
-        settled, stiffness = _settle(tooth_stiffness, in_contact, total_load, film_at, share, where)
-        change = float(np.max(np.abs(settled - share)))
-        share = settled
+        carried = _settle(teeth, total_load, film_at, share, where)
+        change = float(np.max(np.abs(carried.share - share)))
+        share = carried.share
         if change < _TOLERANCE:
-            return stiffness, share, film_at
+            return carried, film_at
     raise _unsettled(f"the load share still moves by {change:.2g} after {_PASSES} solutions")
 
 
 def _settle(
-    tooth_stiffness: FloatArray,
-    in_contact: BoolArray,
+    teeth: Teeth,
     total_load: float,
     film_at: FilmAt,
     share: FloatArray,
     where: Callable[[int, int], str],
-) -> tuple[FloatArray, FloatArray]:
+) -> Carried:
     """Find the fixed point of share and stiffness with the films as a function of their load."""
     earlier = [share]
+    settled = _SETTLED_TOGETHER if teeth.stiffness is None else _SETTLED
+    loaded = teeth.in_contact & (share > _LOST)
     for _ in range(_STEPS):
-        stiffness = _stiffness(tooth_stiffness, in_contact, total_load * share, film_at)
-        share = stiffness / stiffness.sum(axis=1, keepdims=True)
+        carried = teeth.carried(_film_stiffness(teeth.in_contact, total_load * share, film_at))
+        share = carried.share
         change = np.abs(share - earlier[-1])
-        if change.max() < _SETTLED:
-            return share, stiffness
-        lost = in_contact & (share < _LOST)
-        if lost.any():
+        if change.max() < settled:
+            return carried
+        lost = loaded & (share < _LOST)
+        if teeth.stiffness is not None and lost.any():
             row, pair = np.argwhere(lost)[0]
             raise _unsettled(f"{where(row, pair)} loses its whole load to its film")
         earlier.append(share)
         if len(earlier) == _ROUND:
-            share = _extrapolated(earlier, in_contact)
+            share = _extrapolated(earlier, teeth.in_contact)
             earlier = [share]
     row, pair = np.unravel_index(int(np.argmax(change)), change.shape)
     raise _unsettled(
@@ -113,16 +114,16 @@ def _settle(
     )
 
 
-def _stiffness(
-    tooth_stiffness: FloatArray, in_contact: BoolArray, load_per_width: FloatArray, film_at: FilmAt
+def _film_stiffness(
+    in_contact: BoolArray, load_per_width: FloatArray, film_at: FilmAt
 ) -> FloatArray:
-    """Stiffness of teeth and film in series, zero where the pair is not in contact."""
+    """Stiffness of the films, zero where the pair is not in contact."""
     with warnings.catch_warnings():
         # What a formula has to say, it says of the load share that is found.
         warnings.simplefilter("ignore", ModelWarning)
         film = film_at(load_per_width[in_contact]).film_stiffness
-    stiffness = np.zeros(tooth_stiffness.shape)
-    stiffness[in_contact] = 1.0 / (1.0 / tooth_stiffness[in_contact] + 1.0 / np.asarray(film))
+    stiffness = np.zeros(load_per_width.shape)
+    stiffness[in_contact] = np.asarray(film)
     return stiffness
 
 
@@ -133,7 +134,7 @@ def _extrapolated(earlier: list[FloatArray], in_contact: BoolArray) -> FloatArra
     safe = np.where(np.abs(bend) > _BENT * np.abs(step), bend, 1.0)
     limit = np.where(np.abs(bend) > _BENT * np.abs(step), third - step * step / safe, third)
     limit = np.where(in_contact & (limit > 0.5 * third), limit, third)
-    return np.asarray(limit / limit.sum(axis=1, keepdims=True))
+    return np.asarray(limit * (third.sum(axis=1) / limit.sum(axis=1))[:, None])
 
 
 def _unsettled(what: str) -> ComputationError:

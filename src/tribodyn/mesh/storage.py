@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, ModelWarning, OutputExistsError, Problem
-from tribodyn.gear import BasicRack, SpurGear, SpurPair
+from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import QUANTITIES
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["load", "save", "to_xarray"]
 
-_FORMAT = "tribodyn mesh table 2"
-#: Tables without a film in series with the teeth, as they were written before.
-_EARLIER = "tribodyn mesh table 1"
+_FORMAT = "tribodyn mesh table 3"
+#: Tables of independent pairs, as they were written before; the first without a film in series.
+_EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
 #: Columns whose quantity has another name in the nomenclature.
 _QUANTITY = {
     "stiffness": "pair_stiffness",
@@ -32,6 +32,8 @@ _QUANTITY = {
     "wheel_curvature_radius": "curvature_radius",
     "phase": "mesh_phase",
 }
+#: Second dimension of columns that are not over the pairs.
+_OVER = {"ramp_deflection": "ramp", "ramp_stiffness": "ramp", "corner_share": "end"}
 _DERIVED = ("mesh_stiffness", "friction_sum", "friction_moment_pinion", "friction_moment_wheel")
 
 
@@ -56,7 +58,9 @@ def to_xarray(table: MeshTable) -> xarray.Dataset:
     for field in fields(table):
         value = getattr(table, field.name)
         if isinstance(value, np.ndarray):
-            variables[field.name] = (("knot", "pair"), value, _describe(field.name))
+            over = _OVER.get(field.name, "pair")
+            dimensions = ("knot", over)[: value.ndim]
+            variables[field.name] = (dimensions, value, _describe(field.name))
         elif isinstance(value, float | str):
             attributes[field.name] = value
     for name in _DERIVED:
@@ -125,7 +129,7 @@ def load(path: str | PathLike[str]) -> MeshTable:
             data = opened.load()
     except (OSError, ValueError) as error:
         raise _unreadable(path, str(error)) from error
-    if data.attrs.get("format") not in (_FORMAT, _EARLIER):
+    if data.attrs.get("format") not in (_FORMAT, *_EARLIER):
         raise _unreadable(path, f"its format is {data.attrs.get('format', 'not named')}")
     grid = PhaseGrid(
         tuple(float(value) for value in data["event_phase"].values),
@@ -137,9 +141,26 @@ def load(path: str | PathLike[str]) -> MeshTable:
             values[field.name] = data[field.name].values
         elif field.name not in values:
             values[field.name] = _plain(data.attrs.get(field.name))
-    if data.attrs["format"] == _EARLIER:
-        values |= {"tooth_stiffness": values["stiffness"], "film_stiffness_kind": "none"}
+    if data.attrs["format"] != _FORMAT:
+        values = _earlier(values)
     return MeshTable(**values)
+
+
+def _earlier(values: dict[str, Any]) -> dict[str, Any]:
+    """Add what earlier tables did not have: their pairs were independent springs."""
+    whole = values["stiffness"].sum(axis=1)
+    force = values["pinion_torque"] / values["gear_pair"].pinion.base_radius
+    new = {
+        "tooth_stiffness": values["stiffness"],
+        "film_stiffness_kind": "none",
+        "corner_share": np.zeros((whole.size, 2)),
+        "static_transmission_error": force / whole,
+        "mesh_stiffness_tangent": whole,
+        "maximum_single_pair_stiffness": float(values["stiffness"].max()),
+        "ramp_deflection": np.zeros((whole.size, 1)),
+        "ramp_stiffness": whole[:, None],
+    }
+    return {**values, **{k: v for k, v in new.items() if values.get(k) is None}}
 
 
 def _plain(value: Any) -> Any:
@@ -169,5 +190,12 @@ def _read_pair(text: str) -> SpurPair:
         warnings.simplefilter("ignore", ModelWarning)
         for name in ("pinion", "wheel"):
             rack = BasicRack(**values[name].pop("rack"))
-            values[name] = SpurGear(rack=rack, **values[name])
+            modification = _read_modification(values[name].pop("modification", {}))
+            values[name] = SpurGear(rack=rack, modification=modification, **values[name])
         return SpurPair(**values)
+
+
+def _read_modification(values: dict[str, Any]) -> FlankModification:
+    """Modification of a gear; tables from before there were any have none."""
+    chart = values.pop("profile_map", None)
+    return FlankModification(profile_map=ProfileMap(**chart) if chart else None, **values)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, Problem
 from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction
 
@@ -39,13 +40,36 @@ class MeshTable(MeshColumns):
     @property
     def mean_friction_coefficient(self) -> float:
         """Mean over the cycle of the friction coefficient, weighted with the load share."""
-        return float(self.grid.mean((self.load_share * self.friction_coefficient).sum(axis=1)))
+        return float(self.grid.mean(self.by_share(self.friction_coefficient)))
 
     @property
     def mean_friction_power(self) -> float:
         """Mean over the cycle of the sliding power lost in the quasi-static mesh [W]."""
-        losses = self.friction_coefficient * self.normal_force * np.abs(self.sliding_speed)
-        return float(self.grid.mean(losses.sum(axis=1)))
+        losses = self.by_share(self.friction_coefficient * np.abs(self.sliding_speed))
+        return float(self.grid.mean(losses)) * self.total_normal_force
+
+    @property
+    def mean_mesh_stiffness_tangent(self) -> float:
+        """Mean of the tangent stiffness over the cycle [N/m]."""
+        return float(self.grid.mean(self.mesh_stiffness_tangent))
+
+    def harmonics(self, column: str, count: int = 5) -> FloatArray:
+        """Peak amplitudes of the mesh harmonics of a column over the phase.
+
+        Parameters
+        ----------
+        column : str
+            Name of an array over the knots.
+        count : int
+            Number of harmonics.
+
+        Returns
+        -------
+        array (count,)
+            Orders 1, 2, ... of the mesh frequency, in the unit of the column.
+        """
+        wave = np.exp(-2j * np.pi * np.outer(self.phase, np.arange(1, count + 1)))
+        return np.asarray(2.0 * np.abs(self.grid.mean(wave * getattr(self, column)[:, None])))
 
     def at(self, column: str, phase: FloatArray | float) -> FloatArray:
         """Interpolate a column at any mesh phase.
@@ -132,7 +156,16 @@ class MeshTable(MeshColumns):
             friction_moment_pinion=PhaseFunction(self.grid, self.friction_moment_pinion),
             friction_moment_wheel=PhaseFunction(self.grid, self.friction_moment_wheel),
             event_phases=self.event_phases,
+            tangent_stiffness=PhaseFunction(self.grid, self.mesh_stiffness_tangent),
+            static_transmission_error=PhaseFunction(self.grid, self.static_transmission_error),
+            total_normal_force=self.total_normal_force,
+            force_law=self.force_law,
         )
+
+    @property
+    def force_law(self) -> MeshForceLaw:
+        """Force over deflection at every mesh phase."""
+        return MeshForceLaw(self.grid, self.ramp_deflection, self.ramp_stiffness)
 
     def to_xarray(self) -> xarray.Dataset:
         """Convert to a labelled data set with units.

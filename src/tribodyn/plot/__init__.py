@@ -17,6 +17,8 @@ from tribodyn.plot.film_stiffness import film_stiffness
 from tribodyn.plot.friction import friction
 from tribodyn.plot.gear_pair import gear_pair
 from tribodyn.plot.line_contact import line_contact
+from tribodyn.plot.loaded_contact import loaded_contact
+from tribodyn.plot.loaded_sharing import loaded_sharing
 from tribodyn.plot.mesh_force import mesh_force
 from tribodyn.plot.mesh_stiffness import mesh_stiffness
 from tribodyn.plot.path_of_contact import path_of_contact
@@ -42,6 +44,8 @@ __all__ = [
     "friction",
     "gear_pair",
     "line_contact",
+    "loaded_contact",
+    "loaded_sharing",
     "mesh_force",
     "mesh_stiffness",
     "path_of_contact",

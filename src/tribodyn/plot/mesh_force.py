@@ -11,6 +11,7 @@ from tribodyn.plot.labels import axis_label, display_unit, rounded
 from tribodyn.plot.motion import Motion
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
+from tribodyn.study import record
 
 __all__ = ["mesh_force"]
 
@@ -18,11 +19,11 @@ __all__ = ["mesh_force"]
 def _below_zero(result: Any) -> str:
     """Explain a negative force, which the driving flanks alone could not bear."""
     fine = result.response.fine
-    if np.min(fine.contact_force[:, 0]) >= 0.0:
+    if np.min(signals.mesh_force(result)) >= 0.0:
         return ""
     if result.half_backlash == 0.0:
         return "Where it is negative, a mesh with play would part: this case has no backlash."
-    if np.min(fine.deflection[:, 0]) < -result.half_backlash:
+    if np.any(record.compression(fine) < -record.first_touch(result.system, fine)):
         return "Where it is negative, the play is used up and the back flanks touch."
     return "Where it is negative, the damping of the contact pulls just before the flanks part."
 

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def mesh_force(result: Any) -> Array:
-    """Dynamic force along the line of action.
+    """Dynamic force along the line of action, all ramps of a force law together.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def mesh_force(result: Any) -> Array:
     array, shape (3 s,)
         Force [N].
     """
-    return np.asarray(result.response.fine.contact_force[:, 0])
+    return record.mesh_force(result.response.fine)
 
 
 def transmission_error(result: Any) -> Array:

@@ -6,9 +6,17 @@ from tribodyn.stiffness.iso6336 import (
     iso6336_pair_stiffness,
     iso6336_single_stiffness,
 )
+from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.load_point import LoadPoint, load_point
+from tribodyn.stiffness.loaded import (
+    ContactProblem,
+    LoadedContact,
+    loaded_contact,
+    mesh_problem,
+)
 from tribodyn.stiffness.model import MODELS, StiffnessModel
 from tribodyn.stiffness.potential_energy import (
+    potential_energy_influence,
     potential_energy_stiffness,
     single_pair_stiffness,
 )
@@ -22,7 +30,10 @@ from tribodyn.stiffness.wind_up import wind_up_compliance
 
 __all__ = [
     "MODELS",
+    "ContactProblem",
+    "GearInfluence",
     "LoadPoint",
+    "LoadedContact",
     "StiffnessModel",
     "ToothBendingCompliance",
     "ToothCompliance",
@@ -31,6 +42,9 @@ __all__ = [
     "iso6336_pair_stiffness",
     "iso6336_single_stiffness",
     "load_point",
+    "loaded_contact",
+    "mesh_problem",
+    "potential_energy_influence",
     "potential_energy_stiffness",
     "rectangular_stiffness",
     "sainsot_coefficients",

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.registry import Registry
+from tribodyn.stiffness.influence import GearInfluence
 
 __all__ = ["MODELS", "StiffnessModel", "share_equally"]
 
@@ -37,11 +38,19 @@ class StiffnessModel:
     options : mapping of str to object
         Accepted options with their defaults; ``None`` where the user must give a value, or one
         of several values.
+    influence : callable, optional
+        ``influence(gear, material, *, reference)``: the structure of one gear, of models that
+        know it; these carry contacts anywhere on the flank, and deviations of the flanks.
+    coupled : bool
+        Whether pairs act on each other through the gear bodies; such a model is always solved
+        by the loaded tooth contact.
     """
 
     name: str
     function: Callable[..., FloatArray]
     options: Mapping[str, Any]
+    influence: Callable[..., GearInfluence] | None = None
+    coupled: bool = False
 
     def __call__(
         self,

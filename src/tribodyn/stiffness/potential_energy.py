@@ -14,13 +14,19 @@ from numpy.typing import NDArray
 
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ComputationError, Problem, require_positive
-from tribodyn.gear import Material, SpurPair
+from tribodyn.gear import Material, SpurGear, SpurPair
+from tribodyn.stiffness.analytic_nodes import flank_nodes
+from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.load_point import load_point
 from tribodyn.stiffness.model import MODELS, StiffnessModel
 from tribodyn.stiffness.tooth_compliance import tooth_compliance
 from tribodyn.stiffness.weber_banaschek import weber_banaschek_compression
 
-__all__ = ["potential_energy_stiffness", "single_pair_stiffness"]
+__all__ = [
+    "potential_energy_influence",
+    "potential_energy_stiffness",
+    "single_pair_stiffness",
+]
 
 FloatArray = NDArray[np.float64]
 
@@ -125,6 +131,47 @@ def single_pair_stiffness(
     return _contacts(pair, material, place, reference).stiffness(force)
 
 
+def potential_energy_influence(
+    gear: SpurGear, material: Material, *, reference: str = "bore"
+) -> GearInfluence:
+    """Structure of one gear whose teeth know nothing of each other.
+
+    Parameters
+    ----------
+    gear : SpurGear
+        The gear.
+    material : Material
+        Its material.
+    reference : str
+        ``"bore"`` or ``"rim"``: where the gear body is held.
+
+    Returns
+    -------
+    GearInfluence
+        Without neighbours.
+
+    Raises
+    ------
+    InputError
+        If the reference is unknown, or is the bore of a gear without bore.
+
+    Notes
+    -----
+    Source: :func:`tribodyn.stiffness.tooth_compliance`.
+
+    Examples
+    --------
+    >>> gear = SpurGear(teeth=24, normal_module=4.5e-3, normal_pressure_angle=0.349066,
+    ...     profile_shift_coefficient=0.0, tip_diameter=0.117, face_width=0.02)
+    >>> potential_energy_influence(gear, Material(), reference="rim").neighbours
+    0
+    """
+    radii = flank_nodes(gear)
+    load = load_point(gear, radii)
+    compliance = tooth_compliance(gear, load, 1.0, material, reference).total
+    return GearInfluence(radii, compliance, np.zeros((0, radii.size, radii.size)))
+
+
 def potential_energy_stiffness(
     pair: SpurPair,
     material: Material,
@@ -213,5 +260,7 @@ def _model(
 
 
 MODELS.register("potential-energy")(
-    StiffnessModel("potential-energy", _model, {"reference": "bore"})
+    StiffnessModel(
+        "potential-energy", _model, {"reference": "bore"}, influence=potential_energy_influence
+    )
 )

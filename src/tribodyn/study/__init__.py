@@ -12,12 +12,22 @@ if TYPE_CHECKING:
     from tribodyn.study.read import read_case
     from tribodyn.study.result import Result
     from tribodyn.study.summary_names import SUMMARY
+    from tribodyn.study.transmission_error import loaded_contact
 
-__all__ = ["SUMMARY", "Case", "Result", "film_over_operation", "read_case", "run"]
+__all__ = [
+    "SUMMARY",
+    "Case",
+    "Result",
+    "film_over_operation",
+    "loaded_contact",
+    "read_case",
+    "run",
+]
 
 _HOMES = {
     "Case": "case",
     "film_over_operation": "films",
+    "loaded_contact": "transmission_error",
     "read_case": "read",
     "run": "pipeline",
     "Result": "result",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,14 +10,55 @@ from numpy.typing import NDArray
 from tribodyn.study.geometry import geometry
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import System
+    from tribodyn.dynamics import MeshForce, System
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
 
-__all__ = ["static_error", "system_of"]
+__all__ = ["mesh_force_of", "static_error", "system_of", "tangent_error"]
 
 _GEARS = ("pinion", "wheel")
+
+
+def mesh_force_of(case: Case) -> MeshForce:
+    """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    "stiffness", "tangent" or "force-law"
+    """
+    from tribodyn.stiffness import MODELS
+
+    if case.dynamics.mesh_force is not None:
+        return cast("MeshForce", case.dynamics.mesh_force)
+    whole = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
+    return "force-law" if whole else "stiffness"
+
+
+def tangent_error(
+    case: Case, mesh: MeshTable, phase: NDArray[np.float64] | float
+) -> NDArray[np.float64] | float:
+    """Error that a tangent stiffness needs; zero where the teeth carry in another way.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    mesh : MeshTable
+        Its tooth contact.
+    phase : float or array
+        Mesh phase.
+
+    Returns
+    -------
+    float or array [m]
+    """
+    return mesh.functions().tangent_error(phase) if mesh_force_of(case) == "tangent" else 0.0
 
 
 def static_error(case: Case, phase: NDArray[np.float64] | float) -> NDArray[np.float64]:
@@ -67,6 +108,7 @@ def system_of(case: Case, mesh: MeshTable, damping: Damping) -> System:
         "backlash": case.backlash,
         "damping_in_gap": case.dynamics.damping_in_gap,
         "torque_balance": case.operation.torque_balance,
+        "mesh_force": mesh_force_of(case),
     }
     if case.dynamics.transmission_error_amplitude > 0.0:
         shared["error"] = lambda phase: static_error(case, phase)

@@ -11,15 +11,15 @@ import numpy as np
 from tribodyn.errors import ModelWarning
 from tribodyn.study.collect import collected
 from tribodyn.study.derive import gear_warnings
-from tribodyn.study.record import is_steady, measured
+from tribodyn.study.record import compression, first_touch, is_steady, measured
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Response
+    from tribodyn.dynamics import Response, System
     from tribodyn.gear import SpurGear
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case import Case
 
-__all__ = ["case_cautions", "mesh_cautions", "motion_cautions"]
+__all__ = ["case_cautions", "mesh_cautions", "motion_cautions", "teeth_cautions"]
 
 #: Hertzian pressure that case-hardened steel does not survive [Pa].
 _STEEL = 3e9
@@ -134,13 +134,15 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
         )
 
 
-def motion_cautions(case: Case, response: Response) -> tuple[ModelWarning, ...]:
+def motion_cautions(case: Case, system: System, response: Response) -> tuple[ModelWarning, ...]:
     """Find flanks that part in a steady motion.
 
     Parameters
     ----------
     case : Case
         The case.
+    system : System
+        Its structure.
     response : Response
         Its motion.
 
@@ -148,17 +150,38 @@ def motion_cautions(case: Case, response: Response) -> tuple[ModelWarning, ...]:
     -------
     tuple of ModelWarning
     """
-    gap = 0.5 * case.backlash
-    if gap == 0.0 or not is_steady(response):
+    if case.backlash == 0.0 or not is_steady(response):
         return ()
     samples = measured(response)
-    deflection = samples.deflection[:, 0]
-    share = float(samples.mean((deflection <= gap).astype(float)))
+    deflection, touch = compression(samples), first_touch(system, samples)
+    share = float(samples.mean((deflection <= touch).astype(float)))
     if share == 0.0:
         return ()
-    back = "the back flanks touch as well" if np.any(deflection < -gap) else "no back flank touches"
+    back = "the back flanks touch as well" if np.any(deflection < -touch) else ""
     message = (
-        f"the flanks are apart for {share:.3g} of the mesh cycle; {back}. More load or damping "
+        f"the flanks are apart for {share:.3g} of the mesh cycle; "
+        f"{back or 'no back flank touches'}. More load or damping "
         "keeps them together; other steady motions may exist beside this one"
     )
     return (ModelWarning("contact-loss", message),)
+
+
+def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
+    """Say what the motion leaves out where teeth differ from each other.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    tuple of ModelWarning
+    """
+    if not case.gear_pair.teeth_differ:
+        return ()
+    message = (
+        "pitch deviations and run-out differ from tooth to tooth: the static transmission error "
+        "runs over all teeth, the motion repeats with every mesh cycle and leaves them out"
+    )
+    return (ModelWarning("teeth-alike", message),)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic import ValidationError
 
@@ -13,10 +14,12 @@ from tribodyn.errors import InputError, ModelWarning, Problem
 from tribodyn.study.collect import collected
 from tribodyn.study.gears import Gear, Gears
 from tribodyn.study.given import Given
+from tribodyn.study.modification import Modification, flank_modification
+from tribodyn.study.profile_map_file import read_profile_map
 from tribodyn.study.surroundings import LubricantData, MaterialData
 
 if TYPE_CHECKING:
-    from tribodyn.gear import Material, SpurPair
+    from tribodyn.gear import FlankModification, Material, SpurPair
     from tribodyn.lubricant import Lubricant
     from tribodyn.study.case import Case
 
@@ -70,7 +73,7 @@ def gear_pair(gears: Gears, backlash: float | None = None) -> SpurPair:
     InputError
         Listing everything that makes the pair impossible.
     """
-    return _built(gears, backlash or None)[0]
+    return _built(gears, backlash or None, _modifications(gears))[0]
 
 
 def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWarning, ...]:
@@ -87,17 +90,56 @@ def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWar
     -------
     tuple of ModelWarning
     """
-    return _built(gears, backlash or None)[1]
+    return _built(gears, backlash or None, _modifications(gears))[1]
+
+
+class _Modified(NamedTuple):
+    """Modifications of pinion and wheel, or what is wrong with them."""
+
+    pinion: FlankModification | None
+    wheel: FlankModification | None
+    problems: tuple[Problem, ...]
+
+
+def _modifications(gears: Gears) -> _Modified:
+    """Modifications of both gears, files read anew where they have changed."""
+    problems: list[Problem] = []
+
+    def modification(name: str, data: Modification | None) -> FlankModification | None:
+        chart = None
+        try:
+            if data is not None and data.profile_map is not None:
+                chart = read_profile_map(data.profile_map, data.profile_map_interpolation)
+            return flank_modification(data, chart)
+        except InputError as error:
+            places = f"argument {name}_modification."
+            problems.extend(
+                replace(problem, where=problem.where.replace("argument ", places, 1))
+                for problem in error.problems
+            )
+            return None
+
+    both = (modification("pinion", gears.pinion.modification),
+            modification("wheel", gears.wheel.modification))  # fmt: skip
+    return _Modified(*both, tuple(problems))
 
 
 @lru_cache(maxsize=16)
-def _built(gears: Gears, backlash: float | None) -> tuple[SpurPair, tuple[ModelWarning, ...]]:
+def _built(
+    gears: Gears, backlash: float | None, modified: _Modified
+) -> tuple[SpurPair, tuple[ModelWarning, ...]]:
+    problems = list(modified.problems)
     with collected() as found:
-        pair = _spur_pair(gears, backlash)
+        try:
+            pair = _spur_pair(gears, backlash, modified)
+        except InputError as error:
+            problems += error.problems
+        if problems:
+            raise InputError(problems)
     return pair, tuple(found)
 
 
-def _spur_pair(gears: Gears, backlash: float | None) -> SpurPair:
+def _spur_pair(gears: Gears, backlash: float | None, modified: _Modified) -> SpurPair:
     from tribodyn.gear import BasicRack, spur_pair
 
     rack = BasicRack(
@@ -113,6 +155,9 @@ def _spur_pair(gears: Gears, backlash: float | None) -> SpurPair:
         backlash=backlash,
         pinion_rack=rack,
         wheel_rack=rack,
+        pinion_modification=modified.pinion,
+        wheel_modification=modified.wheel,
+        misalignment=gears.misalignment,
         **_gear_arguments("pinion", gears.pinion, gears.wheel),
         **_gear_arguments("wheel", gears.wheel, gears.pinion),
     )
@@ -182,7 +227,7 @@ def unused_lubricant() -> Lubricant:
 
 def _key(problem: Problem, section: str) -> str:
     """Key of the case file for the argument that a problem names."""
-    named = re.search(r"argument (?:(pinion|wheel)[_ .])?([a-z_]+)", problem.where)
+    named = re.search(r"argument (?:(pinion|wheel)[_ .])?([a-z_]+(?:\.[a-z_]+)?)", problem.where)
     if named is None:
         return section
     gear, name = named.groups()
@@ -243,12 +288,13 @@ def case_problems(case: Case) -> list[tuple[str, Problem]]:
 
 def _bores(case: Case) -> list[tuple[str, Problem]]:
     """A gear body without a bore has nothing that holds it."""
-    if case.stiffness.model != "potential-energy" or case.stiffness.reference != "bore":
+    model = case.stiffness.model
+    if case.stiffness.reference != "bore":
         return []
     gears = {"pinion": case.gears.pinion, "wheel": case.gears.wheel}
     problem = Problem(
         "bore_diameter = 0 mm",
-        why='The model "potential-energy" measures deflection against the bore',
+        why=f'The model "{model}" measures deflection against the bore',
         remedy='Give bore_diameter, or reference = "rim" in [stiffness], without the body',
     )
     return [

@@ -14,9 +14,6 @@ from tribodyn.study.values import written
 
 __all__ = ["section_at", "translate"]
 
-#: Tables that the case file will have one day, and what they are for.
-_LATER = {"modification": "flank modifications"}
-
 
 def section_at(model: type[BaseModel], path: tuple[str, ...]) -> type[Section] | None:
     """Return the section class at a dotted path below ``model``, or None.
@@ -56,8 +53,6 @@ def _unknown(model: type[BaseModel], path: tuple[str, ...], value: Any) -> Probl
     known = list(section.model_fields) if section else []
     shown = f"{name} = {written(value)}" if not isinstance(value, dict) else f"table [{name}]"
     place = f"[{'.'.join(table)}]" if table else "the top of the file"
-    if name in _LATER:
-        return Problem(f"{shown}: {_LATER[name]} come with a later release", remedy="Remove it")
     why = f"{place} has: {', '.join(known)}"
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
     if near:

@@ -1,8 +1,9 @@
 """One field of the case file: its meaning, its unit and what it accepts.
 
 Every section of the case declares its fields with :func:`number`, :func:`integer`,
-:func:`numbers`, :func:`choice`, :func:`flag` or :func:`text`. The :class:`Spec` behind a field is
-what checks its value, what the commented case file prints and what the documentation tables show.
+:func:`numbers`, :func:`choice`, :func:`flag`, :func:`text` or :func:`file_path`. The :class:`Spec`
+behind a field is what checks its value, what the commented case file prints and what the
+documentation tables show.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pydantic import Field
 from tribodyn import units
 from tribodyn.nomenclature import QUANTITIES
 
-__all__ = ["Spec", "choice", "flag", "integer", "number", "numbers", "text"]
+__all__ = ["Spec", "choice", "file_path", "flag", "integer", "number", "numbers", "text"]
 
 Names = Callable[[], list[str]]
 
@@ -29,7 +30,8 @@ class Spec:
     Parameters
     ----------
     kind : str
-        ``"number"``, ``"numbers"``, ``"integer"``, ``"choice"``, ``"flag"`` or ``"text"``.
+        ``"number"``, ``"numbers"``, ``"integer"``, ``"choice"``, ``"flag"``, ``"text"`` or
+        ``"file"``.
     meaning : str
         One line.
     symbol, unit, display_unit : str
@@ -81,7 +83,7 @@ class Spec:
         if low and high:
             sign = "above " if self.positive else ""
             return f"{sign}{self.show(self.low)} to {self.show(self.high)}"
-        return "text" if self.kind == "text" else "any finite value"
+        return {"text": "text", "file": "path of a file"}.get(self.kind, "any finite value")
 
 
 #: A sensible value of each quantity, shown where one is missing or not understood.
@@ -97,6 +99,11 @@ _EXAMPLES = {
     "bearing_damping": '"4000 N*s/m"', "mesh_damping": '"900 N*s/m"',
     "transmission_error": '"2 um"', "friction_coefficient": "0.05", "eyring_stress": '"5 MPa"',
     "temperature_viscosity_coefficient": '"0.04 1/K"', "thermal_conductivity": '"0.13 W/m/K"',
+    "tip_relief": '"10 um"', "tip_relief_length": '"4 mm"', "root_relief": '"10 um"',
+    "root_relief_length": '"4 mm"', "profile_crowning": '"5 um"', "profile_slope": '"5 um"',
+    "crowning": '"5 um"', "lead_slope": '"5 um"', "misalignment": '"5 um"', "run_out": '"20 um"',
+    "run_out_phase": '"0 deg"', "wear_depth": '"5 um"', "single_pitch_deviation": '"5 um"',
+    "cumulative_pitch_deviation": '"5 um"',
 }  # fmt: skip
 
 
@@ -165,3 +172,8 @@ def flag(default: bool | None, *, meaning: str) -> Any:
 def text(default: Any, *, meaning: str, example: str = "") -> Any:
     """Declare a field of free text."""
     return _field(default, Spec("text", meaning, example=example))
+
+
+def file_path(*, meaning: str, example: str) -> Any:
+    """Declare an optional path of a file; it becomes absolute."""
+    return _field(None, Spec("file", meaning, example=example))

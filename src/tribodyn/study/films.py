@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
-
-from pydantic_core import PydanticCustomError
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
-from tribodyn.study.surroundings import Operation
-from tribodyn.study.values import Plain, read_value
+from tribodyn.study.operating_points import operation_values
 
 if TYPE_CHECKING:
     from tribodyn.mesh import FilmOverOperation
@@ -72,22 +68,8 @@ def film_over_operation(
     with placed(case):
         return compute(
             pair,
-            pinion_torque=[value / turns for value in _values("torque", torque, case)],
-            pinion_speed=[value * turns for value in _values("speed", speed, case)],
+            pinion_torque=[value / turns for value in operation_values("torque", torque, case)],
+            pinion_speed=[value * turns for value in operation_values("speed", speed, case)],
             progress=progress,
             **model_settings(case),
         )
-
-
-def _values(name: str, given: Any, case: Case) -> list[float]:
-    """SI values of one or several torques or speeds, each checked like the key of the case."""
-    if given is None:
-        return [getattr(case.operation, name)]
-    several = isinstance(given, Iterable) and not isinstance(given, str)
-    spec = dict(Operation.specs())[name]
-    try:
-        return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]
-    except PydanticCustomError as error:
-        told = error.context or {}
-        problem = Problem(told["what"], f"argument {name}", told["why"], told["remedy"])
-        raise InputError(problem) from None

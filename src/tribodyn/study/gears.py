@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from tribodyn.study.fields import choice, integer, number
+from tribodyn.study.modification import Modification
 from tribodyn.study.section import Section
 
 __all__ = ["Gear", "Gears"]
@@ -29,6 +30,9 @@ class Gear(Section):
     moment_of_inertia: float | None = number(None, 1e-14, 1e7, _GUARD, of="moment_of_inertia")
     roughness_rms: float | None = number(
         None, 0.0, 20e-6, "ground to milled flanks; " + _GUARD, of="roughness_rms"
+    )
+    modification: Modification | None = Field(
+        None, description="what the loaded flanks have that the involute has not"
     )
 
 
@@ -57,5 +61,6 @@ class Gears(Section):
         "ISO 53 profiles lie between 0.25 and 0.39",
         of="rack_tip_radius_coefficient",
     )
+    misalignment: float = number(0.0, -0.5e-3, 0.5e-3, _GUARD, of="misalignment")
     pinion: Gear = Field(description="the smaller gear")
     wheel: Gear = Field(description="the larger gear")

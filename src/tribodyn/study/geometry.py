@@ -5,10 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tribodyn.gear import SpurGear
+    from tribodyn.gear import SpurGear, SpurPair
     from tribodyn.study.case import Case
 
 __all__ = ["geometry"]
+
+#: Modifications that are one figure each.
+_AMOUNTS = (
+    "tip_relief", "root_relief", "profile_crowning", "profile_slope", "crowning", "lead_slope",
+    "run_out",
+)  # fmt: skip
 
 
 def geometry(case: Case) -> dict[str, float]:
@@ -52,6 +58,7 @@ def geometry(case: Case) -> dict[str, float]:
     for key in bodies["pinion"]:
         for name, body in bodies.items():
             values[f"{key}_{name}"] = body[key]
+    values |= _modifications(pair)
     return {name: float(value) for name, value in values.items()}
 
 
@@ -70,3 +77,22 @@ def _body(case: Case, gear: SpurGear) -> dict[str, float]:
         "mass": solid.mass,
         "moment_of_inertia": solid.moment_of_inertia,
     }
+
+
+def _modifications(pair: SpurPair) -> dict[str, float]:
+    """Amounts that are not zero, with the lengths of the reliefs in force."""
+    from tribodyn.gear import default_relief_length, hunting_period
+
+    values = {"misalignment": pair.misalignment} if pair.misalignment else {}
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        given = gear.modification
+        for key in _AMOUNTS:
+            if getattr(given, key) != 0.0:
+                values[f"{key}_{name}"] = getattr(given, key)
+                if key in ("tip_relief", "root_relief"):
+                    length = getattr(given, f"{key}_length")
+                    own = default_relief_length(pair) if length is None else length
+                    values[f"{key}_length_{name}"] = own
+    if pair.has_pitch_deviation:
+        values["hunting_period"] = hunting_period(pair)
+    return values

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study import derive
-from tribodyn.study.assembly import system_of
-from tribodyn.study.cautions import case_cautions, mesh_cautions, motion_cautions
+from tribodyn.study.assembly import mesh_force_of, system_of
+from tribodyn.study.cautions import case_cautions, mesh_cautions, motion_cautions, teeth_cautions
 from tribodyn.study.collect import collected
 from tribodyn.study.damping import damping_of
 from tribodyn.study.motion import motion_of
@@ -65,8 +65,8 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
         system = system_of(case, mesh, damping)
         progress.finish()
         response = motion_of(case, system, mesh.mesh_frequency, progress)
-    noticed = (*mesh_cautions(mesh), *motion_cautions(case, response))
-    everything = (*case_cautions(case), *found, *noticed)
+    noticed = (*mesh_cautions(mesh), *motion_cautions(case, system, response))
+    everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
     told = tuple({str(warning): warning for warning in everything}.values())
     for warning in told:
         warnings.warn(warning, stacklevel=stacklevel)
@@ -118,6 +118,7 @@ def _mesh(case: Case, progress: Progress = SILENT) -> MeshTable:
         friction_options=_options(case, "friction", case.friction.law),
         pinion_speed=case.pinion_speed,
         pinion_torque=case.pinion_torque,
+        force_law=mesh_force_of(case) == "force-law",
         progress=progress,
         **model_settings(case),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from tribodyn.study.assembly import mesh_force_of
 from tribodyn.study.checks import DEFAULT_MARK
 from tribodyn.study.derived import BASIS, derived_values
 from tribodyn.study.faults import section_at
@@ -64,14 +65,17 @@ def spec_of(case: Case, key: str) -> Spec | None:
 def _option_default(case: Case, key: str) -> Any:
     """Default of an option of the chosen film model, stiffness model or friction law."""
     section, _, name = key.rpartition(".")
-    if key == "stiffness.reference" and case.stiffness.model == "potential-energy":
-        # A gear without a bore has no shaft seat to measure against.
-        bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
-        return "bore" if all(bores) else "rim"
+    if key == "dynamics.mesh_force":
+        return mesh_force_of(case)
     chosen = {
         "film": case.film.model, "stiffness": case.stiffness.model, "friction": case.friction.law,
     }.get(section)  # fmt: skip
-    return model_options(section, chosen).get(name) if chosen else None
+    default = model_options(section, chosen).get(name) if chosen else None
+    if key == "stiffness.reference" and default == "bore":
+        # A gear without a bore has no shaft seat to measure against.
+        bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
+        return "bore" if all(bores) else "rim"
+    return default
 
 
 def effective(case: Case) -> dict[str, Any]:

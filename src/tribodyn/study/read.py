@@ -84,7 +84,18 @@ normal_pressure_angle, driver, pinion, wheel.
     if not data:
         remedy = "Write a case to start from: tribodyn new my.toml --from fzg-roughness"
         raise InputError(Problem("the file holds no values", name, "", remedy))
+    _place_files(data, Path(name).parent)
     return Case(Source(name or "case", key_lines(text)), **data)
+
+
+def _place_files(data: dict[str, Any], folder: Path) -> None:
+    """Let the paths of a case begin at its own folder."""
+    for gear in ("pinion", "wheel"):
+        table: Any = data
+        for key in ("gears", gear, "modification"):
+            table = table.get(key) if isinstance(table, dict) else None
+        if isinstance(table, dict) and isinstance(table.get("profile_map"), str):
+            table["profile_map"] = str((folder / table["profile_map"]).absolute())
 
 
 def _parse(text: str, name: str) -> dict[str, Any]:

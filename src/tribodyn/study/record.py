@@ -8,13 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.study.assembly import tangent_error
+
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples, Response, System
     from tribodyn.study.result import Result
 
 __all__ = [
+    "compression",
+    "first_touch",
     "is_steady",
     "measured",
+    "mesh_force",
     "one_sided_phase",
     "support_forces",
     "transmission_error",
@@ -76,6 +81,58 @@ def one_sided_phase(samples: FineSamples) -> NDArray[np.float64]:
     return np.asarray(steps.reshape(-1))
 
 
+def mesh_force(samples: FineSamples) -> NDArray[np.float64]:
+    """Force of the mesh: the sum over the ramps of its force law, damping included.
+
+    Parameters
+    ----------
+    samples : FineSamples
+        Samples of a gear pair.
+
+    Returns
+    -------
+    (3 * steps,) array
+        Force along the line of action, positive where the driving flanks push [N].
+    """
+    return np.asarray(samples.contact_force.sum(axis=1))
+
+
+def compression(samples: FineSamples) -> NDArray[np.float64]:
+    """Compression of the mesh, which all ramps of its force law share.
+
+    Parameters
+    ----------
+    samples : FineSamples
+        Samples of a gear pair.
+
+    Returns
+    -------
+    (3 * steps,) array
+        Counted from the middle of the play [m].
+    """
+    return samples.deflection[:, 0]
+
+
+def first_touch(system: System, samples: FineSamples) -> NDArray[np.float64]:
+    """Compression at which the driving flanks begin to touch; its negative is that of the others.
+
+    Parameters
+    ----------
+    system : System
+        The structure and the contacts of its mesh; the first of them is the last to open.
+    samples : FineSamples
+        Samples of its motion.
+
+    Returns
+    -------
+    (3 * steps,) array
+        Half of the play, and what the flanks have been relieved by there [m].
+    """
+    gap = system.contacts[0].gap
+    values = gap(one_sided_phase(samples)) if callable(gap) else gap
+    return np.broadcast_to(np.asarray(values, dtype=float), samples.phase.shape)
+
+
 def transmission_error(result: Result, samples: FineSamples) -> NDArray[np.float64]:
     """Dynamic transmission error, counted from first contact of the driving flank.
 
@@ -89,9 +146,10 @@ def transmission_error(result: Result, samples: FineSamples) -> NDArray[np.float
     Returns
     -------
     (3 * steps,) array
-        Compression of the mesh, prescribed error included [m].
+        Compression of the mesh, errors included [m].
     """
-    error = samples.deflection[:, 0] + result.static_error(samples.phase)
+    error = compression(samples) + result.static_error(samples.phase)
+    error = error + tangent_error(result.case, result.mesh, one_sided_phase(samples))
     return np.asarray(error - result.half_backlash)
 
 

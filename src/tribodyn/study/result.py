@@ -17,6 +17,7 @@ from tribodyn.study.provenance import Assumption, assumptions
 from tribodyn.study.save import new_directory
 
 if TYPE_CHECKING:
+    from tribodyn.stiffness import LoadedContact
     import xarray
 
     from tribodyn.dynamics import Response, System
@@ -99,15 +100,28 @@ class Result:
         """
         return static_error(self.case, phase)
 
+    def loaded_contact(self) -> LoadedContact:
+        """Loaded tooth contact at rest: over all teeth where these differ, without oil film.
+
+        Returns
+        -------
+        LoadedContact
+        """
+        from tribodyn.study.transmission_error import loaded_contact
+
+        return loaded_contact(self.case)
+
     def to_xarray(self) -> xarray.Dataset:
         """Return the motion as a labelled data set.
 
         Returns
         -------
         xarray.Dataset
-            Series over time with units; the summary as attributes.
+            Series over time with units, among them ``mesh_force``, the force of all ramps of a
+            force law together; the summary as attributes.
         """
-        motion = self.response.to_xarray()
+        force = self.response.contact_force.sum(axis=1)
+        motion = self.response.to_xarray().assign(mesh_force=("time", force, {"units": "N"}))
         return motion.assign_attrs({"title": self.case.title, **self._summary})
 
     def cite(self, style: str = "text") -> str:

@@ -33,13 +33,13 @@ class Stiffness(Section):
     """The ``[stiffness]`` table: a model and its options; None where the model does not use one."""
 
     model: str = choice(
-        "potential-energy",
-        _stiffness_models,
-        later=("fe2d", "analytic", "weber"),
-        meaning="tooth stiffness model",
-    )
+        "fe2d", _stiffness_models, meaning="tooth stiffness model"
+    )  # fmt: skip
     reference: str | None = choice(
         None, ("bore", "rim"), meaning="body against which deflection is measured"
+    )
+    extended_contact: bool | None = flag(
+        None, meaning="let tip corners of bent teeth touch before A and after E"
     )
     pair_stiffness: float | None = number(None, 1e3, 1e13, _GUARD, of="pair_stiffness")
     single_pair_stiffness: float | None = number(
@@ -116,6 +116,11 @@ class Dynamics(Section):
         ("spur-6dof", "torsional"),
         later=("fzg-12dof", "hypoid-14dof"),
         meaning="structure that vibrates",
+    )
+    mesh_force: str | None = choice(
+        None,
+        ("stiffness", "tangent", "force-law"),
+        meaning="k(t) times deflection, linearized about the load, or the whole force law",
     )
     bearing_stiffness: float | None = number(None, 1e3, 1e13, _GUARD, of="bearing_stiffness")
     bearing_damping: float | None = number(None, 0.0, 1e9, _GUARD, of="bearing_damping")

@@ -8,8 +8,11 @@ import numpy as np
 
 from tribodyn.study.geometry import geometry
 from tribodyn.study.record import (
+    compression,
+    first_touch,
     is_steady,
     measured,
+    mesh_force,
     one_sided_phase,
     support_forces,
     transmission_error,
@@ -46,6 +49,7 @@ def summarize(result: Result) -> dict[str, float]:
     values: dict[str, Any] = {
         **geometry(result.case),
         **_mesh_figures(result.mesh),
+        **_static_error_figures(result),
         **_film_figures(result.mesh),
         **_force_figures(result, samples),
         **_error_figures(result, samples),
@@ -65,8 +69,29 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
         "mesh_frequency": mesh.mesh_frequency,
         "static_mesh_force": mesh.total_normal_force,
         "mean_mesh_stiffness": mesh.mean_mesh_stiffness,
+        "mean_mesh_stiffness_secant": mesh.mean_mesh_stiffness,
+        "mean_mesh_stiffness_tangent": mesh.mean_mesh_stiffness_tangent,
+        "maximum_single_pair_stiffness": mesh.maximum_single_pair_stiffness,
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
         "maximum_hertz_pressure": mesh.hertz_pressure.max(),
+    }
+
+
+def _static_error_figures(result: Result) -> dict[str, Any]:
+    """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
+    name = "static_transmission_error"
+    if result.case.gear_pair.teeth_differ:
+        loaded = result.loaded_contact()
+        mean, most = loaded.mean_transmission_error, loaded.peak_to_peak_transmission_error
+        amplitudes = loaded.transmission_error_harmonics(_HARMONICS)
+    else:
+        error = result.mesh.static_transmission_error
+        mean, most = result.mesh.grid.mean(error), np.ptp(error)
+        amplitudes = result.mesh.harmonics(name, _HARMONICS)
+    return {
+        f"mean_{name}": mean,
+        f"peak_to_peak_{name}": most,
+        **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},
     }
 
 
@@ -92,8 +117,8 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
 def _force_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     from tribodyn.analysis import extremes, mean, rms
 
-    force, gap = samples.contact_force[:, 0], result.half_backlash
-    apart = (samples.deflection[:, 0] <= gap) & (gap > 0.0)
+    force, touch = mesh_force(samples), first_touch(result.system, samples)
+    apart = (compression(samples) <= touch) & (touch > 0.0)
     least, greatest = extremes(force)
     return {
         "mesh_damping": result.damping.mesh,
@@ -123,9 +148,9 @@ def _friction_figures(mesh: MeshTable, samples: FineSamples) -> dict[str, Any]:
     from tribodyn.analysis import mean, rms
     from tribodyn.mesh import PhaseFunction
 
-    force, phase = samples.contact_force[:, 0], one_sided_phase(samples)
-    losses = mesh.friction_coefficient * mesh.load_share * np.abs(mesh.sliding_speed)
-    lost = PhaseFunction(mesh.grid, losses.sum(axis=1))(phase)
+    force, phase = mesh_force(samples), one_sided_phase(samples)
+    losses = mesh.by_share(mesh.friction_coefficient * np.abs(mesh.sliding_speed))
+    lost = PhaseFunction(mesh.grid, losses)(phase)
     return {
         "rms_friction_force": rms(samples, mesh.functions().friction_sum(phase) * force),
         "mean_friction_power": mean(samples, lost * force),

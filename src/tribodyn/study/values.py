@@ -8,6 +8,7 @@ import operator
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from pydantic_core import PydanticCustomError
@@ -176,7 +177,7 @@ def read_value(spec: Spec, name: str, value: Any) -> Any:
     if not isinstance(value, wanted):
         remedy = "Write true or false" if wanted is bool else "Write it in quotes"
         raise _fault(f"{name} = {written(value)}", f"{name} must be {spec.allowed()}", remedy)
-    return value
+    return str(Path(str(value)).absolute()) if spec.kind == "file" else value
 
 
 def _list(spec: Spec, name: str, value: Any, as_text: bool) -> tuple[float, ...]:

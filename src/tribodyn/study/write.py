@@ -84,6 +84,8 @@ def case_toml(case: Case) -> str:
         spec = spec_of(case, key)
         place, _, name = key.rpartition(".")
         if spec is None:
+            if key.endswith(".modification"):
+                lines += ["", f"# [{key}] is not given: the flanks are involutes"]
             continue
         if place != table:
             table = place

@@ -14,6 +14,9 @@ from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, build
 from tribodyn.mesh.series import in_series
+from tribodyn.mesh.teeth import Teeth
+from tribodyn.stiffness import ContactProblem
+from tribodyn.stiffness.loaded.structure import Compliance, independent_compliance
 
 OIL = Lubricant(0.082, 880.0, 21.9e-9)
 CONDITIONS = {
@@ -138,13 +141,20 @@ def test_a_table_draws_its_film(fzg):
 
 def test_a_table_of_the_earlier_format_is_read(fzg, tmp_path):
     mesh = build(fzg(), **CONDITIONS)
-    old = mesh.to_xarray().drop_vars("tooth_stiffness")
+    new = ["tooth_stiffness", "corner_share", "static_transmission_error"]
+    new += ["mesh_stiffness_tangent", "ramp_deflection", "ramp_stiffness"]
+    old = mesh.to_xarray().drop_vars(new)
     old.attrs["format"] = "tribodyn mesh table 1"
-    del old.attrs["film_stiffness_kind"]
+    del old.attrs["film_stiffness_kind"], old.attrs["maximum_single_pair_stiffness"]
     old.to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
     again = MeshTable.load(tmp_path / "old.nc")
     assert np.array_equal(again.tooth_stiffness, mesh.stiffness)
     assert (again.film_stiffness_kind, again.film_stiffness) == ("none", None)
+    error = mesh.total_normal_force / mesh.mesh_stiffness
+    assert again.static_transmission_error == pytest.approx(error, rel=1e-14)
+    assert again.force_law.deflection(0.3, mesh.total_normal_force) == pytest.approx(
+        again.at("static_transmission_error", 0.3), rel=1e-5
+    )
 
 
 def _film(stiffness_of):
@@ -152,33 +162,45 @@ def _film(stiffness_of):
     return lambda _: lambda load: types.SimpleNamespace(film_stiffness=stiffness_of(load))
 
 
+def springs(*stiffness):
+    """Teeth of one phase that are springs of their own, a metre wide, under 100 kN."""
+    each = np.array([stiffness])
+    gaps = np.zeros((1, 1, each.size))
+    compliance = Compliance(independent_compliance(each, 1.0), np.zeros(each.shape), 0.0)
+    problem = ContactProblem(None, compliance, gaps, np.ones(1))
+    return Teeth(each > 0.0, 1e5, each, problem)
+
+
+def solved(teeth, film):
+    carried, _ = in_series(teeth, 1e5, film, named)
+    # the tangent of springs is their sum, and so is the secant
+    assert carried.tangent == pytest.approx(carried.stiffness.sum(axis=1), rel=1e-9)
+    assert carried.transmission_error == pytest.approx(1e5 / carried.tangent, rel=1e-9)
+    return carried.stiffness, carried.share
+
+
 def test_two_springs_by_hand():
-    teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
-    stiffness, share, _ = in_series(
-        teeth, both, 1e5, _film(lambda load: np.array([6e8, 1e8])), named
-    )
+    stiffness, share = solved(springs(3e8, 1e8), _film(lambda load: np.array([6e8, 1e8])))
     assert stiffness.tolist() == [[pytest.approx(2e8), pytest.approx(0.5e8)]]
     assert share.tolist() == [[pytest.approx(0.8), pytest.approx(0.2)]]
 
 
 def test_a_film_in_proportion_to_its_load_settles_at_its_fixed_point():
     # K = c w: the film of each pair yields by the same 1/c, so that the teeth share as without it
-    teeth, both, c = np.array([[3e8, 1e8]]), np.array([[True, True]]), 1e5
-    stiffness, share, _ = in_series(teeth, both, 1e5, _film(lambda load: c * load), named)
+    c = 1e5
+    stiffness, share = solved(springs(3e8, 1e8), _film(lambda load: c * load))
     assert share[0] == pytest.approx([0.75, 0.25], rel=1e-11)
     assert stiffness[0] == pytest.approx(1e5 * share[0] / (1e5 / 4e8 + 1.0 / c), rel=1e-10)
 
 
 def test_a_film_softer_than_its_teeth_takes_the_load_away():
     # the film of the first pair yields by 10 mm at any load, more than the second ever does
-    teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
     film = _film(lambda load: np.array([100.0 * load[0], 1e9]))
     with pytest.raises(ComputationError, match=r'pair 0 in row 0 loses.*film\.stiffness = "none"'):
-        in_series(teeth, both, 1e5, film, named)
+        solved(springs(3e8, 1e8), film)
 
 
 def test_a_film_that_is_never_the_same_is_refused():
-    teeth, both = np.array([[3e8, 1e8]]), np.array([[True, True]])
     films = iter(range(1000))
 
     def restless(_):
@@ -186,11 +208,10 @@ def test_a_film_that_is_never_the_same_is_refused():
         return lambda load: types.SimpleNamespace(film_stiffness=np.array([factor, 1.0]) * 1e8)
 
     with pytest.raises(ComputationError, match="still moves by"):
-        in_series(teeth, both, 1e5, restless, named)
+        solved(springs(3e8, 1e8), restless)
 
 
 def test_one_pair_alone_keeps_its_load():
-    teeth, one = np.array([[2e8, 0.0]]), np.array([[True, False]])
-    stiffness, share, _ = in_series(teeth, one, 1e5, _film(lambda load: np.array([2e8])), named)
+    stiffness, share = solved(springs(2e8, 0.0), _film(lambda load: np.array([2e8])))
     assert stiffness.tolist() == [[pytest.approx(1e8), 0.0]]
     assert share.tolist() == [[1.0, 0.0]]

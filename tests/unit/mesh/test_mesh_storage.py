@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+import json
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.gear import Material
+from tribodyn.gear import FlankModification, Material, ProfileMap, flank_ranges
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, build
 from tribodyn.nomenclature import QUANTITIES
@@ -47,6 +48,42 @@ def test_a_round_trip_is_exact(mesh, tmp_path):
     assert np.array_equal(again.phase, mesh.phase)
     assert repr(again) == repr(mesh)
     assert np.array_equal(again.at("stiffness", 0.123), mesh.at("stiffness", 0.123))
+
+
+def test_modifications_come_back(mesh, fzg, tmp_path):
+    pinion, _ = flank_ranges(fzg())
+    rows = ((1e-6, 2e-6), (3e-6, -4e-6))
+    pair = fzg(
+        pinion_modification=FlankModification(
+            tip_relief=10e-6,
+            tip_relief_length=3e-3,
+            tip_relief_shape="parabolic",
+            wear_depth=(1e-6, 2e-6),
+            profile_map=ProfileMap(tuple(pinion), (-10e-3, 10e-3), rows),
+        ),
+        wheel_modification=FlankModification(
+            cumulative_pitch_deviation=tuple(tooth * 1e-7 for tooth in range(24)), run_out=9e-6
+        ),
+        misalignment=-4e-6,
+    )
+    replace(mesh, gear_pair=pair).save(tmp_path / "mesh.nc")
+    again = MeshTable.load(tmp_path / "mesh.nc").gear_pair
+    assert again == pair
+    assert hash(again) == hash(pair)
+    assert again != mesh.gear_pair
+
+
+def test_a_table_from_before_modifications_has_none(mesh, tmp_path):
+    import xarray
+
+    mesh.save(tmp_path / "mesh.nc")
+    with xarray.open_dataset(tmp_path / "mesh.nc", engine="h5netcdf") as opened:
+        data = opened.load()
+    pair = json.loads(data.attrs["gear_pair"])
+    del pair["misalignment"], pair["pinion"]["modification"], pair["wheel"]["modification"]
+    data.attrs["gear_pair"] = json.dumps(pair)
+    data.to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
+    assert MeshTable.load(tmp_path / "old.nc").gear_pair == mesh.gear_pair
 
 
 def test_columns_carry_the_units_of_the_nomenclature(mesh):

@@ -151,11 +151,8 @@ BROKEN = (
            ("film.stiffness", '"sekant"', "none, tangent, secant, seed", '"secant"?')),
     Broken("unknown-inlet", "[solver]", _film('inlet = "dry"'), "inlet",
            ("film.inlet", '"dry"', "flooded, zero", "Choose one")),
-    Broken("later-stiffness", 'model = "rectangular"', 'model = "fe2d"', 'model = "fe2d"',
-           ("stiffness.model", "later release", "potential-energy")),
-    Broken("later-table", "[gears.wheel]",
-           '[gears.pinion.modification]\ntip_relief = "10 um"\n[gears.wheel]', "modification",
-           ("gears.pinion.modification", "flank modifications", "later release")),
+    Broken("unknown-stiffness", 'model = "rectangular"', 'model = "fe3d"', 'model = "fe3d"',
+           ("stiffness.model", '"fe3d"', "potential-energy", '"fe2d"?')),
     Broken("unknown-oil", _OIL, 'name = "80V"', 'name = "80V"',
            ("lubricant.name", '"80V"', 'Did you mean "80W"?')),
     # missing

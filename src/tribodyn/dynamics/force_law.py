@@ -1,0 +1,175 @@
+"""Contacts of a gear mesh: a plain stiffness, the tangent to a force law, or the law itself.
+
+The kernel knows a contact as a spring with a dead zone. A convex force law made of ramps is then
+a bundle of contacts: all have the same direction, friction and error, each has the stiffness of
+its ramp, and half of its dead zone is half of the play plus the place where the ramp begins. The
+back flanks get the same law, mirrored at the middle of the play.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.gear_pair import gear_contact
+from tribodyn.dynamics.system import Contact, Entry
+from tribodyn.errors import InputError, Problem
+from tribodyn.mesh import PhaseFunction
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshForceLaw, MeshFunctions
+
+__all__ = ["MeshForce", "gear_contacts", "law_contacts"]
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+MeshForce = Literal["stiffness", "tangent", "force-law"]
+
+
+def gear_contacts(
+    mesh: MeshFunctions, *, mesh_force: MeshForce = "stiffness", **options: Any
+) -> tuple[Contact, ...]:
+    """Build the contacts of one gear pair; all have the same compression.
+
+    Parameters
+    ----------
+    mesh : MeshFunctions
+        Functions of the mesh phase.
+    mesh_force : "stiffness", "tangent" or "force-law"
+        How the teeth carry: with the mesh stiffness; with the tangent stiffness, displaced so that
+        the nominal load at rest gives the static transmission error; or with the force law.
+    **options
+        Those of :func:`~tribodyn.dynamics.gear_pair.gear_contact`.
+
+    Returns
+    -------
+    tuple of Contact
+        One, or as many as the force law has ramps: the first opens last and has all the damping.
+
+    Raises
+    ------
+    InputError
+        If ``mesh_force`` is none of the three, the mesh does not have what it needs, or a pair
+        touches before the play is used up.
+    """
+    one = gear_contact(mesh, **options)
+    if mesh_force == "stiffness":
+        return (one,)
+    if mesh_force == "tangent":
+        tangent = _needed(mesh.tangent_stiffness, "tangent stiffness")
+        return (replace(one, stiffness=tangent, error=_sum_of(one.error, mesh.tangent_error)),)
+    if mesh_force == "force-law":
+        return law_contacts(one, _needed(mesh.force_law, "force law"))
+    raise InputError(
+        Problem(
+            what=f'mesh_force = "{mesh_force}"',
+            where="argument mesh_force",
+            why='"stiffness", "tangent" or "force-law"',
+        )
+    )
+
+
+def _needed(value: T | None, name: str) -> T:
+    if value is None:
+        raise InputError(
+            Problem(
+                what=f"this mesh has no {name}",
+                where="argument mesh_force",
+                why="It comes from a loaded tooth contact",
+                remedy='Take such a stiffness model, or mesh_force = "stiffness"',
+            )
+        )
+    return value
+
+
+def _sum_of(first: Entry, second: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    def both(phase: Array) -> Array:
+        given = first(phase) if callable(first) else first
+        return np.asarray(np.asarray(given, dtype=float) + second(phase))
+
+    return both
+
+
+def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
+    """Give a contact a force law instead of its stiffness: one contact for each ramp.
+
+    Parameters
+    ----------
+    contact : Contact
+        Direction, error, friction, damping and events of all of them; its gap, a constant, is
+        half of the play.
+    law : MeshForceLaw
+        Force over the compression beyond the play, at every mesh phase.
+
+    Returns
+    -------
+    tuple of Contact
+        The first of them is the last to open and has all the damping. Their forces add up.
+
+    Raises
+    ------
+    InputError
+        If the gap is a function, or a pair touches before the play is used up.
+
+    Notes
+    -----
+    The law acts on both flanks, mirrored at the middle of the play. Where no ramp is the lowest at
+    all phases, one more contact without stiffness carries the damping.
+
+    Examples
+    --------
+    >>> from tribodyn.mesh import MeshForceLaw, phase_grid
+    >>> places, stiffness = np.tile([0.0, 1e-5], (17, 1)), np.tile([2e8, 1e8], (17, 1))
+    >>> law = MeshForceLaw(phase_grid((0.0,), 16), places, stiffness)
+    >>> [each.damping for each in law_contacts(Contact([1.0], 0.0, damping=900.0, gap=5e-5), law)]
+    [900.0, 0.0]
+    """
+    if callable(contact.gap) or np.ndim(contact.gap):
+        raise InputError(
+            Problem(
+                what="gap is no constant",
+                where="argument contact",
+                why="It is half of the play; the law says where each ramp begins",
+                remedy="Put what varies into the law",
+            )
+        )
+    half = float(np.asarray(contact.gap))
+    first = float(law.knot_first_touch.min())
+    if half + first < 0.0:
+        raise InputError(
+            Problem(
+                what=f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
+                f"of the play is {1e6 * half:.4g} um",
+                where="argument backlash",
+                why="The teeth would be clamped between both flanks",
+                remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
+            )
+        )
+    lowest = law.lowest
+    ramps = [
+        replace(
+            contact,
+            stiffness=_no_less_than_zero(PhaseFunction(law.grid, law.knot_stiffness[:, column])),
+            gap=_no_less_than_zero(PhaseFunction(law.grid, half + law.knot_deflection[:, column])),
+            damping=contact.damping if column == lowest else 0.0,
+        )
+        for column in range(law.knot_stiffness.shape[1])
+    ]
+    opening = PhaseFunction(law.grid, half + law.knot_first_touch)
+    carrying = [
+        ramp
+        for column, ramp in enumerate(ramps)
+        if column != lowest and np.any(law.knot_stiffness[:, column])
+    ]
+    if lowest is not None:
+        return (ramps[lowest], *carrying)
+    return (replace(contact, stiffness=0.0, gap=_no_less_than_zero(opening)), *carrying)
+
+
+def _no_less_than_zero(function: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    """Interpolation may undershoot zero between two knots."""
+    return lambda phase: np.maximum(function(phase), 0.0)

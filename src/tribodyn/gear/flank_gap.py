@@ -1,0 +1,176 @@
+"""The gap that modified flanks leave where unmodified ones would touch."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.gear.flank_range import FlankRange, default_relief_length, flank_ranges
+from tribodyn.gear.modification import FlankModification
+from tribodyn.gear.spur_gear import SpurGear
+from tribodyn.gear.spur_pair import SpurPair
+
+__all__ = ["flank_gap", "lead_gap", "profile_gap"]
+
+Array = NDArray[np.float64]
+
+
+def _relief(distance: Array, amount: float, length: float, shape: str) -> Array:
+    """Relief at a distance from the end of the flank; beyond the end as at the end."""
+    left = np.clip(1.0 - distance / length, 0.0, 1.0)
+    return amount * (left if shape == "linear" else left**2)
+
+
+def _worn(given: FlankModification, place: Array) -> Array:
+    depth = np.atleast_1d(np.asarray(given.wear_depth, dtype=float))
+    if depth.size == 0:
+        return np.zeros(place.shape)
+    return np.asarray(np.interp(place, np.linspace(0.0, 1.0, depth.size), depth))
+
+
+def profile_gap(
+    gear: SpurGear, curvature_radius: ArrayLike, flank: FlankRange, relief_length: float
+) -> Array:
+    """Material that is missing on a flank over its profile: reliefs, crowning, slope and wear.
+
+    Parameters
+    ----------
+    gear : SpurGear
+        Gear with its modification.
+    curvature_radius : float or array [m]
+        Radius of curvature of the flank at the contact. Off the used flank the value at its end
+        holds.
+    flank : FlankRange
+        Used flank of the gear.
+    relief_length : float [m]
+        Length of a relief whose own length is not stated.
+
+    Returns
+    -------
+    array [m]
+        Shape of ``curvature_radius``; positive where material is missing. Tip and root relief add
+        where they overlap.
+
+    Notes
+    -----
+    With the distance d from the end of the used flank a relief of amount C and length L is
+    C (1 - d/L), or C (1 - d/L)^2 if it is parabolic. Profile crowning is C (2x - 1)^2 and profile
+    slope C x, with x from zero at the lowest point to one at the tip. Source: ISO 21771.
+
+    Examples
+    --------
+    >>> import math
+    >>> from tribodyn.gear import FlankModification
+    >>> gear = SpurGear(teeth=20, normal_module=2e-3, normal_pressure_angle=math.radians(20.0),
+    ...                 profile_shift_coefficient=0.0, tip_diameter=44e-3, face_width=10e-3,
+    ...                 modification=FlankModification(tip_relief=10e-6))
+    >>> gap = profile_gap(gear, [5e-3, 9e-3, 10e-3], FlankRange(4e-3, 10e-3), 2e-3)
+    >>> [round(float(value) * 1e6, 6) for value in gap]
+    [0.0, 5.0, 10.0]
+    """
+    given = gear.modification
+    radius = np.clip(np.asarray(curvature_radius, dtype=float), *flank)
+    place = (radius - flank.lowest) / flank.length
+    tip, root = (
+        relief_length if length is None else length
+        for length in (given.tip_relief_length, given.root_relief_length)
+    )
+    gap = _relief(flank.highest - radius, given.tip_relief, tip, given.tip_relief_shape)
+    gap = gap + _relief(radius - flank.lowest, given.root_relief, root, given.root_relief_shape)
+    gap = gap + given.profile_crowning * (2.0 * place - 1.0) ** 2 + given.profile_slope * place
+    return np.asarray(gap + _worn(given, place))
+
+
+def lead_gap(gear: SpurGear, face_position: ArrayLike) -> Array:
+    """Material that is missing on a flank over its width: crowning and slope.
+
+    Parameters
+    ----------
+    gear : SpurGear
+        Gear with its modification.
+    face_position : float or array [m]
+        Place along the face from its middle.
+
+    Returns
+    -------
+    array [m]
+        Shape of ``face_position``; positive where material is missing.
+
+    Notes
+    -----
+    Crowning is C (2y/b)^2 and lead slope C y/b with the face width b of the gear. Source:
+    ISO 21771.
+
+    Examples
+    --------
+    >>> import math
+    >>> from tribodyn.gear import FlankModification
+    >>> gear = SpurGear(teeth=20, normal_module=2e-3, normal_pressure_angle=math.radians(20.0),
+    ...                 profile_shift_coefficient=0.0, tip_diameter=44e-3, face_width=10e-3,
+    ...                 modification=FlankModification(crowning=8e-6))
+    >>> [round(float(value) * 1e6, 6) for value in lead_gap(gear, [-5e-3, 0.0, 2.5e-3])]
+    [8.0, 0.0, 2.0]
+    """
+    given = gear.modification
+    place = np.asarray(face_position, dtype=float) / gear.face_width
+    return np.asarray(given.crowning * (2.0 * place) ** 2 + given.lead_slope * place)
+
+
+def flank_gap(
+    pair: SpurPair,
+    pinion_curvature_radius: ArrayLike,
+    wheel_curvature_radius: ArrayLike,
+    face_position: ArrayLike = 0.0,
+) -> Array:
+    """Gap that the shapes of both flanks leave where involutes would touch.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The pair, with the modifications of its gears and its misalignment.
+    pinion_curvature_radius, wheel_curvature_radius : float or array [m]
+        Radii of curvature of both flanks at the contact: ``path`` and the length of the line of
+        action less ``path``, or those of :func:`tribodyn.contact.extended_contact`.
+    face_position : float or array [m]
+        Place along the face from its middle, within the common face width.
+
+    Returns
+    -------
+    array [m]
+        The broadcast shape of all three; positive where the flanks stand apart, negative where
+        they would overlap. Pitch deviations and run-out are not part of it.
+
+    Notes
+    -----
+    Sum of what is missing on both flanks, less what a measured map has in excess, and misalignment
+    times y/b with the common face width b.
+
+    Examples
+    --------
+    >>> import math
+    >>> from tribodyn.gear import FlankModification, spur_pair
+    >>> relief = FlankModification(tip_relief=10e-6)
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...                  normal_pressure_angle=math.radians(20.0), pinion_face_width=50e-3,
+    ...                  pinion_modification=relief, wheel_modification=relief)
+    >>> low, high = pair.path_limits
+    >>> path = np.array([low, 0.5 * (low + high), high])
+    >>> [round(float(gap) * 1e6, 6)
+    ...  for gap in flank_gap(pair, path, pair.line_of_action_length - path)]
+    [10.0, 0.0, 10.0]
+    """
+    face = np.asarray(face_position, dtype=float)
+    gap = pair.misalignment * face / pair.common_face_width
+    length = default_relief_length(pair)
+    for gear, flank, radius in zip(
+        (pair.pinion, pair.wheel),
+        flank_ranges(pair),
+        (pinion_curvature_radius, wheel_curvature_radius),
+        strict=True,
+    ):
+        gap = gap + profile_gap(gear, radius, flank, length) + lead_gap(gear, face)
+        chart = gear.modification.profile_map
+        if chart is not None:
+            inside = np.clip(np.asarray(radius, dtype=float), *flank)
+            gap = gap - chart.at(inside, face, base_radius=gear.base_radius)
+    return np.asarray(gap)

@@ -1,0 +1,161 @@
+"""What the flanks of a gear have that the involute has not: modifications and deviations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from tribodyn.errors import InputError
+from tribodyn.gear.modification_checks import modification_value_problems
+from tribodyn.gear.modification_map import ProfileMap
+
+__all__ = ["FlankModification"]
+
+_LISTS = ("single_pitch_deviation", "cumulative_pitch_deviation", "wear_depth")
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlankModification:
+    """Modifications and deviations of the loaded flanks of a gear; nothing by default.
+
+    Amounts are measured along the normal of the flank, which is the line of action; what takes
+    material away is positive. Lengths are measured along the line of action (roll length).
+
+    Parameters
+    ----------
+    tip_relief : float [m]
+        Material taken away at the tip.
+    tip_relief_length : float [m], optional
+        Distance from the tip inwards over which the relief falls to zero; by default as far as
+        more than the least number of tooth pairs is in contact.
+    tip_relief_shape : str
+        ``"linear"`` or ``"parabolic"``.
+    root_relief : float [m]
+        Material taken away at the lowest point that the mate touches.
+    root_relief_length : float [m], optional
+        Distance from that point outwards; the default is that of the tip.
+    root_relief_shape : str
+        ``"linear"`` or ``"parabolic"``.
+    profile_crowning : float [m]
+        Material taken away at both ends of the used flank against its middle, as a parabola.
+    profile_slope : float [m]
+        Material taken away at the tip, growing in proportion from the lowest point.
+    crowning : float [m]
+        Material taken away at both ends of the face against its middle, as a parabola.
+    lead_slope : float [m]
+        Material taken away at the end of the face where ``face_position`` is positive, more than
+        at the other end; the middle stays.
+    single_pitch_deviation : tuple of float [m]
+        Deviation of the pitch from the flank before to each flank, one for each tooth in the order
+        in which they come into contact; too long is positive. They sum to zero.
+    cumulative_pitch_deviation : tuple of float [m]
+        Instead of the former: by how much each flank stands further on in that order.
+    run_out : float [m]
+        Run-out F_r of the toothing: twice its eccentricity.
+    run_out_phase : float [rad]
+        Rotation, from where tooth 0 comes into contact, at which the flanks stand most proud.
+    wear_depth : float or tuple of float [m]
+        Depth of wear: one value for the whole flank, or values at equal distances of roll length
+        from the lowest point to the tip.
+    profile_map : ProfileMap, optional
+        Measured deviation of the flank.
+
+    Raises
+    ------
+    InputError
+        Listing every value that is out of range, in its shape or in its meaning.
+
+    Notes
+    -----
+    Names and signs after ISO 21771 (modifications), ISO 1328-1 (deviations of pitch) and
+    ISO 1328-2 (run-out). A chart that gives pitches along the reference circle is brought to the
+    line of action by the cosine of the pressure angle.
+
+    Examples
+    --------
+    >>> FlankModification(tip_relief=10e-6, crowning=5e-6)
+    FlankModification(tip_relief 10 um, crowning 5 um)
+    """
+
+    tip_relief: float = 0.0
+    tip_relief_length: float | None = None
+    tip_relief_shape: str = "linear"
+    root_relief: float = 0.0
+    root_relief_length: float | None = None
+    root_relief_shape: str = "linear"
+    profile_crowning: float = 0.0
+    profile_slope: float = 0.0
+    crowning: float = 0.0
+    lead_slope: float = 0.0
+    single_pitch_deviation: tuple[float, ...] = ()
+    cumulative_pitch_deviation: tuple[float, ...] = ()
+    run_out: float = 0.0
+    run_out_phase: float = 0.0
+    wear_depth: float | tuple[float, ...] = 0.0
+    profile_map: ProfileMap | None = None
+
+    def __post_init__(self) -> None:
+        for name in _LISTS:
+            value = getattr(self, name)
+            if not isinstance(value, (str, float, int)):
+                object.__setattr__(self, name, _numbers(value))
+        if self.wear_depth == ():
+            object.__setattr__(self, "wear_depth", 0.0)
+        problems = modification_value_problems(self)
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def changes_profile(self) -> bool:
+        """Whether the gap depends on the place along the profile."""
+        shaped = (self.tip_relief, self.root_relief, self.profile_crowning, self.profile_slope)
+        return any(shaped) or _any(self.wear_depth) or self.profile_map is not None
+
+    @property
+    def changes_lead(self) -> bool:
+        """Whether the gap depends on the place along the face."""
+        chart = self.profile_map
+        mapped = chart is not None and len(chart.face_position) > 1
+        return bool(self.crowning or self.lead_slope) or mapped
+
+    @property
+    def changes_pitch(self) -> bool:
+        """Whether the teeth differ in their places around the gear."""
+        return any(self.single_pitch_deviation) or any(self.cumulative_pitch_deviation)
+
+    @property
+    def changes_anything(self) -> bool:
+        """Whether the flanks differ at all from involutes in their places."""
+        shape = self.changes_profile or self.changes_lead
+        return shape or self.changes_pitch or self.run_out != 0.0
+
+    def __repr__(self) -> str:
+        """What was given, with units."""
+        given = [(field.name, getattr(self, field.name)) for field in fields(self)
+                 if getattr(self, field.name) != field.default]  # fmt: skip
+        return f"FlankModification({', '.join(_shown(name, value) for name, value in given)})"
+
+
+def _numbers(values: Sequence[float]) -> tuple[Any, ...]:
+    return tuple(float(value) for value in values)
+
+
+def _any(value: float | tuple[float, ...]) -> bool:
+    return any(value) if isinstance(value, tuple) else value != 0.0
+
+
+def _shown(name: str, value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"{name} {min(value) * 1e6:.4g} to {max(value) * 1e6:.4g} um"
+    if isinstance(value, ProfileMap):
+        return f"{name} of {len(value)} x {len(value.face_position)} points"
+    if isinstance(value, str):
+        return f"{name} {value}"
+    if name == "run_out_phase":
+        return f"{name} {value:.4g} rad"
+    return (
+        f"{name} {value * 1e3:.4g} mm"
+        if name.endswith("_length")
+        else f"{name} {value * 1e6:.4g} um"
+    )

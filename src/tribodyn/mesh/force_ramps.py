@@ -1,0 +1,134 @@
+"""The force law of a mesh, fitted to the loaded tooth contact by straight pieces.
+
+Points of the law lie at chosen total forces, and where a pair begins to carry; between them the
+force is joined by chords. Forces are added until the chords are close enough everywhere, so that
+a mesh of linear pairs has one ramp and a mesh of modified flanks a dozen.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import warn
+from tribodyn.stiffness import ContactProblem
+
+__all__ = ["LARGEST_ERROR", "force_ramps"]
+
+FloatArray = NDArray[np.float64]
+
+#: Largest error of the force over the force, from a tenth of the load to three times of it.
+LARGEST_ERROR = 2e-3
+#: What is aimed at, for the error between the forces that are looked at.
+_AIM = 1.2e-3
+#: Forces that are looked at, over the load of the mesh; the law is straight above the last.
+_LOOKED_AT = np.concatenate([[0.02, 0.05], np.geomspace(0.1, 3.0, 41), [4.0]])
+_RANGE = slice(2, -1)
+#: Most forces that become points.
+_MOST = 24
+#: Distance of two points, over the largest deflection, below which they are one.
+_SAME = 1e-9
+
+
+def force_ramps(
+    problem: ContactProblem, total_force: float
+) -> tuple[FloatArray, FloatArray]:
+    """Fit ramps to the force over the deflection of a mesh.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        The loaded tooth contact on the knots of a mesh table.
+    total_force : float [N]
+        Load of the mesh.
+
+    Returns
+    -------
+    tuple of array (n, ramps)
+        Deflection at which each ramp begins [m], and the stiffness that it adds [N/m].
+
+    Raises
+    ------
+    ComputationError
+        If the load is beyond what the formula of the local compression covers.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``force-law`` where the law cannot be fitted as closely as it should.
+    """
+    parts = problem.compliance
+    if parts.logarithm == 0.0 and not problem.places.contact.pair.has_modification:
+        # Springs that all touch at once: one ramp, exactly.
+        return problem.least_gap[:, None], problem.tangent_at(
+            np.where(problem.places.on_path, 1.0, 0.0)
+        )[:, None]
+    forces = total_force * _LOOKED_AT
+    found = problem.at_loads(forces)
+    kinks = _kinks(problem, found.approach[-1])
+    chosen = [3, _LOOKED_AT.size // 2, _LOOKED_AT.size - 1]
+    while True:
+        place, slope = _chords(problem, found.approach, found.tangent[-1], forces, chosen, kinks)
+        excess = _force(place, slope, found.approach) / forces[:, None] - 1.0
+        error = np.abs(excess)[_RANGE].max(axis=1)
+        worst = int(np.argmax(error)) + _RANGE.start
+        if error.max() < _AIM or worst in chosen or len(chosen) >= _MOST:
+            break
+        chosen = sorted([*chosen, worst])
+    if error.max() > LARGEST_ERROR:
+        warn(
+            "force-law",
+            f"the force law of the mesh is {100.0 * error.max():.2g} % off the loaded tooth "
+            f"contact with {place.shape[1]} ramps; fewer slices or smoother flanks are closer",
+            stacklevel=4,
+        )
+    return place, slope
+
+
+def _kinks(problem: ContactProblem, most: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Deflection (n, pairs) at which each pair begins to carry, and the force there."""
+    if problem.widths.size > 1:
+        return np.empty((most.size, 0)), np.empty((most.size, 0))
+    pairs = problem.pickups(most)
+    # Pairs that never come into play within the range would be points without use.
+    pairs = pairs[:, (pairs < most[:, None] * (1.0 - _SAME)).any(axis=0)]
+    return pairs, problem.at_approach(pairs.T)[0].T
+
+
+def _chords(
+    problem: ContactProblem,
+    approach: FloatArray,
+    last_slope: FloatArray,
+    forces: FloatArray,
+    chosen: list[int],
+    kinks: tuple[FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray]:
+    """Ramps through the chosen forces and all kinks, each column following its own point."""
+    first = problem.least_gap[:, None]
+    place = np.concatenate([first, approach[chosen].T, kinks[0]], axis=1)
+    force = np.broadcast_to(forces[chosen], (first.size, len(chosen)))
+    force = np.concatenate([np.zeros_like(first), force, kinks[1]], axis=1)
+    order = np.argsort(place, axis=1, kind="stable")
+    x, y = np.take_along_axis(place, order, 1), np.take_along_axis(force, order, 1)
+    slope = np.zeros_like(x)
+    width, rise = np.diff(x, axis=1), np.diff(y, axis=1)
+    apart = width > _SAME * (x[:, -1:] - x[:, :1])
+    slope[:, :-1] = np.where(apart, rise / np.where(apart, width, 1.0), np.nan)
+    slope[:, -1] = last_slope
+    before = np.zeros(first.size)
+    added = np.empty_like(x)
+    for column in range(x.shape[1]):
+        here = slope[:, column]
+        # The last of several points in one place has the slope of the chord that follows.
+        here = np.where(np.isnan(here), before, here)
+        added[:, column] = np.maximum(here - before, 0.0)
+        before = np.maximum(here, before)
+    stiffness = np.empty_like(added)
+    np.put_along_axis(stiffness, order, added, 1)
+    return place, stiffness
+
+
+def _force(place: FloatArray, slope: FloatArray, approach: FloatArray) -> FloatArray:
+    """Force of the law (d, n) at approaches (d, n)."""
+    beyond = np.maximum(approach[:, :, None] - place, 0.0)
+    return np.asarray((slope * beyond).sum(axis=2))

@@ -1,0 +1,254 @@
+"""The teeth of a mesh under load, with or without an oil film in series with each pair."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.contact import PathOfContact
+from tribodyn.errors import ComputationError, Problem
+from tribodyn.gear import Material
+from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
+
+__all__ = ["Carried", "Teeth", "teeth_of", "usable_stiffness"]
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+class Carried(NamedTuple):
+    """How a mesh carries its quasi-static load.
+
+    Parameters
+    ----------
+    stiffness : array (n, pairs) [N/m]
+        Force on each pair on the path of contact over the deflection of the mesh.
+    share : array (n, pairs)
+        Part of the total force on each pair on the path of contact.
+    corner_share : array (n, 2)
+        The same on tip corners before A, and after E.
+    transmission_error : array (n,) [m]
+        Approach along the line of action, deviations included.
+    tangent : array (n,) [N/m]
+        Slope of the total force over it.
+    """
+
+    stiffness: FloatArray
+    share: FloatArray
+    corner_share: FloatArray
+    transmission_error: FloatArray
+    tangent: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Teeth:
+    """Teeth of all pairs over one mesh cycle; made by :func:`teeth_of`.
+
+    Parameters
+    ----------
+    in_contact : bool array (n, pairs)
+        Which pairs are on the path of contact.
+    total_force : float [N]
+        Normal force of all pairs.
+    stiffness : array (n, pairs) [N/m] or None
+        Secant stiffness of pairs that are springs of their own; none where they are solved
+        together, because of their coupling or of their gaps.
+    problem : ContactProblem
+        The loaded tooth contact at the same phases.
+    """
+
+    in_contact: BoolArray
+    total_force: float
+    stiffness: FloatArray | None
+    problem: ContactProblem
+
+    def carried(self, film_stiffness: FloatArray | None = None) -> Carried:
+        """Share the load among the pairs.
+
+        Parameters
+        ----------
+        film_stiffness : array (n, pairs) [N/m], optional
+            Stiffness of the film of each pair on the path of contact, zero elsewhere.
+
+        Returns
+        -------
+        Carried
+
+        Raises
+        ------
+        ComputationError
+            If the load is beyond what the formula of the local compression covers.
+        """
+        if self.stiffness is None:
+            return self._together(self.with_film(film_stiffness))
+        each = self.stiffness
+        if film_stiffness is not None:
+            each = np.zeros(self.stiffness.shape)
+            touch = self.in_contact
+            each[touch] = 1.0 / (1.0 / self.stiffness[touch] + 1.0 / film_stiffness[touch])
+        whole = each.sum(axis=1)
+        share = each / whole[:, None]
+        problem = self.with_film(film_stiffness)
+        load = share * self.total_force / problem.widths.sum()
+        return Carried(
+            each,
+            share,
+            np.zeros((whole.size, 2)),
+            self.total_force / whole,
+            problem.tangent_at(load),
+        )
+
+    def with_film(self, film_stiffness: FloatArray | None) -> ContactProblem:
+        """Put the films in series with the teeth.
+
+        Parameters
+        ----------
+        film_stiffness : array (n, pairs) [N/m] or None
+            Stiffness of the film of each pair on the path of contact.
+
+        Returns
+        -------
+        ContactProblem
+            A tip corner beyond the path of contact has the film of the end that is next to it.
+        """
+        if film_stiffness is None:
+            return self.problem
+        entering, leaving = self._ends()
+        film = np.where(self.in_contact, film_stiffness, film_stiffness[leaving])
+        if self._extended:
+            first = np.full((film.shape[0], 1), film_stiffness[entering])
+            film = np.concatenate([first, film, np.full_like(first, film_stiffness[leaving])], 1)
+        return self.problem.with_film(film)
+
+    @property
+    def _extended(self) -> bool:
+        return self.problem.gaps.shape[2] > self.in_contact.shape[1]
+
+    def _ends(self) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Row and column of the pair at A, and of the pair at E."""
+        last = int(np.flatnonzero(self.in_contact.any(axis=0))[-1])
+        return (0, 0), (int(np.flatnonzero(self.in_contact[:, last])[-1]), last)
+
+    def _together(self, problem: ContactProblem) -> Carried:
+        found = problem.at_loads(np.array([self.total_force]))
+        force = np.einsum("s,psn->pn", problem.widths, found.load[0])
+        inner = force[:, 1:-1] if self._extended else force
+        on_path = np.where(self.in_contact, inner, 0.0)
+        deflection = found.approach[0] - problem.least_gap
+        places, contact = problem.places, problem.places.contact
+        early = places.direction * (places.path - contact.A) < 0.0
+        corners = np.where(places.on_path, 0.0, force) / self.total_force
+        corner = [np.where(side, corners, 0.0).sum(axis=1) for side in (early, ~early)]
+        return Carried(
+            stiffness=on_path / deflection[:, None],
+            share=on_path / self.total_force,
+            corner_share=np.stack(corner, axis=1),
+            transmission_error=found.approach[0],
+            tangent=found.tangent[0],
+        )
+
+    @property
+    def maximum_single_pair_stiffness(self) -> float:
+        """Greatest stiffness of one pair that carries the whole force alone [N/m]."""
+        parts, width = self.problem.compliance, float(self.problem.widths.sum())
+        own = np.diagonal(parts.structure, axis1=1, axis2=2)
+        local = parts.local - parts.logarithm * np.log(self.total_force / width)
+        alone = width / (own + local)
+        return float(alone[self.problem.places.on_path].max())
+
+
+def usable_stiffness(found: FloatArray, in_contact: BoolArray, model: str) -> FloatArray:
+    """Check what a stiffness model gave; models of third parties are checked here once for all.
+
+    Parameters
+    ----------
+    found : array
+        What the model returned [N/m].
+    in_contact : bool array (n, pairs)
+        Whether the pair is in contact.
+    model : str
+        Name of the model.
+
+    Returns
+    -------
+    array (n, pairs) [N/m]
+
+    Raises
+    ------
+    ComputationError
+        If a pair in contact has no stiffness.
+    """
+    stiffness = np.asarray(found)
+    sound = stiffness.shape == in_contact.shape and bool(
+        np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))
+    )
+    if not sound:
+        raise ComputationError(
+            Problem(
+                what=f'the stiffness model "{model}" gave no usable pair stiffness',
+                where="stiffness of the tooth pairs",
+                why="It must be finite and positive where a pair is in contact, zero elsewhere",
+                remedy="Check the options of the model, or choose another",
+            )
+        )
+    return stiffness
+
+
+def teeth_of(
+    contact: PathOfContact,
+    places: tuple[FloatArray, FloatArray, BoolArray],
+    material: Material,
+    total_force: float,
+    model: str,
+    options: Mapping[str, Any],
+) -> Teeth:
+    """Teeth of a mesh by a named stiffness model.
+
+    Parameters
+    ----------
+    contact : PathOfContact
+        Path of contact of the pair.
+    places : tuple
+        Phase (n,), path (n, pairs) [m] and which pairs are on the path of contact (n, pairs).
+    material : Material
+        Material of both gears.
+    total_force : float [N]
+        Normal force of all pairs.
+    model : str
+        Name in ``tribodyn.stiffness.MODELS``.
+    options : mapping
+        Options of the model.
+
+    Returns
+    -------
+    Teeth
+        Solved together where the model couples the pairs, or flanks are not perfect.
+
+    Raises
+    ------
+    InputError
+        If an option is out of range.
+    ComputationError
+        If a pair in contact has no stiffness.
+    """
+    chosen, pair = MODELS[model], contact.pair
+    phase, path, in_contact = places
+    given = {**chosen.options, **options}
+    problem = mesh_problem(
+        pair,
+        provider=model,
+        places=places,
+        total_force=total_force,
+        extended_contact=bool(given.get("extended_contact", False)),
+        material=material,
+        options=options,
+    )
+    stiffness = None
+    if not chosen.coupled and not pair.has_modification:
+        found = chosen(pair, material, path, in_contact, phase, total_force, **options)
+        stiffness = usable_stiffness(found, in_contact, model)
+    return Teeth(in_contact, total_force, stiffness, problem)

@@ -1,0 +1,315 @@
+"""The loaded tooth contact as curves: over the way of one tooth pair, or over all mesh cycles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.contact import path_of_contact
+from tribodyn.plot.labels import axis_label, display_unit, displayed
+from tribodyn.plot.sharing import further_changes
+from tribodyn.plot.style import MUTED, TOTAL
+
+__all__ = [
+    "Life",
+    "corner_shades",
+    "named",
+    "needs_loaded_contact",
+    "pair_letters",
+    "roll_angle_of",
+    "roll_label",
+    "rows",
+    "several_cycles",
+    "span",
+    "torque_colors",
+    "torque_names",
+]
+
+Array = NDArray[np.float64]
+
+#: Colours from the least to the greatest torque; between them they are mixed.
+_ANCHORS = ("#0d0887", "#7e03a8", "#cc4778", "#f0893e")
+#: Names of torques in a legend; further ones are told by the pointer.
+_NAMED = 8
+#: Mesh cycles shown beyond both ends of what is loaded.
+_MARGIN = 0.04
+#: Part of the total force that counts as load.
+_LOADED = 1e-6
+#: Fill behind the places where a tip corner bears.
+_SHADE = "rgba(107, 119, 133, 0.13)"
+
+
+def needs_loaded_contact(result: Any) -> str:
+    """Tell why something is not a loaded tooth contact.
+
+    Parameters
+    ----------
+    result : object
+        Anything that was asked for such a figure.
+
+    Returns
+    -------
+    str
+        Empty for what :func:`tribodyn.stiffness.loaded_contact` returns.
+    """
+    if hasattr(result, "pair_deflection"):
+        return ""
+    return (
+        "This figure shows a loaded tooth contact at rest. Call tribodyn.loaded_contact(case) "
+        "and its plot method."
+    )
+
+
+@dataclass(frozen=True)
+class Life:
+    """Least, mean and greatest value over all tooth pairs, from entry to exit.
+
+    Parameters
+    ----------
+    age : array (k,)
+        Mesh cycles since a pair passed A, increasing.
+    least, mean, greatest : array (torques, k)
+        Over the pairs; equal where all teeth are alike.
+    """
+
+    age: Array
+    least: Array
+    mean: Array
+    greatest: Array
+
+    @classmethod
+    def of(cls, contact: Any, values: Array) -> Life:
+        """Follow the tooth pairs of a loaded contact.
+
+        Parameters
+        ----------
+        contact : LoadedContact
+            What :func:`tribodyn.stiffness.loaded_contact` returns.
+        values : array (..., p, n)
+            One value for each phase and pair.
+
+        Returns
+        -------
+        Life
+        """
+        many = np.reshape(values, (-1, *np.shape(values)[-2:]))
+        fraction = np.round(np.mod(contact.phase, 1.0), 9)
+        phases, where = np.unique(fraction, return_inverse=True)
+        groups = [many[:, where == group, :] for group in range(phases.size)]
+        found = []
+        for reduce in (np.min, np.mean, np.max):
+            each = np.stack([reduce(group, axis=1) for group in groups], axis=1)
+            found.append(np.moveaxis(each, 2, 1).reshape(many.shape[0], -1))
+        age = (phases[:, None] + contact.number).T.ravel()
+        order = np.argsort(age, kind="stable")
+        return cls(age[order], *(part[:, order] for part in found))
+
+
+def rows(contact: Any, values: Array) -> list[Array]:
+    """Split values by torque, whether there is one torque or several.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        What :func:`tribodyn.stiffness.loaded_contact` returns.
+    values : array (..., p)
+        With the axis of the torques first, if there is one.
+
+    Returns
+    -------
+    list of array (p,)
+        From the first torque to the last.
+    """
+    return list(np.reshape(values, (np.size(contact.torque), -1)))
+
+
+def several_cycles(contact: Any) -> bool:
+    """Whether the teeth differ, so that several mesh cycles pass before everything repeats.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        What :func:`tribodyn.stiffness.loaded_contact` returns.
+
+    Returns
+    -------
+    bool
+    """
+    return bool(np.max(contact.phase) >= 1.0)
+
+
+def span(contact: Any) -> tuple[float, float]:
+    """Ages between which some pair carries load, with a little margin.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        What :func:`tribodyn.stiffness.loaded_contact` returns.
+
+    Returns
+    -------
+    tuple of float
+        First and last age in mesh cycles since A; from A to E at least.
+    """
+    shares = Life.of(contact, contact.load_share)
+    loaded = shares.age[(shares.greatest > _LOADED).any(axis=0)]
+    last = max(contact.gear_pair.transverse_contact_ratio, float(loaded.max()))
+    return min(0.0, float(loaded.min())) - _MARGIN, last + _MARGIN
+
+
+def roll_angle_of(pair: Any, age: Any) -> Array:
+    """Roll angle of the driving gear at an age of a tooth pair.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The gear pair.
+    age : float or array
+        Mesh cycles since the pair passed A.
+
+    Returns
+    -------
+    array
+        Roll angles [rad], shape of ``age``; along the line of action also beyond A and E.
+    """
+    contact = path_of_contact(pair)
+    first = contact.A if pair.driver == "pinion" else pair.line_of_action_length - contact.A
+    radius = first + np.asarray(age, dtype=float) * pair.base_pitch
+    return np.asarray(radius / pair.driving.base_radius)
+
+
+def roll_label(pair: Any) -> str:
+    """Label of an axis of roll angles.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The gear pair.
+
+    Returns
+    -------
+    str
+    """
+    return axis_label("roll_angle", f"Roll angle of the driving gear ({pair.driver})")
+
+
+def pair_letters(pair: Any) -> list[tuple[str, float]]:
+    """Positions A to E and further changes of sharing, as roll angles in the display unit.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The gear pair.
+
+    Returns
+    -------
+    list of tuple
+        Name and roll angle; the pitch point C only where it lies between A and E.
+    """
+    contact = path_of_contact(pair)
+    ratio = contact.contact_ratio
+    pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
+    ages = {"A": 0.0, "B": ratio - 1.0, "C": pitch_point, "D": 1.0, "E": ratio}
+    if not 0.0 <= pitch_point <= ratio:
+        del ages["C"]
+    ages |= further_changes(ratio)
+    return [
+        (name, float(displayed("roll_angle", roll_angle_of(pair, age))))
+        for name, age in ages.items()
+    ]
+
+
+def torque_names(contact: Any) -> list[str]:
+    """Name of each torque with its unit.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        What :func:`tribodyn.stiffness.loaded_contact` returns.
+
+    Returns
+    -------
+    list of str
+    """
+    unit = display_unit("torque")
+    return [f"{torque:.4g} {unit}" for torque in displayed("torque", np.ravel(contact.torque))]
+
+
+def torque_colors(count: int) -> list[str]:
+    """Colours of curves that belong to rising torques.
+
+    Parameters
+    ----------
+    count : int
+        Number of torques.
+
+    Returns
+    -------
+    list of str
+        From dark to light; black for a single one.
+
+    Examples
+    --------
+    >>> torque_colors(1), torque_colors(2)
+    (['#1f2933'], ['#0d0887', '#f0893e'])
+    """
+    if count == 1:
+        return [TOTAL]
+    anchors = np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in _ANCHORS])
+    places = np.linspace(0.0, len(_ANCHORS) - 1.0, count)
+    mixed = [np.interp(places, range(len(_ANCHORS)), anchors[:, k]) for k in range(3)]
+    return ["#" + "".join(f"{round(part):02x}" for part in each) for each in np.transpose(mixed)]
+
+
+def named(count: int) -> list[bool]:
+    """Which of many torques are named in a legend: all of few, first, last and some of many.
+
+    Parameters
+    ----------
+    count : int
+        Number of torques.
+
+    Returns
+    -------
+    list of bool
+
+    Examples
+    --------
+    >>> named(2), sum(named(20))
+    ([True, True], 8)
+    """
+    chosen = np.linspace(0, count - 1, min(count, _NAMED)).round().astype(int)
+    return [number in set(chosen.tolist()) for number in range(count)]
+
+
+def corner_shades(pair: Any, first: float, last: float) -> dict[str, list[dict[str, Any]]]:
+    """Shade and name the places before A and after E, where a tip corner bears.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The gear pair.
+    first, last : float
+        Ages in mesh cycles at which the load begins and ends.
+
+    Returns
+    -------
+    dict
+        The ``shapes`` and ``annotations`` of a plotly layout.
+    """
+    shapes, notes = [], []
+    for start, stop in ((first, 0.0), (pair.transverse_contact_ratio, last)):
+        if stop <= start:
+            continue
+        x = displayed("roll_angle", roll_angle_of(pair, np.array([start, stop])))
+        common = {"xref": "x", "yref": "paper"}
+        rectangle = {"x0": float(x[0]), "x1": float(x[1]), "y0": 0, "y1": 1}
+        fill = {"fillcolor": _SHADE, "line": {"width": 0}, "layer": "below"}
+        shapes.append({"type": "rect", **common, **rectangle, **fill})
+        words = {"text": "tip corner", "textangle": -90, "font": {"size": 11, "color": MUTED}}
+        place = {"x": float(x.mean()), "y": 0.98, "yanchor": "top", "showarrow": False}
+        notes.append({**words, **place, **common})
+    return {"shapes": shapes, "annotations": notes}

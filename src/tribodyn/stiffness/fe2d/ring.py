@@ -1,0 +1,209 @@
+"""A ring of equal sectors: one factorization of one sector, and a small system per harmonic.
+
+The sectors couple through their cuts only. Eliminating the inside of one sector leaves a matrix
+of its two cuts, and the discrete Fourier transform around the ring decouples the harmonics: the
+result is that of the finite element mesh of the whole ring, to rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.stiffness.fe2d.element import element_stiffness, plane_stress
+from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh
+
+__all__ = ["Ring", "RingSolution", "sector_stiffness"]
+
+FloatArray = NDArray[np.float64]
+
+
+def sector_stiffness(mesh: SectorMesh, elasticity: FloatArray) -> Any:
+    """Stiffness matrix of a sector, nothing held, cuts in polar directions.
+
+    Parameters
+    ----------
+    mesh : SectorMesh
+        Sector.
+    elasticity : array (3, 3)
+        From strain to stress.
+
+    Returns
+    -------
+    scipy.sparse.csc_array
+        Both displacements of each node in turn: x and y, on the cuts outward and anticlockwise.
+    """
+    from scipy.sparse import coo_array
+
+    matrices = element_stiffness(mesh.nodes[mesh.elements], elasticity)
+    freedoms = (2 * mesh.elements[:, :, None] + np.arange(2)).reshape(len(mesh.elements), 18)
+    rows = np.broadcast_to(freedoms[:, :, None], matrices.shape)
+    columns = np.broadcast_to(freedoms[:, None, :], matrices.shape)
+    size = 2 * len(mesh.nodes)
+    whole = coo_array((matrices.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+    turn = _polar_on_cuts(mesh)
+    return (turn.T @ whole.tocsc() @ turn).tocsc()
+
+
+def _polar_on_cuts(mesh: SectorMesh) -> Any:
+    """Matrix from the freedoms, polar on the cuts, to x and y."""
+    from scipy.sparse import coo_array
+
+    blocks = np.tile(np.eye(2), (len(mesh.nodes), 1, 1))
+    cuts = np.concatenate([mesh.right_cut, mesh.left_cut])
+    outward = mesh.nodes[cuts] / np.hypot(*mesh.nodes[cuts].T)[:, None]
+    blocks[cuts, :, 0] = outward
+    blocks[cuts, :, 1] = outward[:, ::-1] * [-1.0, 1.0]
+    place = 2 * np.arange(len(mesh.nodes))[:, None, None]
+    rows = np.broadcast_to(place + np.array([[0], [1]]), blocks.shape)
+    columns = np.broadcast_to(place + np.array([[0, 1]]), blocks.shape)
+    size = 2 * len(mesh.nodes)
+    return coo_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsc()
+
+
+def _freedoms(nodes: NDArray[np.int64]) -> NDArray[np.int64]:
+    return (2 * nodes[:, None] + np.arange(2)).ravel()
+
+
+@dataclass(frozen=True, eq=False)
+class RingSolution:
+    """Displacements of the ring under load cases that all act on the sector 0.
+
+    Parameters
+    ----------
+    inside : array (freedoms, cases)
+        Displacement of the inside of the sector 0 with the cuts held.
+    cuts : array (sectors, cut freedoms, cases)
+        Displacement of the right cut of each sector, polar.
+    """
+
+    inside: FloatArray
+    cuts: FloatArray
+
+
+class Ring:
+    """Ring of equal sectors that is held along its inner circle.
+
+    Parameters
+    ----------
+    mesh : SectorMesh
+        One sector.
+    elasticity : array (3, 3), optional
+        From strain to stress; Young's modulus of one and Poisson's ratio of 0.3 by default.
+    """
+
+    def __init__(self, mesh: SectorMesh, elasticity: FloatArray | None = None) -> None:
+        self.mesh = mesh
+        self._turn = _polar_on_cuts(mesh)
+        matrix = sector_stiffness(mesh, plane_stress(1.0, 0.3) if elasticity is None else elasticity)
+        boundary = np.concatenate([mesh.right_cut, mesh.left_cut])
+        inner = np.setdiff1d(np.arange(len(mesh.nodes)), np.concatenate([boundary, mesh.held]))
+        self._inner, self._boundary = _freedoms(inner), _freedoms(boundary)
+        self._coupling = matrix[self._inner][:, self._boundary].toarray()
+        self._edge = matrix[self._boundary][:, self._boundary].toarray()
+        self._core = matrix[self._inner][:, self._inner]
+
+    @cached_property
+    def _factors(self) -> Any:
+        from scipy.sparse.linalg import splu
+
+        return splu(
+            self._core.tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+
+    @cached_property
+    def _inside_per_cut(self) -> FloatArray:
+        """Displacement of the inside per displacement of the cuts."""
+        solved: FloatArray = self._factors.solve(-self._coupling)
+        return solved
+
+    def solve(self, loads: FloatArray) -> RingSolution:
+        """Displacements under loads on the sector 0.
+
+        Parameters
+        ----------
+        loads : array (2 nodes, cases)
+            Forces in x and y on the nodes of the sector; those on the right cut add to those on the
+            left cut of the next one.
+
+        Returns
+        -------
+        RingSolution
+        """
+        inner = np.ascontiguousarray(loads[self._inner])
+        inside = self._factors.solve(inner)
+        force = self._inside_per_cut.T @ inner + (self._turn.T @ loads)[self._boundary]
+        return RingSolution(inside, self._around(force))
+
+    def _around(self, force: FloatArray) -> FloatArray:
+        """Displacement of the right cut of each sector under forces on both cuts of sector 0."""
+        condensed = self._edge + self._coupling.T @ self._inside_per_cut
+        condensed = 0.5 * (condensed + condensed.T)
+        half = condensed.shape[0] // 2
+        right, left = slice(0, half), slice(half, None)
+        count = self.mesh.count
+        turn = np.exp(2j * np.pi * np.arange(count // 2 + 1) / count)[:, None, None]
+        within = condensed[right, right] + condensed[left, left]
+        onward = condensed[right, left]
+        systems = within + onward * turn + onward.T * np.conj(turn)
+        waves = np.linalg.solve(systems, force[right] + force[left] * np.conj(turn))
+        return np.fft.irfft(waves, count, axis=0)
+
+    def seen(self, solution: RingSolution, weights: FloatArray, sector: int) -> FloatArray:
+        """Weighted displacements of a sector.
+
+        Parameters
+        ----------
+        solution : RingSolution
+            Of :meth:`solve`.
+        weights : array (2 nodes, views)
+            Weights of the displacements in x and y, in the frame of the sector that is seen.
+        sector : int
+            Number of the sector, counted anticlockwise from the loaded one.
+
+        Returns
+        -------
+        array (cases, views)
+        """
+        inner = weights[self._inner]
+        cuts = self._both_cuts(solution, sector)
+        on_cuts = (self._turn.T @ weights)[self._boundary]
+        found = cuts.T @ (self._inside_per_cut.T @ inner + on_cuts)
+        if sector % self.mesh.count == 0:
+            found = found + solution.inside.T @ inner
+        return np.asarray(found)
+
+    def displacement(self, solution: RingSolution, sector: int) -> FloatArray:
+        """Displacements of all nodes of a sector in x and y of its own frame.
+
+        Parameters
+        ----------
+        solution : RingSolution
+            Of :meth:`solve`.
+        sector : int
+            Number of the sector, counted anticlockwise from the loaded one.
+
+        Returns
+        -------
+        array (2 nodes, cases)
+        """
+        cuts = self._both_cuts(solution, sector)
+        whole = np.zeros((2 * len(self.mesh.nodes), cuts.shape[1]))
+        whole[self._boundary] = cuts
+        whole[self._inner] = self._inside_per_cut @ cuts
+        if sector % self.mesh.count == 0:
+            whole[self._inner] += solution.inside
+        return np.asarray(self._turn @ whole)
+
+    def _both_cuts(self, solution: RingSolution, sector: int) -> FloatArray:
+        count = self.mesh.count
+        return np.concatenate(
+            [solution.cuts[sector % count], solution.cuts[(sector + 1) % count]]
+        )

@@ -1,0 +1,265 @@
+"""Static transmission error over phase and torque: what the mesh does before anything vibrates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.gear import Material, SpurPair
+from tribodyn.stiffness.loaded import loaded_contact
+from tribodyn.stiffness.loaded.gaps import mesh_period, slice_widths
+from tribodyn.stiffness.loaded.harmonics import harmonic_amplitudes
+from tribodyn.stiffness.loaded.prepare import NO_OPTIONS
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["HarrisMap", "increasing_torques", "transmission_error_over_torque"]
+
+FloatArray = NDArray[np.float64]
+
+#: Loads of single pairs in single slices that are held in memory at the same time.
+_AT_ONCE = 4_000_000
+#: Tooth pairs that may touch, about.
+_PAIRS = 4
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class HarrisMap:
+    """Static transmission error of a mesh over phase and torque.
+
+    Parameters
+    ----------
+    gear_pair : SpurPair
+        Both gears in their working position.
+    provider : str
+        What the tooth compliances come from.
+    reference : str
+        Where the gear bodies are held.
+    torque : array (t,) [N*m]
+        Torques on the pinion, increasing.
+    phase : array (p,)
+        Mesh phase, 0 where a pair reaches A, from 0 to the number of mesh cycles.
+    mesh_cycles : int
+        Mesh cycles after which everything repeats.
+    transmission_error : array (t, p) [m]
+        Approach of the gears along the line of action under load at rest.
+    unloaded_transmission_error : array (p,) [m]
+        That of the rigid mesh: what the flanks alone do.
+    harmonics : array (t, k) [m]
+        Peak amplitudes of the orders 1, 2, ... of the mesh frequency.
+    mean_mesh_stiffness_secant, mean_mesh_stiffness_tangent : array (t,) [N/m]
+        Means over the phases.
+    """
+
+    gear_pair: SpurPair
+    provider: str
+    reference: str
+    torque: FloatArray
+    phase: FloatArray
+    mesh_cycles: int
+    transmission_error: FloatArray
+    unloaded_transmission_error: FloatArray
+    harmonics: FloatArray
+    mean_mesh_stiffness_secant: FloatArray
+    mean_mesh_stiffness_tangent: FloatArray
+
+    @property
+    def mean_transmission_error(self) -> FloatArray:
+        """Mean over the phases (t,) [m]."""
+        return np.asarray(self.transmission_error.mean(axis=1))
+
+    @property
+    def peak_to_peak_transmission_error(self) -> FloatArray:
+        """Largest less least transmission error (t,) [m]."""
+        return np.asarray(np.ptp(self.transmission_error, axis=1))
+
+    @property
+    def quietest_torque(self) -> float:
+        """Torque of the least peak-to-peak transmission error [N*m]."""
+        return float(self.torque[np.argmin(self.peak_to_peak_transmission_error)])
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Convert to a labelled data set with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``torque``, ``phase`` and ``order``.
+        """
+        import xarray
+
+        length, stiffness = {"units": "m"}, {"units": "N/m"}
+        peak = self.peak_to_peak_transmission_error
+        variables: dict[str, Any] = {
+            "transmission_error": (("torque", "phase"), self.transmission_error, length),
+            "unloaded_transmission_error": ("phase", self.unloaded_transmission_error, length),
+            "mean_transmission_error": ("torque", self.mean_transmission_error, length),
+            "peak_to_peak_transmission_error": ("torque", peak, length),
+            "harmonics": (("torque", "order"), self.harmonics, length),
+        }
+        for name in ("mean_mesh_stiffness_secant", "mean_mesh_stiffness_tangent"):
+            variables[name] = ("torque", getattr(self, name), stiffness)
+        coordinates: dict[str, Any] = {
+            "torque": ("torque", self.torque, {"units": "N*m"}),
+            "phase": ("phase", self.phase, {"units": "1"}),
+            "order": ("order", np.arange(1, self.harmonics.shape[1] + 1)),
+        }
+        made = {"provider": self.provider, "reference": self.reference}
+        return xarray.Dataset(variables, coordinates, made)
+
+    def plot(self) -> Any:
+        """Draw the transmission error over phase and torque.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        # The one step upward of the layers: a result draws itself.
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["harris_map"](self)
+
+    def __repr__(self) -> str:
+        """One line with the figures that matter."""
+        peak = self.peak_to_peak_transmission_error * 1e6
+        return (
+            f"HarrisMap({self.provider}, {self.torque.size} torques from {self.torque[0]:g} to "
+            f"{self.torque[-1]:g} N*m, peak to peak {peak.min():.4g} to {peak.max():.4g} um, "
+            f"least at {self.quietest_torque:g} N*m)"
+        )
+
+
+def increasing_torques(torque: ArrayLike) -> FloatArray:
+    """Check torques and put them in order.
+
+    Parameters
+    ----------
+    torque : float or array (t,) [N*m]
+        Torques on the pinion.
+
+    Returns
+    -------
+    array (t,) [N*m]
+        Each once, increasing.
+
+    Raises
+    ------
+    InputError
+        If one is not positive, or they are no list.
+
+    Examples
+    --------
+    >>> increasing_torques([300.0, 90.0, 300.0]).tolist()
+    [90.0, 300.0]
+    """
+    torques = np.atleast_1d(np.asarray(torque, dtype=float))
+    require_positive("torque", torques, "N*m")
+    if torques.ndim != 1 or torques.size == 0:
+        raise InputError(
+            Problem(
+                what=f"torque has the shape {torques.shape}",
+                where="argument torque",
+                why="It is one value or a list of values",
+                remedy="Give a list of torques in N*m",
+            )
+        )
+    return np.unique(torques)
+
+
+def transmission_error_over_torque(
+    pair: SpurPair,
+    torque: ArrayLike,
+    *,
+    provider: str = "fe2d",
+    phases: int = 64,
+    harmonics: int = 10,
+    extended_contact: bool = True,
+    reference: str | None = None,
+    material: Material | None = None,
+    slices: int | None = None,
+    options: Mapping[str, Any] = NO_OPTIONS,
+) -> HarrisMap:
+    """Find the static transmission error of a mesh over phase and torque (Harris map).
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position, with modifications and deviations of their flanks.
+    torque : float or array (t,) [N*m]
+        Torques on the pinion, in any order.
+    provider : str
+        Where the tooth compliances come from.
+    phases : int
+        Evenly spaced phases of a mesh cycle.
+    harmonics : int
+        Number of mesh harmonics, less than half the phases.
+    extended_contact : bool
+        Let tip corners touch before A and after E.
+    reference : str, optional
+        ``"bore"`` or ``"rim"``; by default that of the provider.
+    material : Material, optional
+        Material of both gears; steel by default.
+    slices : int, optional
+        Slices of the face width; by default one, or 21 where flanks vary over the width.
+    options : mapping
+        Further options of the provider.
+
+    Returns
+    -------
+    HarrisMap
+        Over the hunting tooth period where teeth differ.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    ComputationError
+        If a load is beyond what the formula of the local compression covers.
+
+    Notes
+    -----
+    :func:`tribodyn.stiffness.loaded_contact` at every torque. The map is named after Harris (1958),
+    Proc. Inst. Mech. Eng. 172, 87-112, who drew the curves of all torques above each other.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
+    >>> found = transmission_error_over_torque(pair, [50.0, 100.0], provider="potential-energy")
+    >>> found.transmission_error.shape
+    (2, 64)
+    """
+    torques = increasing_torques(torque)
+    given: dict[str, Any] = {
+        "provider": provider, "phases": phases, "extended_contact": extended_contact,
+        "reference": reference, "material": material, "slices": slices, "options": options,
+    }  # fmt: skip
+    size = max(phases, 1) * mesh_period(pair) * slice_widths(pair, slices).size * _PAIRS
+    count = min(torques.size, 1 + torques.size * size // _AT_ONCE)
+    rows = []
+    for part in np.array_split(torques, count):
+        found = loaded_contact(pair, part, **given)
+        secant = found.mesh_stiffness_secant.mean(axis=1)
+        tangent = found.mesh_stiffness_tangent.mean(axis=1)
+        rows.append((found.transmission_error, secant, tangent))
+    error, secant, tangent = (np.concatenate(column) for column in zip(*rows, strict=True))
+    return HarrisMap(
+        gear_pair=pair,
+        provider=found.provider,
+        reference=found.reference,
+        torque=torques,
+        phase=found.phase,
+        mesh_cycles=found.mesh_cycles,
+        transmission_error=error,
+        unloaded_transmission_error=found.unloaded_transmission_error,
+        harmonics=harmonic_amplitudes(found.phase, error, found.mesh_cycles, harmonics),
+        mean_mesh_stiffness_secant=secant,
+        mean_mesh_stiffness_tangent=tangent,
+    )

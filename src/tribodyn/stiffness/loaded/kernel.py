@@ -1,0 +1,284 @@
+"""The compiled solver of the loaded tooth contact: loads of all pairs at every phase and torque.
+
+For each slice of the face width ``delta = gap_i + sum_j C_ij f_j + f_i (A_i - B ln f_i)`` where a
+pair carries, ``f_i >= 0``, and ``delta <= gap_i + sum_j C_ij f_j`` where it does not: the minimum
+of a convex function. Replaces, and is tested against, :mod:`tribodyn.stiffness.loaded.plain`.
+
+Loads ``f`` are per face width [N/m], compliances ``C``, ``A``, ``B`` [m^2/N], gaps and ``delta``
+[m]. Status 0 is success, 1 no convergence, 2 a contact so wide that the formula of the local
+compression has left its range.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.compiled import source_digest
+
+__all__ = ["pickups", "solve_deflections", "solve_loads"]
+
+Array = NDArray[np.float64]
+
+#: NaN stays detectable: neither "nnan" nor "ninf".
+_JIT: dict[str, Any] = {
+    "nogil": True,
+    "fastmath": {"contract", "nsz"},
+    "error_model": "numpy",
+}
+_INNER: dict[str, Any] = {**_JIT, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+#: Residual of a pair over the approach that counts as zero.
+_TIGHT = 1e-13
+#: Load over the largest one below which a pair that would part is let go.
+_FAINT = 1e-12
+#: Gap that nothing closes [m].
+_APART = 1e6
+_INNER_STEPS = 200
+_OUTER_STEPS = 200
+
+
+@nb.njit(**_INNER)
+def _eliminate(m: int, a: Array, b: Array) -> None:
+    """Solve in place; the matrix is symmetric and positive definite, so nothing is pivoted."""
+    for k in range(m):
+        inverse = 1.0 / a[k, k]
+        for r in range(k + 1, m):
+            factor = a[r, k] * inverse
+            for c in range(k + 1, m):
+                a[r, c] -= factor * a[k, c]
+            b[r] -= factor * b[k]
+    for k in range(m - 1, -1, -1):
+        for c in range(k + 1, m):
+            b[k] -= a[k, c] * b[c]
+        b[k] /= a[k, k]
+
+
+@nb.njit(**_INNER)
+def _touching_system(
+    n: int, C: Array, A: Array, B: float, f: Array, a: Array, place: Array
+) -> int:
+    """Tangent compliances of the pairs that carry; returns their number, -1 out of range."""
+    m = 0
+    for i in range(n):
+        if f[i] > 0.0:
+            place[m] = i
+            m += 1
+    for r in range(m):
+        i = int(place[r])
+        for c in range(m):
+            a[r, c] = C[i, int(place[c])]
+        local = A[i] - B - B * np.log(f[i]) if B > 0.0 else A[i]
+        if local < 0.0:
+            return -1
+        a[r, r] += local
+    return m
+
+
+@nb.njit(**_INNER)
+def _residual(n: int, C: Array, A: Array, B: float, gap: float, delta: float, f: Array, i: int) -> float:
+    total = gap - delta
+    for j in range(n):
+        total += C[i, j] * f[j]
+    if f[i] > 0.0:
+        total += f[i] * (A[i] - B * np.log(f[i]) if B > 0.0 else A[i])
+    return total
+
+
+@nb.njit(**_INNER)
+def _slice(
+    n: int, C: Array, A: Array, B: float, gaps: Array, delta: float, f: Array, a: Array,
+    b: Array, place: Array,
+) -> int:
+    """Loads ``f`` of one slice at an approach, from the loads that it holds."""
+    least = gaps[0]
+    for i in range(1, n):
+        least = min(least, gaps[i])
+    approach = delta - least
+    if not approach > 0.0:
+        for i in range(n):
+            f[i] = 0.0
+        return 0
+    tight = _TIGHT * (approach + abs(delta))
+    for _ in range(_INNER_STEPS):
+        touched, settled, largest = False, True, 0.0
+        for i in range(n):
+            largest = max(largest, f[i])
+        for i in range(n):
+            if f[i] <= 0.0:
+                away = _residual(n, C, A, B, gaps[i], delta, f, i)
+                if away < -tight:
+                    f[i] = -0.5 * away / (C[i, i] + A[i] + 10.0 * B)
+                    touched = True
+        if touched:
+            continue
+        m = _touching_system(n, C, A, B, f, a, place)
+        if m < 0:
+            return 2
+        if m == 0:
+            return 0
+        for r in range(m):
+            i = int(place[r])
+            b[r] = -_residual(n, C, A, B, gaps[i], delta, f, i)
+            if abs(b[r]) > tight:
+                settled = False
+        if settled:
+            return 0
+        _eliminate(m, a, b)
+        for r in range(m):
+            i = int(place[r])
+            f[i] = max(f[i] + b[r], 0.1 * f[i])
+            if f[i] < _FAINT * largest:
+                held = f[i]
+                f[i] = 0.0
+                if _residual(n, C, A, B, gaps[i], delta, f, i) < 0.0:
+                    f[i] = held
+    return 1
+
+
+@nb.njit(**_INNER)
+def _whole(
+    n: int, C: Array, A: Array, B: float, gaps: Array, width: Array, delta: float, f: Array,
+    a: Array, b: Array, place: Array, sums: Array,
+) -> int:
+    """Force and tangent stiffness of all slices at an approach, into ``sums``."""
+    sums[0] = 0.0
+    sums[1] = 0.0
+    for s in range(width.size):
+        status = _slice(n, C, A, B, gaps[s], delta, f[s], a, b, place)
+        if status != 0:
+            return status
+        m = _touching_system(n, C, A, B, f[s], a, place)
+        for r in range(m):
+            b[r] = 1.0
+        _eliminate(m, a, b)
+        for r in range(m):
+            sums[0] += width[s] * f[s, int(place[r])]
+            sums[1] += width[s] * b[r]
+    return 0
+
+
+@nb.njit(**_INNER)
+def _approach(
+    n: int, C: Array, A: Array, B: float, gaps: Array, width: Array, total: float, start: float,
+    f: Array, a: Array, b: Array, place: Array, sums: Array,
+) -> tuple[float, int]:
+    """Approach at which all slices together carry ``total``, by safeguarded Newton steps."""
+    low, high = gaps.min(), np.inf
+    delta = start
+    if not delta > low:
+        delta = low + total / width.sum() * (C[0, 0] + A[0])
+    for _ in range(_OUTER_STEPS):
+        status = _whole(n, C, A, B, gaps, width, delta, f, a, b, place, sums)
+        if status != 0:
+            return delta, status
+        excess = sums[0] - total
+        if abs(excess) <= 1e-12 * total:
+            return delta, 0
+        if excess > 0.0:
+            high = delta
+        else:
+            low = delta
+        new = delta - excess / sums[1] if sums[1] > 0.0 else np.inf
+        if not low < new < high:
+            new = 0.5 * (low + high) if high < np.inf else delta + 2.0 * (delta - gaps.min())
+        if new == delta:
+            return delta, 0
+        delta = new
+    return delta, 1
+
+
+def _build(digest: str) -> tuple[Any, Any, Any]:
+    """Make the kernels; the content of the sources is part of their cache key."""
+
+    @nb.njit(cache=True, **_JIT)
+    def solve_loads(
+        C: Array, A: Array, B: float, gaps: Array, width: Array, totals: Array, delta: Array,
+        force: Array, tangent: Array,
+    ) -> int:
+        """Solve every phase at every total load, in the order of the loads.
+
+        ``C`` (P, n, n), ``A`` (P, n), ``gaps`` (P, S, n), ``width`` (S,) [m], ``totals`` (T,)
+        [N]; receives ``delta`` (T, P), ``force`` (T, P, S, n) and ``tangent`` (T, P) [N/m].
+        """
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        n, slices = A.shape[1], width.size
+        a, b, place, sums = np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2)
+        f = np.empty((slices, n))
+        for p in range(A.shape[0]):
+            f[:] = 0.0
+            start = -np.inf
+            for t in range(totals.size):
+                start, status = _approach(
+                    n, C[p], A[p], B, gaps[p], width, totals[t], start, f, a, b, place, sums
+                )
+                if status != 0:
+                    return status
+                delta[t, p] = start
+                tangent[t, p] = sums[1]
+                force[t, p] = f
+        return 0
+
+    @nb.njit(cache=True, **_JIT)
+    def solve_deflections(
+        C: Array, A: Array, B: float, gaps: Array, width: Array, delta: Array, total: Array,
+        tangent: Array,
+    ) -> int:
+        """Force and tangent stiffness (D, P) of every phase at every approach ``delta`` (D, P)."""
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        n, slices = A.shape[1], width.size
+        a, b, place, sums = np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2)
+        f = np.empty((slices, n))
+        for p in range(A.shape[0]):
+            f[:] = 0.0
+            for d in range(delta.shape[0]):
+                status = _whole(
+                    n, C[p], A[p], B, gaps[p], width, delta[d, p], f, a, b, place, sums
+                )
+                if status != 0:
+                    return status
+                total[d, p] = sums[0]
+                tangent[d, p] = sums[1]
+        return 0
+
+    @nb.njit(cache=True, **_JIT)
+    def pickups(C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array) -> int:
+        """Approach (P, n) at which each pair of a single slice begins to carry, up to ``most``."""
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        n = A.shape[1]
+        a, b, place = np.empty((n, n)), np.empty(n), np.empty(n)
+        f, alone = np.empty(n), np.empty(n)
+        for p in range(A.shape[0]):
+            for i in range(n):
+                # The pair itself is kept apart; neighbours may pull its teeth together.
+                alone[:] = gaps[p, 0]
+                alone[i] = _APART
+                low, high = gaps[p, 0].min(), most[p]
+                found[p, i] = min(low, high)
+                if not low < high or low == gaps[p, 0, i]:
+                    continue
+                f[:] = 0.0
+                while high - low > 1e-14 * high:
+                    middle = 0.5 * (low + high)
+                    if middle <= low or middle >= high:
+                        break
+                    status = _slice(n, C[p], A[p], B, alone, middle, f, a, b, place)
+                    if status != 0:
+                        return status
+                    if _residual(n, C[p], A[p], B, gaps[p, 0, i], middle, f, i) < 0.0:
+                        high = middle
+                    else:
+                        low = middle
+                found[p, i] = high
+        return 0
+
+    return solve_loads, solve_deflections, pickups
+
+
+solve_loads, solve_deflections, pickups = _build(
+    source_digest(Path(__file__).parent, [Path(__file__).stem])
+)

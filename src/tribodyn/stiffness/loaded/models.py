@@ -1,0 +1,85 @@
+"""Models whose tooth pairs are solved together: ``fe2d``, ``analytic``, and ``weber`` by the way.
+
+Asked like any other model for the stiffness of the pairs over a mesh cycle, they answer with the
+secant of the loaded tooth contact on the path of contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.gear import Material, SpurGear, SpurPair
+from tribodyn.stiffness.influence import GearInfluence
+from tribodyn.stiffness.loaded.prepare import mesh_problem
+from tribodyn.stiffness.model import MODELS, StiffnessModel
+
+__all__ = ["OPTIONS"]
+
+FloatArray = NDArray[np.float64]
+
+#: Options of every model that knows the structure of the gears.
+OPTIONS = {"reference": "bore", "extended_contact": True}
+
+
+def _fe2d(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
+    from tribodyn.stiffness.fe2d import fe2d_influence
+
+    return fe2d_influence(gear, material, reference=reference)
+
+
+def _analytic(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
+    from tribodyn.stiffness.analytic import analytic_influence
+
+    return analytic_influence(gear, material, reference=reference)
+
+
+def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
+    from tribodyn.stiffness.weber import weber_influence
+
+    return weber_influence(gear, material, reference=reference)
+
+
+def _pair_stiffness(name: str) -> Callable[..., FloatArray]:
+    def function(
+        pair: SpurPair,
+        material: Material,
+        path: FloatArray,
+        in_contact: NDArray[np.bool_],
+        phase: FloatArray,
+        normal_force: float,
+        **options: Any,
+    ) -> FloatArray:
+        problem = mesh_problem(
+            pair,
+            provider=name,
+            places=(phase, path, in_contact),
+            total_force=normal_force,
+            extended_contact=bool(options.get("extended_contact")),
+            material=material,
+            options=options,
+        )
+        found = problem.at_loads(np.array([normal_force]))
+        force = np.einsum("s,psn->pn", problem.widths, found.load[0])
+        if force.shape != in_contact.shape:
+            force = force[:, 1:-1]
+        deflection = found.approach[0] - problem.least_gap
+        return np.where(in_contact, force / deflection[:, None], 0.0)
+
+    return function
+
+
+def _register(
+    name: str, influence: Callable[..., GearInfluence], options: dict[str, Any], coupled: bool
+) -> None:
+    MODELS.register(name)(
+        StiffnessModel(name, _pair_stiffness(name), options, influence, coupled)
+    )
+
+
+_register("fe2d", _fe2d, OPTIONS, coupled=True)
+_register("analytic", _analytic, OPTIONS, coupled=True)
+_register("weber", _weber, {"reference": "rim"}, coupled=False)

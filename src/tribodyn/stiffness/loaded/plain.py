@@ -1,0 +1,103 @@
+"""The loaded tooth contact in plain NumPy and SciPy: slow, readable, and independent of the kernel.
+
+Finds the loads of one phase as the solution of a complementarity problem by trying every set of
+touching pairs, which the kernel never does.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["plain_approach", "plain_loads"]
+
+FloatArray = NDArray[np.float64]
+
+
+def plain_loads(
+    structure: FloatArray, local: FloatArray, logarithm: float, gaps: FloatArray, approach: float
+) -> FloatArray:
+    """Loads of one slice at an approach.
+
+    Parameters
+    ----------
+    structure : array (n, n) [m^2/N]
+        Compliance without the local compression.
+    local : array (n,) [m^2/N]
+        Coefficient ``A``.
+    logarithm : float [m^2/N]
+        Coefficient ``B``.
+    gaps : array (n,) [m]
+        Separation of each pair without load.
+    approach : float [m]
+        Approach of the two gears along the line of action.
+
+    Returns
+    -------
+    array (n,) [N/m]
+        Loads per face width, none negative; where a pair carries none, its flanks are apart.
+    """
+    from scipy.optimize import root
+
+    scale = max(approach - gaps.min(), 0.0) / np.mean(np.diag(structure) + local)
+    if scale == 0.0:
+        return np.zeros(gaps.size)
+    for count in range(gaps.size, 0, -1):
+        for chosen in combinations(range(gaps.size), count):
+            place = np.array(chosen)
+
+            def excess(loads: FloatArray, place: NDArray[np.int64] = place) -> FloatArray:
+                f = np.abs(loads) * scale
+                compressed = f * (local[place] - logarithm * np.log(f + 1e-300))
+                inner = structure[np.ix_(place, place)] @ f
+                return np.asarray((gaps[place] + inner + compressed) / approach - 1.0)
+
+            found = root(excess, np.full(count, 0.3), method="hybr", options={"xtol": 1e-14})
+            f = np.zeros(gaps.size)
+            f[place] = np.abs(found.x) * scale
+            solved = np.max(np.abs(excess(found.x))) < 1e-10
+            apart = gaps + structure @ f - approach
+            rest = np.setdiff1d(np.arange(gaps.size), place)
+            if solved and np.all(apart[rest] >= -1e-12 * approach):
+                return f
+    return np.zeros(gaps.size)
+
+
+def plain_approach(
+    structure: FloatArray,
+    local: FloatArray,
+    logarithm: float,
+    gaps: FloatArray,
+    widths: FloatArray,
+    total: float,
+) -> float:
+    """Approach at which all slices together carry a force.
+
+    Parameters
+    ----------
+    structure, local, logarithm : as in :func:`plain_loads`
+        Compliances.
+    gaps : array (s, n) [m]
+        Separation of each pair in each slice.
+    widths : array (s,) [m]
+        Face widths of the slices.
+    total : float [N]
+        Normal force.
+
+    Returns
+    -------
+    float [m]
+    """
+    from scipy.optimize import brentq
+
+    def missing(approach: float) -> float:
+        loads = [plain_loads(structure, local, logarithm, row, approach) for row in gaps]
+        return float(widths @ np.sum(loads, axis=1)) - total
+
+    least = float(gaps.min())
+    high = least + 1e-6
+    while missing(high) < 0.0:
+        high = least + 2.0 * (high - least)
+    return float(brentq(missing, least, high, xtol=1e-17, rtol=1e-14))

@@ -1,0 +1,224 @@
+"""From a gear pair and the name of a model to the problem of its loaded tooth contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.gear import Material, SpurPair
+from tribodyn.stiffness.loaded.gaps import slice_gaps, slice_widths
+from tribodyn.stiffness.loaded.local import local_coefficients
+from tribodyn.stiffness.loaded.places import (
+    ContactPlaces,
+    contact_places,
+    extended_places,
+    on_path_places,
+)
+from tribodyn.stiffness.loaded.problem import ContactProblem
+from tribodyn.stiffness.loaded.structure import (
+    Compliance,
+    coupled_compliance,
+    independent_compliance,
+)
+from tribodyn.stiffness.model import MODELS, StiffnessModel
+
+__all__ = ["compliance_of", "contact_problem", "mesh_problem"]
+
+FloatArray = NDArray[np.float64]
+NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
+
+
+def compliance_of(
+    pair: SpurPair,
+    material: Material,
+    places: ContactPlaces,
+    total_force: float,
+    model: StiffnessModel,
+    options: Mapping[str, Any] = NO_OPTIONS,
+) -> Compliance:
+    """Compliance of the teeth at given places by a named model.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position.
+    material : Material
+        Material of both gears.
+    places : ContactPlaces
+        Where the pairs may touch.
+    total_force : float [N]
+        Normal force of all pairs, which some models of the literature ask for.
+    model : StiffnessModel
+        What gives the compliance.
+    options : mapping
+        Options of the model.
+
+    Returns
+    -------
+    Compliance
+
+    Raises
+    ------
+    InputError
+        If an option is out of range.
+    """
+    if model.influence is not None:
+        reference = {**model.options, **options}["reference"]
+        gears = [model.influence(gear, material, reference=reference)
+                 for gear in (pair.pinion, pair.wheel)]  # fmt: skip
+        structure = coupled_compliance(*gears, places)
+        return Compliance(structure, *local_coefficients(pair, material, places))
+    stiffness = model(
+        pair, material, places.path, places.on_path, places.phase, total_force, **options
+    )
+    structure = independent_compliance(np.asarray(stiffness), pair.common_face_width)
+    return Compliance(structure, np.zeros(places.path.shape), 0.0)
+
+
+def contact_problem(
+    pair: SpurPair,
+    *,
+    provider: str = "fe2d",
+    phase: FloatArray,
+    total_force: float,
+    extended_contact: bool = True,
+    material: Material,
+    options: Mapping[str, Any] = NO_OPTIONS,
+    slices: int | None = None,
+) -> ContactProblem:
+    """Prepare the loaded tooth contact at given mesh phases.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position, with their deviations.
+    provider : str
+        Name in ``tribodyn.stiffness.MODELS``.
+    phase : array (p,)
+        Mesh phases; the whole part counts mesh cycles, where teeth differ.
+    total_force : float [N]
+        Normal force of all pairs.
+    extended_contact : bool
+        Let tip corners touch outside of the path of contact.
+    material : Material
+        Material of both gears.
+    options : mapping
+        Options of the provider.
+    slices : int, optional
+        Slices of the face width; by default one, or 21 where flanks vary over the width.
+
+    Returns
+    -------
+    ContactProblem
+
+    Raises
+    ------
+    InputError
+        If the provider is unknown or something is out of range.
+    """
+    model = MODELS[provider]
+    extended = extended_contact and model.influence is not None
+    places = contact_places(pair, phase, extended=extended)
+    compliance = compliance_of(pair, material, places, total_force, model, options)
+    widths = slice_widths(pair, slices)
+    return ContactProblem(places, compliance, slice_gaps(places, widths.size), widths)
+
+
+def mesh_problem(
+    pair: SpurPair,
+    *,
+    provider: str,
+    places: tuple[FloatArray, FloatArray, NDArray[np.bool_]],
+    total_force: float,
+    extended_contact: bool,
+    material: Material,
+    options: Mapping[str, Any] = NO_OPTIONS,
+    slices: int | None = None,
+) -> ContactProblem:
+    """Prepare the loaded tooth contact on the knots of a mesh table, one-sided at its events.
+
+    A mesh table repeats with every mesh cycle, so what differs from tooth to tooth is left out.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position, with their deviations.
+    provider : str
+        Name in ``tribodyn.stiffness.MODELS``.
+    places : tuple
+        Phase (p,), path (p, n) [m] and whether each pair is between A and E (p, n).
+    total_force : float [N]
+        Normal force of all pairs.
+    extended_contact : bool
+        Let tip corners touch outside of the path of contact; then there are two pairs more.
+    material : Material
+        Material of both gears.
+    options : mapping
+        Options of the provider.
+    slices : int, optional
+        Slices of the face width.
+
+    Returns
+    -------
+    ContactProblem
+
+    Raises
+    ------
+    InputError
+        As :func:`contact_problem`.
+    """
+    from tribodyn.contact import path_of_contact
+
+    model, contact = MODELS[provider], path_of_contact(pair)
+    phase, path, touching = places
+    if extended_contact and model.influence is not None:
+        where = extended_places(contact, phase, path)
+    else:
+        where = on_path_places(contact, phase, path, touching)
+    compliance = compliance_of(pair, material, where, total_force, model, options)
+    widths = slice_widths(pair, slices)
+    gaps = slice_gaps(where, widths.size, teeth_alike=True)
+    return ContactProblem(where, compliance, gaps, widths)
+
+
+def phases_of(phases: int | FloatArray, mesh_cycles: int) -> FloatArray:
+    """Mesh phases over all cycles, from a number for each cycle or as they are given.
+
+    Parameters
+    ----------
+    phases : int or array
+        Phases of a mesh cycle.
+    mesh_cycles : int
+        Mesh cycles after which everything repeats.
+
+    Returns
+    -------
+    array (p,)
+
+    Raises
+    ------
+    InputError
+        If there are fewer than 8 phases in a cycle.
+
+    Examples
+    --------
+    >>> phases_of(8, 1)[:3].tolist()
+    [0.0, 0.125, 0.25]
+    """
+    if not isinstance(phases, int | np.integer):
+        return np.atleast_1d(np.asarray(phases, dtype=float))
+    if phases < 8:
+        raise InputError(
+            Problem(
+                what=f"phases = {phases}",
+                where="argument phases",
+                why="A mesh cycle needs at least 8 phases",
+                remedy="Give for example phases=64",
+            )
+        )
+    return np.arange(int(phases) * mesh_cycles) / int(phases)

@@ -1,0 +1,153 @@
+"""An elastic ring held at its bore and loaded around its rim, wave by wave."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.gear import Material
+
+__all__ = ["RingCompliance", "ring_compliance"]
+
+FloatArray = NDArray[np.float64]
+
+#: Ratio of inner to outer radius up to which the solution keeps eight digits.
+_LARGEST_INNER = 0.995
+
+
+class RingCompliance(NamedTuple):
+    """Displacement of the rim of a ring per stress on the rim, wave by wave.
+
+    Parameters
+    ----------
+    outer_radius : float [m]
+        Radius of the rim.
+    expansion : float [m/Pa]
+        Radial displacement under an even radial stress.
+    torsion : float [m/Pa]
+        Tangential displacement under an even tangential stress.
+    waves : array (n, 2, 2) [m/Pa]
+        For ``k = 1 .. n`` waves around the rim: radial stress ``p cos(k phi)`` and tangential
+        stress ``q sin(k phi)`` give displacements ``u cos(k phi)`` and ``v sin(k phi)`` with
+        ``(u, v) = waves[k - 1] @ (p, q)``.
+    """
+
+    outer_radius: float
+    expansion: float
+    torsion: float
+    waves: FloatArray
+
+
+def ring_compliance(
+    inner_radius: float, outer_radius: float, material: Material, waves: int
+) -> RingCompliance:
+    """Compliance of the rim of a ring whose inner circle is held.
+
+    Parameters
+    ----------
+    inner_radius : float [m]
+        Radius of the circle that does not move.
+    outer_radius : float [m]
+        Radius of the rim, where the stress acts.
+    material : Material
+        Material of the ring.
+    waves : int
+        Largest number of waves around the rim, at least 1.
+
+    Returns
+    -------
+    RingCompliance
+
+    Raises
+    ------
+    InputError
+        If a radius is not positive or the inner one is not below 0.995 of the outer one.
+
+    Notes
+    -----
+    Exact in plane stress. The solutions for ``k`` waves have the complex potentials ``z^(k+1)``,
+    ``z^(k-1)`` and their mirror powers, for one wave also the force terms ``ln z``; powers are
+    scaled to their largest value, so that any number of waves can be taken. Source: Muskhelishvili,
+    Some Basic Problems of the Mathematical Theory of Elasticity, sections 39 and 59; Timoshenko and
+    Goodier, Theory of Elasticity, general solution in polar coordinates (Michell).
+
+    Examples
+    --------
+    The torque 1 N m/m turns the rim as the ring in torsion does.
+
+    >>> steel = Material()
+    >>> ring = ring_compliance(0.015, 0.03, steel, 4)
+    >>> stress = 1.0 / (2.0 * np.pi * 0.03**2)
+    >>> turn = (1.0 / 0.015**2 - 1.0 / 0.03**2) / (4.0 * np.pi * steel.shear_modulus)
+    >>> bool(abs(ring.torsion * stress / 0.03 / turn - 1.0) < 1e-12)
+    True
+    """
+    require_positive("inner_radius", inner_radius, "m")
+    require_positive("outer_radius", outer_radius, "m")
+    if inner_radius > _LARGEST_INNER * outer_radius:
+        raise InputError(
+            Problem(
+                what=f"inner radius {inner_radius * 1e3:.6g} mm, outer radius "
+                f"{outer_radius * 1e3:.6g} mm",
+                where="ring under the teeth",
+                why="The body is the ring between the two; it must be at least "
+                f"{1.0 - _LARGEST_INNER:.1%} of the radius thick",
+                remedy="Give a smaller bore",
+            )
+        )
+    ratio = inner_radius / outer_radius
+    shear = material.shear_modulus
+    inside = _solutions(waves, ratio, ratio, material)
+    outside = _solutions(waves, 1.0, ratio, material)
+    conditions = np.concatenate([inside[:, :2], outside[:, 2:]], axis=1)
+    stress = np.zeros((waves, 4, 2))
+    stress[:, 2, 0] = stress[:, 3, 1] = 1.0
+    amplitudes = np.linalg.solve(conditions, stress)
+    rim = outer_radius / (2.0 * shear) * (outside[:, :2] @ amplitudes)
+    # Even pressure: u = A (r - r_i^2 / r).
+    thick = 1.0 - ratio**2
+    nu = material.poissons_ratio
+    stretched = (1.0 + nu) / (1.0 - nu) + ratio**2
+    return RingCompliance(
+        outer_radius=outer_radius,
+        expansion=outer_radius * thick / (2.0 * shear * stretched),
+        torsion=outer_radius * thick / (2.0 * shear * ratio**2),
+        # Betti and Maxwell to the last digit.
+        waves=0.5 * (rim + rim.swapaxes(1, 2)),
+    )
+
+
+def _solutions(waves: int, radius: float, ratio: float, material: Material) -> FloatArray:
+    """Radial and tangential displacement (times 2 G) and stress of the four solutions per wave.
+
+    Radii are over the outer one, the inner one being ``ratio``. The first two solutions grow
+    outwards and are scaled at the rim, the last two decay and are scaled at the inner circle.
+    """
+    n = np.arange(1.0, waves + 1.0)
+    nu = material.poissons_ratio
+    kappa = (3.0 - nu) / (1.0 + nu)
+    out, low = radius**n, (ratio / radius) ** n
+    table = np.empty((waves, 4, 4))
+    table[:, :, 0] = _column(out, radius, (kappa - n - 1.0, kappa + n + 1.0), (2.0 - n, n), n + 1.0)
+    table[:, :, 1] = _column(out / radius**2, radius, (-1.0, 1.0), (-1.0, 1.0), n - 1.0)
+    table[:, :, 2] = _column(low, radius, (kappa + n - 1.0, n - kappa - 1.0), (n + 2.0, n), 1.0 - n)
+    table[:, :, 3] = _column(low * (ratio / radius) ** 2, radius, (-1.0, -1.0), (1.0, 1.0), n + 1.0)
+    # One wave: the force terms of ln z replace the constant, single-valued by their factor.
+    log = 2.0 * kappa * np.log(radius)
+    table[0, :, 2] = log - 1.0, -log - 1.0, (3.0 + kappa) / radius, (1.0 - kappa) / radius
+    return table
+
+
+def _column(
+    size: FloatArray,
+    radius: float,
+    moves: tuple[FloatArray | float, FloatArray | float],
+    stresses: tuple[FloatArray | float, FloatArray | float],
+    factor: FloatArray,
+) -> FloatArray:
+    rows = [size * radius * move for move in moves]
+    rows += [size * factor * stress for stress in stresses]
+    return np.stack(rows, axis=1)
