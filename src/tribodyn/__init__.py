@@ -18,7 +18,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tribodyn.cases import cases, load_case, run
     from tribodyn.errors import ComputationError, InputError, ModelWarning
-    from tribodyn.study import Case, Result, film_over_operation, loaded_contact
+    from tribodyn.study import (
+        Case,
+        Result,
+        comprehensive_stiffness,
+        film_over_operation,
+        harris_map,
+        loaded_contact,
+        optimize_tip_relief,
+    )
 
 __version__ = "0.1.0"
 
@@ -30,9 +38,12 @@ __all__ = [
     "Result",
     "__version__",
     "cases",
+    "comprehensive_stiffness",
     "film_over_operation",
+    "harris_map",
     "load_case",
     "loaded_contact",
+    "optimize_tip_relief",
     "run",
 ]
 
@@ -42,9 +53,12 @@ _HOMES = {
     "InputError": "errors",
     "ModelWarning": "errors",
     "Result": "study",
+    "comprehensive_stiffness": "study",
     "film_over_operation": "study",
+    "harris_map": "study",
     "load_case": "cases",
     "loaded_contact": "study",
+    "optimize_tip_relief": "study",
     "run": "cases",
 }
 

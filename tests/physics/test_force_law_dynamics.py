@@ -130,7 +130,7 @@ def test_small_vibrations_see_the_tangent_and_large_ones_do_not():
         size = np.ptp(signals[1])
         swings.append([np.abs(signal - signals[1]).max() / size for signal in signals])
     small, large = swings
-    assert small[0] < 1e-7
+    assert small[0] < 3e-6  # curves between the knots differ a little
     assert small[2] > 1e-2
     assert large[0] > 1e-2
 

@@ -110,14 +110,23 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
     lower = np.linalg.cholesky(np.asarray(system.mass))
     inverse = np.linalg.inv(lower)
     size = system.size
-    directions = [part.reshape(-1, size) for part in (nodes.direction, nodes.direction_slope)]
-    used = np.unique(np.vstack(directions), axis=0) @ inverse.T
+    used = _used_directions(nodes.direction, nodes.direction_slope) @ inverse.T
     spring = inverse @ np.asarray(system.stiffness) @ inverse.T
     damper = inverse @ np.asarray(system.damping) @ inverse.T
     elastic = _row_space([spring, used])
     moving = _row_space([spring, used, damper])
     free = _complement(moving)
     return OrbitCoordinates(lower, elastic, moving, free, 2.0 * np.pi * mesh_frequency)
+
+
+def _used_directions(*parts: Array) -> Array:
+    """Different directions of all contacts (m, n); one row for a contact that keeps its own."""
+    rows = [np.zeros((0, parts[0].shape[-1]))]
+    for part in parts:
+        for number in range(part.shape[-2]):
+            contact = part[..., number, :].reshape(-1, part.shape[-1])
+            rows.append(contact if np.ptp(contact, axis=0).any() else contact[:1])
+    return np.asarray(np.unique(np.vstack(rows), axis=0))
 
 
 def _complement(basis: Array) -> Array:

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from tribodyn.dynamics.gear_pair import gear_contact
 from tribodyn.dynamics.system import Contact, Entry
 from tribodyn.errors import InputError, Problem
-from tribodyn.mesh import PhaseFunction
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshForceLaw, MeshFunctions
@@ -61,7 +60,8 @@ def gear_contacts(
         return (one,)
     if mesh_force == "tangent":
         tangent = _needed(mesh.tangent_stiffness, "tangent stiffness")
-        return (replace(one, stiffness=tangent, error=_sum_of(one.error, mesh.tangent_error)),)
+        spring = replace(one, stiffness=tangent, error=_sum_of(one.error, mesh.tangent_error))
+        return (replace(one, stiffness=0.0), replace(spring, damping=0.0))
     if mesh_force == "force-law":
         return law_contacts(one, _needed(mesh.force_law, "force law"))
     raise InputError(
@@ -153,13 +153,13 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     ramps = [
         replace(
             contact,
-            stiffness=_no_less_than_zero(PhaseFunction(law.grid, law.knot_stiffness[:, column])),
-            gap=_no_less_than_zero(PhaseFunction(law.grid, half + law.knot_deflection[:, column])),
+            stiffness=law.over_phase(law.knot_stiffness[:, column]),
+            gap=law.over_phase(half + law.knot_deflection[:, column]),
             damping=contact.damping if column == lowest else 0.0,
         )
         for column in range(law.knot_stiffness.shape[1])
     ]
-    opening = PhaseFunction(law.grid, half + law.knot_first_touch)
+    opening = law.over_phase(half + law.knot_first_touch)
     carrying = [
         ramp
         for column, ramp in enumerate(ramps)
@@ -167,9 +167,5 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     ]
     if lowest is not None:
         return (ramps[lowest], *carrying)
-    return (replace(contact, stiffness=0.0, gap=_no_less_than_zero(opening)), *carrying)
+    return (replace(contact, stiffness=0.0, gap=opening), *carrying)
 
-
-def _no_less_than_zero(function: Callable[[Array], Array]) -> Callable[[Array], Array]:
-    """Interpolation may undershoot zero between two knots."""
-    return lambda phase: np.maximum(function(phase), 0.0)

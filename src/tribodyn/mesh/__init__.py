@@ -2,23 +2,28 @@
 
 from tribodyn.mesh.build import build
 from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.comprehensive import ComprehensiveStiffness, comprehensive_stiffness
 from tribodyn.mesh.film import film_columns
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid, phase_grid
+from tribodyn.mesh.monotone_phase import MonotonePhaseFunction
 from tribodyn.mesh.moving_film import moving_film
 from tribodyn.mesh.operation import FilmOverOperation, film_over_operation
 from tribodyn.mesh.table import MeshTable
 
 __all__ = [
+    "ComprehensiveStiffness",
     "FilmOverOperation",
     "MeshColumns",
     "MeshForceLaw",
     "MeshFunctions",
     "MeshTable",
+    "MonotonePhaseFunction",
     "PhaseFunction",
     "PhaseGrid",
     "build",
+    "comprehensive_stiffness",
     "film_columns",
     "film_over_operation",
     "moving_film",

@@ -31,6 +31,7 @@ from tribodyn.mesh.table import MeshTable
 from tribodyn.mesh.teeth import teeth_of
 from tribodyn.mesh.touching import touching_pairs
 from tribodyn.progress import SILENT, Progress
+from tribodyn.stiffness import MODELS
 
 __all__ = ["build"]
 
@@ -56,7 +57,7 @@ def build(
     film_options: Mapping[str, Any] = _NO_OPTIONS,
     pinion_speed: float,
     pinion_torque: float,
-    steps: int = 512,
+    steps: int | None = None,
     force_law: bool = False,
     progress: Progress = SILENT,
 ) -> MeshTable:
@@ -89,7 +90,8 @@ def build(
     pinion_torque : float [N*m]
         Magnitude of the torque on the pinion.
     steps : int
-        Wanted number of phase intervals, at least 16.
+        Wanted number of phase intervals, at least 16; by default 512, or 1024 where pairs are
+        solved together, which begin to carry at phases that are no events.
     force_law : bool
         Fit the force law of pairs that are springs of their own too, whose stiffness may grow
         with their load; else it is their stiffness times the deflection. That of pairs which are
@@ -134,7 +136,7 @@ def build(
     require_positive("pinion_torque", pinion_torque, "N*m")
     require_between("composite_roughness", composite_roughness, 0.0, _LARGEST_ROUGHNESS, "m")
     options = FILM_MODELS[film_model].complete(film_options)
-    cycle = mesh_cycle(pair, steps)
+    cycle = mesh_cycle(pair, steps or _steps(pair, stiffness_model))
     total_force = pinion_torque / pair.pinion.base_radius
     places = (cycle.grid.phase, cycle.path, cycle.in_contact)
     teeth = teeth_of(
@@ -189,6 +191,11 @@ def build(
         film_stiffness_kind=options["stiffness"],
         **_spread(columns, cycle.in_contact),
     )
+
+
+def _steps(pair: SpurPair, model: str) -> int:
+    together = MODELS[model].coupled or pair.has_modification
+    return 1024 if together else 512
 
 
 def _spread_film(

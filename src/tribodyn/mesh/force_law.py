@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
+from tribodyn.mesh.monotone_phase import MonotonePhaseFunction
 
 __all__ = ["MeshForceLaw"]
 
@@ -17,6 +18,8 @@ FloatArray = NDArray[np.float64]
 
 #: Fall of the slope from one point to the next, relative to the largest, that is rounding.
 _ROUNDING = 1e-6
+#: Stiffness over that of all ramps below which nothing carries.
+_FAINT = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +46,8 @@ class MeshForceLaw:
     -----
     Deflection is counted along the line of action from where the driving flanks of the nominal
     teeth touch. Because no ramp softens, force and tangent never fall with deflection and every
-    force has one deflection. Between the knots columns are interpolated as in
-    :class:`~tribodyn.mesh.PhaseFunction`; on an event the values after it are returned.
+    force has one deflection. Between the knots several ramps follow monotone cubics, because pairs come
+    to bear at phases that are no events; on an event the values after it are returned.
 
     Examples
     --------
@@ -135,8 +138,24 @@ class MeshForceLaw:
         return cls(grid, place[:, :-1], np.maximum(rise, 0.0))
 
     @cached_property
-    def _columns(self) -> PhaseFunction:
-        return PhaseFunction(self.grid, np.stack((self.knot_deflection, self.knot_stiffness), -1))
+    def _columns(self) -> PhaseFunction | MonotonePhaseFunction:
+        return self.over_phase(np.stack((self.knot_deflection, self.knot_stiffness), -1))
+
+    def over_phase(self, values: FloatArray) -> PhaseFunction | MonotonePhaseFunction:
+        """Lay a curve through values at the knots.
+
+        Parameters
+        ----------
+        values : array (n, ...)
+            One or several columns, in any unit.
+
+        Returns
+        -------
+        PhaseFunction or MonotonePhaseFunction
+            The former for a single ramp, which has no corners between events.
+        """
+        single = self.knot_stiffness.shape[1] == 1
+        return (PhaseFunction if single else MonotonePhaseFunction)(self.grid, values)
 
     def ramps(self, phase: FloatArray | float) -> tuple[FloatArray, FloatArray]:
         """Place and stiffness of every ramp at any mesh phase.
@@ -149,11 +168,10 @@ class MeshForceLaw:
         Returns
         -------
         tuple of array
-            Deflections [m] and stiffnesses [N/m], shape of ``phase`` followed by the ramps. An
-            interpolated stiffness below zero is zero.
+            Deflections [m] and stiffnesses [N/m], shape of ``phase`` followed by the ramps.
         """
         both = self._columns(phase)
-        return both[..., 0], np.maximum(both[..., 1], 0.0)
+        return both[..., 0], both[..., 1]
 
     def force(self, phase: FloatArray | float, deflection: FloatArray | float) -> FloatArray:
         """Force of the driving flanks.
@@ -240,8 +258,9 @@ class MeshForceLaw:
         risen = np.concatenate((np.zeros((*risen.shape[:-1], 1)), risen), axis=-1)
         wanted = np.asarray(force, dtype=float)[..., None]
         # A convex law is the largest of its straight pieces, its inverse the smallest of theirs.
-        soft = np.maximum(total, np.finfo(float).tiny)
-        reached = np.where(total > 0.0, place + (wanted - risen) / soft, np.inf)
+        carries = total > _FAINT * total[..., -1:]
+        soft = np.where(carries, total, 1.0)
+        reached = np.where(carries, place + (wanted - risen) / soft, np.inf)
         return np.asarray(reached.min(axis=-1))
 
     @cached_property
@@ -270,7 +289,7 @@ class MeshForceLaw:
         -------
         array [m]
         """
-        return PhaseFunction(self.grid, self.knot_first_touch)(phase)
+        return self.over_phase(self.knot_first_touch)(phase)
 
     def __repr__(self) -> str:
         """One line."""

@@ -2,10 +2,12 @@
 
 Points of the law lie at chosen total forces, and where a pair begins to carry; between them the
 force is joined by chords. Forces are added until the chords are close enough everywhere, so that
-a mesh of linear pairs has one ramp and a mesh of modified flanks a dozen.
+a mesh of linear pairs has one ramp and a mesh of modified flanks twenty.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,21 +15,26 @@ from numpy.typing import NDArray
 from tribodyn.errors import warn
 from tribodyn.stiffness import ContactProblem
 
-__all__ = ["LARGEST_ERROR", "force_ramps"]
+__all__ = ["LARGEST_ERROR", "LARGEST_GRADUAL_ERROR", "force_ramps"]
 
 FloatArray = NDArray[np.float64]
 
-#: Largest error of the force over the force, from a tenth of the load to three times of it.
-LARGEST_ERROR = 2e-3
+#: Largest error of the force over the force, from a tenth of the load to three times of it, and
+#: the one where flanks vary over the face, so that pairs begin to carry gradually.
+LARGEST_ERROR, LARGEST_GRADUAL_ERROR = 2e-3, 1e-2
 #: What is aimed at, for the error between the forces that are looked at.
-_AIM = 1.2e-3
+_AIM = 1e-3
 #: Forces that are looked at, over the load of the mesh; the law is straight above the last.
 _LOOKED_AT = np.concatenate([[0.02, 0.05], np.geomspace(0.1, 3.0, 41), [4.0]])
 _RANGE = slice(2, -1)
+#: Slices, from the first to the last that touches, whose pairs are followed.
+_SLICES = 7
 #: Most forces that become points.
-_MOST = 24
+_MOST = 30
 #: Distance of two points, over the largest deflection, below which they are one.
 _SAME = 1e-9
+#: Stiffness of a ramp over the whole one that is rounding.
+_FAINT = 1e-9
 
 
 def force_ramps(
@@ -75,7 +82,7 @@ def force_ramps(
         if error.max() < _AIM or worst in chosen or len(chosen) >= _MOST:
             break
         chosen = sorted([*chosen, worst])
-    if error.max() > LARGEST_ERROR:
+    if error.max() > (LARGEST_ERROR if problem.widths.size == 1 else LARGEST_GRADUAL_ERROR):
         warn(
             "force-law",
             f"the force law of the mesh is {100.0 * error.max():.2g} % off the loaded tooth "
@@ -86,10 +93,11 @@ def force_ramps(
 
 
 def _kinks(problem: ContactProblem, most: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Deflection (n, pairs) at which each pair begins to carry, and the force there."""
-    if problem.widths.size > 1:
-        return np.empty((most.size, 0)), np.empty((most.size, 0))
-    pairs = problem.pickups(most)
+    """Deflection (n, kinks) at which each pair begins to carry in a slice, and the force there."""
+    order = np.argsort(problem.gaps.mean(axis=(0, 2)))
+    slices = order[np.unique(np.linspace(0, order.size - 1, _SLICES).round().astype(int))]
+    found = [replace(problem, gaps=problem.gaps[:, [s]]).pickups(most) for s in slices]
+    pairs = np.concatenate(found, axis=1)
     # Pairs that never come into play within the range would be points without use.
     pairs = pairs[:, (pairs < most[:, None] * (1.0 - _SAME)).any(axis=0)]
     return pairs, problem.at_approach(pairs.T)[0].T
@@ -115,14 +123,14 @@ def _chords(
     apart = width > _SAME * (x[:, -1:] - x[:, :1])
     slope[:, :-1] = np.where(apart, rise / np.where(apart, width, 1.0), np.nan)
     slope[:, -1] = last_slope
-    before = np.zeros(first.size)
-    added = np.empty_like(x)
-    for column in range(x.shape[1]):
-        here = slope[:, column]
-        # The last of several points in one place has the slope of the chord that follows.
-        here = np.where(np.isnan(here), before, here)
-        added[:, column] = np.maximum(here - before, 0.0)
-        before = np.maximum(here, before)
+    # Of several points in one place the first has the slope of the chord that follows.
+    for column in range(x.shape[1] - 2, -1, -1):
+        unknown = np.isnan(slope[:, column])
+        slope[unknown, column] = slope[unknown, column + 1]
+    slope = np.maximum.accumulate(slope, axis=1)
+    added = np.diff(slope, axis=1, prepend=0.0)
+    # What rounding leaves between points in one place would only be carried along.
+    added[added < _FAINT * last_slope[:, None]] = 0.0
     stiffness = np.empty_like(added)
     np.put_along_axis(stiffness, order, added, 1)
     return place, stiffness

@@ -140,13 +140,14 @@ class Teeth:
         on_path = np.where(self.in_contact, inner, 0.0)
         deflection = found.approach[0] - problem.least_gap
         places, contact = problem.places, problem.places.contact
-        early = places.direction * (places.path - contact.A) < 0.0
-        corners = np.where(places.on_path, 0.0, force) / self.total_force
+        early = places.direction * (2.0 * places.path - contact.A - contact.E) < 0.0
+        corners = force.copy()
+        (corners[:, 1:-1] if self._extended else corners)[self.in_contact] = 0.0
         corner = [np.where(side, corners, 0.0).sum(axis=1) for side in (early, ~early)]
         return Carried(
             stiffness=on_path / deflection[:, None],
             share=on_path / self.total_force,
-            corner_share=np.stack(corner, axis=1),
+            corner_share=np.stack(corner, axis=1) / self.total_force,
             transmission_error=found.approach[0],
             tangent=found.tangent[0],
         )

@@ -8,22 +8,31 @@ from __future__ import annotations
 from tribodyn.plot.acceleration import acceleration
 from tribodyn.plot.bearing_force import bearing_force
 from tribodyn.plot.bearing_spectrum import bearing_spectrum
+from tribodyn.plot.comprehensive_stiffness import comprehensive_stiffness
 from tribodyn.plot.film import film
 from tribodyn.plot.film_along_path import film_along_path, film_over_time
 from tribodyn.plot.film_comparison import compare_line_contacts
 from tribodyn.plot.film_dynamics import film_response, film_transient
 from tribodyn.plot.film_pressure import film_pressure
 from tribodyn.plot.film_stiffness import film_stiffness
+from tribodyn.plot.flank_modification import flank_modification
+from tribodyn.plot.force_law import force_law
 from tribodyn.plot.friction import friction
 from tribodyn.plot.gear_pair import gear_pair
+from tribodyn.plot.harris_map import harris_map
 from tribodyn.plot.line_contact import line_contact
+from tribodyn.plot.load_sharing import load_sharing
 from tribodyn.plot.loaded_contact import loaded_contact
 from tribodyn.plot.loaded_sharing import loaded_sharing
+from tribodyn.plot.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh_force import mesh_force
 from tribodyn.plot.mesh_stiffness import mesh_stiffness
 from tribodyn.plot.path_of_contact import path_of_contact
 from tribodyn.plot.registry import FIGURES, Drawing, drawing
 from tribodyn.plot.spectrum import spectrum
+from tribodyn.plot.static_stiffness import static_stiffness
+from tribodyn.plot.static_transmission_error import static_transmission_error
+from tribodyn.plot.tip_relief_map import tip_relief_map
 from tribodyn.plot.transmission_error import transmission_error
 
 __all__ = [
@@ -33,6 +42,7 @@ __all__ = [
     "bearing_force",
     "bearing_spectrum",
     "compare_line_contacts",
+    "comprehensive_stiffness",
     "drawing",
     "film",
     "film_along_path",
@@ -41,14 +51,22 @@ __all__ = [
     "film_response",
     "film_stiffness",
     "film_transient",
+    "flank_modification",
+    "force_law",
     "friction",
     "gear_pair",
+    "harris_map",
     "line_contact",
+    "load_sharing",
     "loaded_contact",
     "loaded_sharing",
+    "mesh_deformation",
     "mesh_force",
     "mesh_stiffness",
     "path_of_contact",
     "spectrum",
+    "static_stiffness",
+    "static_transmission_error",
+    "tip_relief_map",
     "transmission_error",
 ]

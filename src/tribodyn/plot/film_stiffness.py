@@ -87,7 +87,10 @@ def film_stiffness(result: Any) -> Any:
     if mesh.film_stiffness_kind in _SPRINGS:
         pair_curve = line(angle, pair, "teeth and film", TOTAL, unit=unit)
         panels.append(Panel(axis_label("pair_stiffness"), [teeth_curve, pair_curve]))
-    least, greatest = (significant(float(f(film / teeth))) for f in (np.min, np.max))
+    # Relieved flanks leave a pair without load where it comes in and where it leaves.
+    loaded = teeth > 0.0
+    ratio = film[loaded] / teeth[loaded]
+    least, greatest = (significant(float(f(ratio))) for f in (np.min, np.max))
     return stack(
         f"The oil film is {least} to {greatest} times as stiff as the teeth",
         roll_angle_label(mesh),

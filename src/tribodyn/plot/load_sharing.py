@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from tribodyn.plot.cycle import pair_life, positions
 from tribodyn.plot.events import event_lines
-from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.labels import display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.registry import drawing
-from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
+from tribodyn.plot.style import TOTAL, Panel, line, stack
 
 __all__ = ["load_sharing", "whole_life"]
 
@@ -86,23 +86,21 @@ def load_sharing(result: Any) -> Any:
     pair = mesh.gear_pair
     age, share = _closed(*whole_life(mesh))
     x = displayed("roll_angle", roll_angle_of(pair, age))
-    force = displayed("normal_force", share * mesh.total_normal_force)
+    newton = display_unit("normal_force")
+    hover = f"%{{y:.4g}} (%{{customdata:.4g}} {newton})<extra>load share</extra>"
+    trace = {
+        **line(x, share, "load share", TOTAL),
+        "customdata": displayed("normal_force", share * mesh.total_normal_force),
+        "hovertemplate": hover,
+    }
     layout = event_lines(pair_letters(pair))
     for kind, found in corner_shades(pair, float(age[0]), float(age[-1])).items():
         layout[kind] = [*found, *layout[kind]]
     most = float(np.max(share)) * mesh.total_normal_force
-    newton = display_unit("normal_force")
     return stack(
         f"A tooth pair carries up to {rounded('normal_force', most)}, "
         f"{100.0 * float(np.max(share)):.3g} % of the load",
         roll_label(pair),
-        [
-            Panel("Load share of a pair", [line(x, share, "load share", TOTAL)], {"range": [0, 1.05]}),
-            Panel(
-                axis_label("normal_force"),
-                [line(x, force, "force", PAIR_COLORS[0], unit=newton)],
-                {"rangemode": "tozero"},
-            ),
-        ],
+        [Panel("Load share of a pair", [trace], {"range": [0.0, 1.05]}, 1.3)],
         layout,
     )

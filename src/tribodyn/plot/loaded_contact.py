@@ -21,6 +21,7 @@ from tribodyn.plot.loaded_life import (
     span,
     torque_colors,
     torque_names,
+    whole_cycles,
 )
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
@@ -29,23 +30,29 @@ __all__ = ["loaded_contact"]
 
 Array = NDArray[np.float64]
 
+_QUANTITY = "static_transmission_error"
+#: Width of lines over many mesh cycles [px].
+_THIN = 1.2
+
 
 def _title(contact: Any) -> str:
     """Answer: mean and swing of the transmission error."""
     names = torque_names(contact)
     swings = np.ravel(contact.peak_to_peak_transmission_error)
     if len(names) == 1:
-        mean = rounded("static_transmission_error", float(np.ravel(contact.transmission_error.mean())[0]))
-        swing = rounded("static_transmission_error", float(swings[0]))
-        return f"Under {names[0]} the gears approach by {mean}, which varies by {swing}"
-    low, high = (rounded("static_transmission_error", float(at(swings))) for at in (np.min, np.max))
+        mean, swing = (
+            rounded(_QUANTITY, float(value))
+            for value in (np.mean(contact.transmission_error), swings[0])
+        )
+        return f"Under {names[0]} the transmission error is {mean} on average and varies by {swing}"
+    low, high = (rounded(_QUANTITY, float(at(swings))) for at in (np.min, np.max))
     return f"From {names[0]} to {names[-1]} the transmission error varies by {low} to {high}"
 
 
 def _over(contact: Any, values: Array) -> tuple[Array, Array]:
     """Values of the whole mesh over what the figure has as its horizontal axis."""
     if several_cycles(contact):
-        return contact.phase, values
+        return whole_cycles(contact.phase, values, contact.mesh_cycles)
     first, last = span(contact)
     cycles = range(int(np.floor(first)), int(np.ceil(last)))
     age = np.concatenate([contact.phase + cycle for cycle in cycles])
@@ -60,14 +67,27 @@ def _curves(contact: Any, quantity: str, values: Array, **look: Any) -> list[dic
     known, traces = named(len(names)), []
     for color, name, shown, each in zip(colors, names, known, rows(contact, values), strict=True):
         x, y = _over(contact, displayed(quantity, each))
-        trace = line(x, y, look.get("name", name), color, unit=display_unit(quantity),
-                     dash=look.get("dash", "solid"))
+        trace = line(
+            x,
+            y,
+            look.get("name", name),
+            color,
+            unit=display_unit(quantity),
+            dash=look.get("dash", "solid"),
+            width=_THIN if several_cycles(contact) else 2.0,
+        )
         traces.append({**trace, "showlegend": shown and len(names) > 1})
     return traces
 
 
 def _stiffness(contact: Any) -> list[dict[str, Any]]:
-    """Secant solid, tangent dashed; the legend tells the dashes, not the torques again."""
+    """Secant solid, tangent dashed; the legend tells the dashes, not the torques again.
+
+    Over many mesh cycles the secant alone stays readable.
+    """
+    if several_cycles(contact):
+        found = _curves(contact, "mesh_stiffness_secant", contact.mesh_stiffness_secant)
+        return [{**trace, "showlegend": False} for trace in found]
     traces = []
     for kind, dash in (("secant", "solid"), ("tangent", "dash")):
         name = f"mesh_stiffness_{kind}"
@@ -94,9 +114,13 @@ def _shares(contact: Any) -> list[dict[str, Any]]:
 def _shares_over_cycles(contact: Any) -> list[dict[str, Any]]:
     """Share of the pair that carries most, for each torque."""
     greatest = np.max(contact.load_share, axis=-1)
+    period = contact.mesh_cycles
     colors, names = torque_colors(np.size(contact.torque)), torque_names(contact)
     return [
-        {**line(contact.phase, share, name, color), "showlegend": False}
+        {
+            **line(*whole_cycles(contact.phase, share, period), name, color, width=_THIN),
+            "showlegend": False,
+        }
         for color, name, share in zip(colors, names, rows(contact, greatest), strict=True)
     ]
 
@@ -125,13 +149,14 @@ def loaded_contact(contact: Any) -> Any:
         ends; over all mesh cycles where the teeth differ.
     """
     hunting, pair = several_cycles(contact), contact.gear_pair
+    stiffness = "Secant stiffness" if hunting else "Mesh stiffness"
     share = "Greatest load share" if hunting else "Load share of a pair"
     panels = [
         Panel(
-            axis_label("static_transmission_error", "Transmission error"),
-            _curves(contact, "static_transmission_error", contact.transmission_error),
+            axis_label(_QUANTITY, "Transmission error"),
+            _curves(contact, _QUANTITY, contact.transmission_error),
         ),
-        Panel(axis_label("mesh_stiffness"), _stiffness(contact)),
+        Panel(axis_label("mesh_stiffness", stiffness), _stiffness(contact)),
         Panel(share, _shares(contact), {"range": [0.0, 1.05]}, 0.8),
     ]
     if hunting:

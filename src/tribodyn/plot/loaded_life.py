@@ -16,6 +16,7 @@ from tribodyn.plot.style import MUTED, TOTAL
 __all__ = [
     "Life",
     "corner_shades",
+    "mesh_marks",
     "named",
     "needs_loaded_contact",
     "pair_letters",
@@ -26,6 +27,8 @@ __all__ = [
     "span",
     "torque_colors",
     "torque_names",
+    "torque_texts",
+    "whole_cycles",
 ]
 
 Array = NDArray[np.float64]
@@ -38,6 +41,8 @@ _NAMED = 8
 _MARGIN = 0.04
 #: Part of the total force that counts as load.
 _LOADED = 1e-6
+#: Part of the way that a shade takes at least to be named.
+_NAMED_SHADE = 0.03
 #: Fill behind the places where a tip corner bears.
 _SHADE = "rgba(107, 119, 133, 0.13)"
 
@@ -222,6 +227,58 @@ def pair_letters(pair: Any) -> list[tuple[str, float]]:
     ]
 
 
+def whole_cycles(phase: Array, values: Array, period: int, repeats: int = 1) -> tuple[Array, Array]:
+    """Repeat evenly spaced samples of a periodic curve, up to where the last cycle ends.
+
+    Parameters
+    ----------
+    phase, values : array (p,)
+        Samples within one period, the first of them at its beginning.
+    period : int
+        Mesh cycles after which everything repeats.
+    repeats : int
+        Periods that are shown.
+
+    Returns
+    -------
+    tuple of array (repeats * p + 1,)
+        Mesh phase and values.
+
+    Examples
+    --------
+    >>> phase, values = whole_cycles(np.array([0.0, 0.5]), np.array([3.0, 4.0]), 1, 2)
+    >>> phase.tolist(), values.tolist()
+    ([0.0, 0.5, 1.0, 1.5, 2.0], [3.0, 4.0, 3.0, 4.0, 3.0])
+    """
+    turns = [phase + period * number for number in range(repeats)]
+    end = [phase[0] + period * repeats]
+    return np.concatenate([*turns, end]), np.append(np.tile(values, repeats), values[0])
+
+
+def mesh_marks(pair: Any, repeats: int) -> list[tuple[str, float]]:
+    """Mesh phases at which a tooth pair reaches A, leaves at E or passes the pitch point.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The gear pair.
+    repeats : int
+        Mesh cycles that are shown.
+
+    Returns
+    -------
+    list of tuple
+        Name and mesh phase.
+    """
+    contact = path_of_contact(pair)
+    pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
+    marks = [("A", 0.0), ("E", contact.contact_ratio % 1.0)]
+    if 0.0 <= pitch_point <= contact.contact_ratio:
+        marks.append(("C", pitch_point % 1.0))
+    placed = [(name, at + cycle) for cycle in range(repeats) for name, at in marks]
+    return [*placed, ("A", float(repeats))]
+
+
 def torque_names(contact: Any) -> list[str]:
     """Name of each torque with its unit.
 
@@ -234,8 +291,28 @@ def torque_names(contact: Any) -> list[str]:
     -------
     list of str
     """
+    return torque_texts(np.ravel(contact.torque))
+
+
+def torque_texts(torques: Array) -> list[str]:
+    """Write torques with as many digits as tell them apart.
+
+    Parameters
+    ----------
+    torques : array [N*m]
+        Torques.
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> torque_texts(np.array([50.0, 112.5]))
+    ['50 N·m', '112.5 N·m']
+    """
     unit = display_unit("torque")
-    return [f"{torque:.4g} {unit}" for torque in displayed("torque", np.ravel(contact.torque))]
+    return [f"{torque:.4g} {unit}" for torque in displayed("torque", torques)]
 
 
 def torque_colors(count: int) -> list[str]:
@@ -309,6 +386,8 @@ def corner_shades(pair: Any, first: float, last: float) -> dict[str, list[dict[s
         rectangle = {"x0": float(x[0]), "x1": float(x[1]), "y0": 0, "y1": 1}
         fill = {"fillcolor": _SHADE, "line": {"width": 0}, "layer": "below"}
         shapes.append({"type": "rect", **common, **rectangle, **fill})
+        if stop - start < _NAMED_SHADE * (last - first):
+            continue
         words = {"text": "tip corner", "textangle": -90, "font": {"size": 11, "color": MUTED}}
         place = {"x": float(x.mean()), "y": 0.98, "yanchor": "top", "showarrow": False}
         notes.append({**words, **place, **common})

@@ -77,9 +77,7 @@ def _traces(contact: Any, life: Life, seen: NDArray[np.bool_]) -> list[dict[str,
     return traces
 
 
-@drawing(
-    "loaded_sharing", heading="Load sharing", caption=_caption, missing=needs_loaded_contact
-)
+@drawing("loaded_sharing", heading="Load sharing", caption=_caption, missing=needs_loaded_contact)
 def loaded_sharing(contact: Any) -> Any:
     """Draw the force on one tooth pair from where it begins to carry to where it ends.
 

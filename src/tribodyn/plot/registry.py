@@ -36,7 +36,7 @@ class Drawing:
     """
 
     name: str
-    draw: Callable[[Any], Any]
+    draw: Callable[..., Any]
     heading: str
     caption: str | Callable[[Any], str]
     missing: Callable[[Any], str] = _always
@@ -55,13 +55,15 @@ class Drawing:
         """
         return self.caption if isinstance(self.caption, str) else self.caption(result)
 
-    def __call__(self, result: Any) -> Any:
+    def __call__(self, result: Any, **options: Any) -> Any:
         """Draw the figure.
 
         Parameters
         ----------
         result : Result
             What :func:`tribodyn.run` returns.
+        **options
+            Of the figure function, where it has any.
 
         Returns
         -------
@@ -75,7 +77,7 @@ class Drawing:
         reason = self.missing(result)
         if reason:
             raise InputError(Problem(what=reason))
-        return self.draw(result)
+        return self.draw(result, **options)
 
 
 FIGURES: Registry[Callable[[Any], Any]] = Registry("figure", "tribodyn.plot")
@@ -87,7 +89,7 @@ def drawing(
     heading: str,
     caption: str | Callable[[Any], str],
     missing: Callable[[Any], str] = _always,
-) -> Callable[[Callable[[Any], Any]], Drawing]:
+) -> Callable[[Callable[..., Any]], Drawing]:
     """Register a figure function under a name.
 
     Parameters
@@ -113,7 +115,7 @@ def drawing(
     'Mesh force'
     """
 
-    def keep(draw: Callable[[Any], Any]) -> Drawing:
+    def keep(draw: Callable[..., Any]) -> Drawing:
         made = Drawing(name, draw, heading, caption, missing)
         FIGURES.register(name)(made)
         return made

@@ -14,7 +14,10 @@ __all__ = ["SECTIONS", "Block", "figure_blocks", "script_json"]
 SECTIONS = (
     "gear_pair",
     "path_of_contact",
+    "flank_modification",
     "mesh_stiffness",
+    "load_sharing",
+    "static_transmission_error",
     "friction",
     "film",
     "film_pressure",

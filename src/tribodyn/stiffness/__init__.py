@@ -6,6 +6,7 @@ from tribodyn.stiffness.iso6336 import (
     iso6336_pair_stiffness,
     iso6336_single_stiffness,
 )
+from tribodyn.stiffness.harris import HarrisMap, transmission_error_over_torque
 from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.load_point import LoadPoint, load_point
 from tribodyn.stiffness.loaded import (
@@ -23,6 +24,9 @@ from tribodyn.stiffness.potential_energy import (
 from tribodyn.stiffness.rectangular import rectangular_stiffness
 from tribodyn.stiffness.sainsot import sainsot_coefficients, sainsot_compliance
 from tribodyn.stiffness.table import tabulated_stiffness
+from tribodyn.stiffness.tip_relief import optimize_tip_relief
+from tribodyn.stiffness.tip_relief_mesh import with_tip_relief
+from tribodyn.stiffness.tip_relief_result import TipReliefOptimum
 from tribodyn.stiffness.tooth_bending import ToothBendingCompliance, tooth_bending_compliance
 from tribodyn.stiffness.tooth_compliance import ToothCompliance, tooth_compliance
 from tribodyn.stiffness.weber_banaschek import weber_banaschek_compression
@@ -32,9 +36,11 @@ __all__ = [
     "MODELS",
     "ContactProblem",
     "GearInfluence",
+    "HarrisMap",
     "LoadPoint",
     "LoadedContact",
     "StiffnessModel",
+    "TipReliefOptimum",
     "ToothBendingCompliance",
     "ToothCompliance",
     "fourier_mesh_stiffness",
@@ -44,6 +50,7 @@ __all__ = [
     "load_point",
     "loaded_contact",
     "mesh_problem",
+    "optimize_tip_relief",
     "potential_energy_influence",
     "potential_energy_stiffness",
     "rectangular_stiffness",
@@ -53,6 +60,8 @@ __all__ = [
     "tabulated_stiffness",
     "tooth_bending_compliance",
     "tooth_compliance",
+    "transmission_error_over_torque",
     "weber_banaschek_compression",
     "wind_up_compliance",
+    "with_tip_relief",
 ]

@@ -56,7 +56,7 @@ def analytic_influence(
     *,
     reference: str = "bore",
     neighbours: int = 3,
-    nodes: int = 24,
+    nodes: int = 30,
     foundation: str = "ring",
 ) -> GearInfluence:
     """Influence of one gear from closed formulas.
@@ -91,13 +91,13 @@ def analytic_influence(
 
     Notes
     -----
-    Plane stress. The beam ends where the load crosses the tooth axis: the local compression
-    reaches from the flank to there. Against plane finite elements a single pair is 1 % off on the
-    mean over the path, most at a thin tip, where it is up to 5 % too stiff; cross compliances are
-    up to 3 % of the self compliance off. A gear without bore and with the rim as reference is held
-    at a seventh of its root radius. Source: `beam_to_axis` for
-    the tooth, `ring_compliance` for the ring, Sainsot, Velex and
-    Duverger (2004) for the stress under the foot.
+    Plane stress. The beam ends where the load crosses the tooth axis, because the local
+    compression reaches from the flank to there. Against plane finite elements a single pair is
+    1 % off on the mean over the path, and up to 5 % too stiff where it meets a thin tip; cross
+    compliances are up to 3 % of the self compliance off. A gear without bore and with the rim as
+    reference is held at a seventh of its root radius. Source: Weber and Banaschek (1953) for the
+    beam, Muskhelishvili for the ring, Sainsot, Velex and Duverger (2004) for the stress under the
+    foot; see `beam_to_axis`, `ring_compliance` and `foot_stresses`.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def analytic_influence(
     ...     profile_shift_coefficient=0.0, tip_diameter=0.117, face_width=0.02,
     ...     bore_diameter=0.03)
     >>> analytic_influence(gear, Material())
-    GearInfluence(24 nodes from 5.312 to 29.11 mm, 2.873e-05 to 7.808e-05 mm^2/N, 3 neighbours)
+    GearInfluence(30 nodes from 5.312 to 29.11 mm, 2.873e-05 to 7.808e-05 mm^2/N, 3 neighbours)
     """
     check_reference(reference)
     _check_foundation(foundation)

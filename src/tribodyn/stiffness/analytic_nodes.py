@@ -13,7 +13,7 @@ __all__ = ["flank_nodes"]
 _LEAST_PART = 1e-3
 
 
-def flank_nodes(gear: SpurGear, count: int = 24) -> NDArray[np.float64]:
+def flank_nodes(gear: SpurGear, count: int = 30) -> NDArray[np.float64]:
     """Radii of curvature from the end of the fillet to the tip, closer together at both ends.
 
     Parameters
@@ -38,7 +38,7 @@ def flank_nodes(gear: SpurGear, count: int = 24) -> NDArray[np.float64]:
     ...     profile_shift_coefficient=0.0, tip_diameter=0.117, face_width=0.02)
     >>> nodes = flank_nodes(gear, 5)
     >>> print(", ".join(f"{node * 1e3:.3f} mm" for node in nodes))
-    6.835 mm, 10.105 mm, 17.998 mm, 25.892 mm, 29.161 mm
+    5.312 mm, 8.797 mm, 17.211 mm, 25.624 mm, 29.109 mm
     """
     low, high = (
         gear.base_radius * gear.roll_angle(radius) for radius in (gear.form_radius, gear.tip_radius)

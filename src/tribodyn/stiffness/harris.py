@@ -25,6 +25,8 @@ FloatArray = NDArray[np.float64]
 
 #: Loads of single pairs in single slices that are held in memory at the same time.
 _AT_ONCE = 4_000_000
+#: Harmonics where nothing is said.
+_HARMONICS = 10
 #: Tooth pairs that may touch, about.
 _PAIRS = 4
 
@@ -178,7 +180,7 @@ def transmission_error_over_torque(
     *,
     provider: str = "fe2d",
     phases: int = 64,
-    harmonics: int = 10,
+    harmonics: int | None = None,
     extended_contact: bool = True,
     reference: str | None = None,
     material: Material | None = None,
@@ -197,8 +199,8 @@ def transmission_error_over_torque(
         Where the tooth compliances come from.
     phases : int
         Evenly spaced phases of a mesh cycle.
-    harmonics : int
-        Number of mesh harmonics, less than half the phases.
+    harmonics : int, optional
+        Number of mesh harmonics, less than half the phases; 10 by default, or all that there are.
     extended_contact : bool
         Let tip corners touch before A and after E.
     reference : str, optional
@@ -236,7 +238,7 @@ def transmission_error_over_torque(
     >>> found.transmission_error.shape
     (2, 64)
     """
-    torques = increasing_torques(torque)
+    torques, orders = increasing_torques(torque), _orders(harmonics, phases)
     given: dict[str, Any] = {
         "provider": provider, "phases": phases, "extended_contact": extended_contact,
         "reference": reference, "material": material, "slices": slices, "options": options,
@@ -259,7 +261,24 @@ def transmission_error_over_torque(
         mesh_cycles=found.mesh_cycles,
         transmission_error=error,
         unloaded_transmission_error=found.unloaded_transmission_error,
-        harmonics=harmonic_amplitudes(found.phase, error, found.mesh_cycles, harmonics),
+        harmonics=harmonic_amplitudes(found.phase, error, found.mesh_cycles, orders),
         mean_mesh_stiffness_secant=secant,
         mean_mesh_stiffness_tangent=tangent,
     )
+
+
+def _orders(harmonics: int | None, phases: int) -> int:
+    """Check the number of harmonics, or choose it."""
+    most = (phases - 1) // 2
+    if harmonics is None:
+        return max(1, min(_HARMONICS, most))
+    if not 1 <= harmonics <= most:
+        raise InputError(
+            Problem(
+                what=f"harmonics = {harmonics}",
+                where="argument harmonics",
+                why=f"{phases} phases of a mesh cycle show 1 to {most} harmonics",
+                remedy="Give more phases, for example phases=64",
+            )
+        )
+    return harmonics

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ FloatArray = NDArray[np.float64]
 
 #: Ratio of inner to outer radius up to which the solution keeps eight digits.
 _LARGEST_INNER = 0.995
+#: Waves times the logarithm of the radii from which the inner circle is not felt (1e-15).
+_DECAYED = 24.0
 
 
 class RingCompliance(NamedTuple):
@@ -100,13 +103,9 @@ def ring_compliance(
         )
     ratio = inner_radius / outer_radius
     shear = material.shear_modulus
-    inside = _solutions(waves, ratio, ratio, material)
-    outside = _solutions(waves, 1.0, ratio, material)
-    conditions = np.concatenate([inside[:, :2], outside[:, 2:]], axis=1)
-    stress = np.zeros((waves, 4, 2))
-    stress[:, 2, 0] = stress[:, 3, 1] = 1.0
-    amplitudes = np.linalg.solve(conditions, stress)
-    rim = outer_radius / (2.0 * shear) * (outside[:, :2] @ amplitudes)
+    long = min(waves, math.ceil(_DECAYED / math.log(outer_radius / inner_radius)))
+    rim = np.concatenate([_long(long, ratio, material), _short(long, waves, material)])
+    rim *= outer_radius / (2.0 * shear)
     # Even pressure: u = A (r - r_i^2 / r).
     thick = 1.0 - ratio**2
     nu = material.poissons_ratio
@@ -118,6 +117,28 @@ def ring_compliance(
         # Betti and Maxwell to the last digit.
         waves=0.5 * (rim + rim.swapaxes(1, 2)),
     )
+
+
+def _long(waves: int, ratio: float, material: Material) -> FloatArray:
+    """Compliance of the rim (times 2 G over its radius) for all waves up to a number."""
+    inside = _solutions(waves, ratio, ratio, material)
+    outside = _solutions(waves, 1.0, ratio, material)
+    conditions = np.concatenate([inside[:, :2], outside[:, 2:]], axis=1)
+    stress = np.zeros((waves, 4, 2))
+    stress[:, 2, 0] = stress[:, 3, 1] = 1.0
+    return np.asarray(outside[:, :2] @ np.linalg.solve(conditions, stress))
+
+
+def _short(beyond: int, waves: int, material: Material) -> FloatArray:
+    """The same for more waves, which do not reach the inner circle: those of a full disk."""
+    n = np.arange(beyond + 1.0, waves + 1.0)
+    nu = material.poissons_ratio
+    kappa = (3.0 - nu) / (1.0 + nu)
+    grow, turn = kappa * (n - 1.0), n + 1.0
+    table = np.empty((n.size, 2, 2))
+    table[:, 0, 0] = table[:, 1, 1] = 0.5 * (grow + turn) / (n**2 - 1.0)
+    table[:, 0, 1] = table[:, 1, 0] = 0.5 * (grow - turn) / (n**2 - 1.0)
+    return table
 
 
 def _solutions(waves: int, radius: float, ratio: float, material: Material) -> FloatArray:

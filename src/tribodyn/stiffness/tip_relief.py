@@ -2,137 +2,33 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.errors import ModelWarning, require_positive
-from tribodyn.gear import (
-    FlankModification,
-    Material,
-    SpurGear,
-    SpurPair,
-    default_relief_length,
-    flank_ranges,
-    profile_gap,
-)
-from tribodyn.stiffness.harris import increasing_torques
+from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded.gaps import mesh_period
-from tribodyn.stiffness.loaded.prepare import NO_OPTIONS, contact_problem, phases_of
-from tribodyn.stiffness.loaded.problem import ContactProblem
+from tribodyn.stiffness.loaded.prepare import NO_OPTIONS, phases_of
 from tribodyn.stiffness.model import MODELS
-from tribodyn.stiffness.tip_relief_bounds import ReliefRange, relief_range
+from tribodyn.stiffness.tip_relief_bounds import (
+    check_choices,
+    relief_bounds,
+    torques_and_weights,
+)
+from tribodyn.stiffness.tip_relief_mesh import relief_mesh, with_tip_relief
 from tribodyn.stiffness.tip_relief_result import TipReliefOptimum
 
-__all__ = ["optimize_tip_relief", "with_tip_relief"]
+__all__ = ["optimize_tip_relief"]
 
 FloatArray = NDArray[np.float64]
 
-#: Best points of the map from which the search goes on.
+#: Points of the map from which the search goes on: the best one, and others that lie apart.
 _STARTS = 3
-#: Torques between the two ends of a range.
-_TORQUES = 5
-
-
-def with_tip_relief(
-    pair: SpurPair, amount: float, length: float, *, gears: str = "both", shape: str = "linear"
-) -> SpurPair:
-    """Give a pair a tip relief; what else its flanks have stays.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        Both gears in their working position.
-    amount : float [m]
-        Material taken away at the tip; zero for no relief.
-    length : float [m]
-        Roll length of the relief.
-    gears : str
-        ``"both"``, ``"pinion"`` or ``"wheel"``.
-    shape : str
-        ``"linear"`` or ``"parabolic"``.
-
-    Returns
-    -------
-    SpurPair
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, or the relief longer than the flank.
-
-    Examples
-    --------
-    >>> from tribodyn.gear import spur_pair
-    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
-    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
-    >>> with_tip_relief(pair, 10e-6, 2e-3, gears="wheel").wheel.modification
-    FlankModification(tip_relief 10 um, tip_relief_length 2 mm)
-    """
-    changed = {
-        name: _relieved(getattr(pair, name), amount, length, shape) for name in _named(gears)
-    }
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # of the shape of the gears: told before
-        return replace(pair, **changed)
-
-
-def _named(gears: str) -> tuple[str, ...]:
-    return ("pinion", "wheel") if gears == "both" else (gears,)
-
-
-def _relieved(gear: SpurGear, amount: float, length: float, shape: str) -> SpurGear:
-    given = replace(
-        gear.modification,
-        tip_relief=amount,
-        tip_relief_length=length if amount > 0.0 else None,
-        tip_relief_shape=shape,
-    )
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)
-        return replace(gear, modification=given)
-
-
-@dataclass(frozen=True, eq=False)
-class _Mesh:
-    """The loaded tooth contact of a pair, to be asked for many reliefs.
-
-    The structure of the teeth depends on where they touch and not on what is missing there, so
-    compliances are found once and gaps alone change.
-    """
-
-    pair: SpurPair
-    gears: str
-    shape: str
-    problems: list[ContactProblem]
-    totals: list[FloatArray]
-
-    def error(self, amount: float, length: float) -> FloatArray:
-        """Transmission error (t, p) [m] with a relief."""
-        gap = self._gap(amount, length)
-        rows = [
-            replace(problem, gaps=problem.gaps + gap).at_loads(totals).approach
-            for problem, totals in zip(self.problems, self.totals, strict=True)
-        ]
-        return np.concatenate(rows)
-
-    def _gap(self, amount: float, length: float) -> FloatArray:
-        """What a relief alone adds to the gaps (p, 1, n) [m]."""
-        places = self.problems[0].places
-        gap = np.zeros(places.path.shape)
-        alone = FlankModification(
-            tip_relief=amount, tip_relief_length=length, tip_relief_shape=self.shape
-        )
-        for name, flank in zip(("pinion", "wheel"), flank_ranges(self.pair), strict=True):
-            if name in _named(self.gears):
-                gear = _shaped(getattr(self.pair, name), alone)
-                radius = getattr(places, f"{name}_curvature_radius")
-                gap = gap + profile_gap(gear, radius, flank, length)
-        return gap[:, None, :]
+#: Steps of a simplex; it ends when neither place nor value move by more than these parts.
+_STEPS = 200
+_PLACE, _VALUE = 1e-4, 1e-5
 
 
 def optimize_tip_relief(
@@ -145,9 +41,9 @@ def optimize_tip_relief(
     shape: str = "linear",
     objective: str = "largest",
     weight: ArrayLike | None = None,
+    grid: tuple[int, int] = (17, 11),
     provider: str = "fe2d",
     phases: int = 64,
-    grid: tuple[int, int] = (17, 11),
     extended_contact: bool = True,
     reference: str | None = None,
     material: Material | None = None,
@@ -162,27 +58,27 @@ def optimize_tip_relief(
         Both gears in their working position. Everything else that their flanks have is kept; a
         tip relief of the gears that are searched is replaced.
     torque : float or array (t,) [N*m]
-        Torques on the pinion; two of them are the ends of a range, in which three more are taken.
+        Torques on the pinion; two are the ends of a range, in which three more are taken.
     amount : tuple of float, optional
         Least and greatest material taken away at the tip [m]; by default from zero to twice the
         mean deflection under the greatest torque.
     length : tuple of float, optional
-        Least and greatest roll length of the relief [m]; by default from a fifth to one and a
-        quarter of the length over which more than the least number of pairs is in contact.
+        Least and greatest roll length of the relief [m]; by default from a fifth to twice the
+        length on which more than the least number of pairs is in contact, up to the whole flank.
     gears : str
-        ``"both"`` (with the same relief), ``"pinion"`` or ``"wheel"``.
+        ``"both"``, with the same relief, ``"pinion"`` or ``"wheel"``.
     shape : str
         ``"linear"`` or ``"parabolic"``.
     objective : str
         ``"largest"`` or ``"mean"`` peak-to-peak transmission error over the torques.
     weight : array (t,), optional
-        Weights of the torques in the mean, in the order of ``torque``; even by default.
+        Weights in the mean, in the order of the torques given; even by default.
+    grid : tuple of int
+        Amounts and lengths of the map with which the search begins.
     provider : str
         Where the tooth compliances come from.
     phases : int
         Evenly spaced phases of a mesh cycle.
-    grid : tuple of int
-        Amounts and lengths of the map with which the search begins.
     extended_contact : bool
         Let tip corners touch before A and after E.
     reference : str, optional
@@ -208,9 +104,10 @@ def optimize_tip_relief(
 
     Notes
     -----
-    The objective has kinks and several minima: it is mapped on a grid, and from the best points
-    of the map a simplex goes on within the bounds (Nelder and Mead, Comput. J. 7, 308-313, 1965).
-    Nothing is drawn by chance. Compliances are found once; only the gaps change.
+    The objective has kinks and several minima: it is mapped on a grid, and from the best points of
+    the map a simplex goes on within the bounds. Nothing is left to chance. Compliances are found
+    once; only the gaps change. Source of the simplex: Nelder and Mead (1965), Comput. J. 7,
+    308-313.
 
     Examples
     --------
@@ -219,29 +116,97 @@ def optimize_tip_relief(
     ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02,
     ...     pinion_bore_diameter=0.03, wheel_bore_diameter=0.03)
     >>> best = optimize_tip_relief(pair, (60.0, 120.0), provider="analytic", phases=16)
-    >>> bool(best.objective < 0.6 * best.objective_before)
+    >>> bool(best.objective < 0.7 * best.objective_before)
     True
     """
-    torques, weights = _torques(torque, weight)
-    named_problems(gears, shape, objective, grid)
-    plain = with_tip_relief(pair, 0.0, 0.0, gears=gears)
-    mesh = _mesh(plain, gears, shape, torques, {
-        "provider": provider, "phase": phases_of(phases, mesh_period(pair)),
+    check_choices(grid, gears=gears, shape=shape, objective=objective)
+    torques, weights = torques_and_weights(torque, weight)
+    chosen = dict(options)
+    if reference is not None and "reference" in MODELS[provider].options:
+        chosen["reference"] = reference
+    settings = {
+        "provider": provider, "phase": phases_of(phases, mesh_period(pair)), "slices": slices,
         "extended_contact": extended_contact, "material": material or Material(),
-        "options": _options(provider, options, reference), "slices": slices,
-    })  # fmt: skip
-    without = mesh.error(0.0, 1.0)
-    low, high = relief_bounds(pair, amount, length, float(without[-1].mean()))
+        "options": chosen,
+    }  # fmt: skip
+    mesh = relief_mesh(with_tip_relief(pair, 0.0, 0.0, gears=gears), gears, shape, torques, settings)
+    deflection = float(mesh.error(0.0, 0.0)[-1].mean())
+    low, high = relief_bounds(pair, amount, length, deflection)
+    before = relief_mesh(pair, gears, shape, torques, settings).error(0.0, 0.0)
 
-    def value(place: Sequence[float] | FloatArray) -> float:
-        peak = np.ptp(mesh.error(float(place[0]), float(place[1])), axis=1)
+    def measure(error: FloatArray) -> float:
+        peak = np.ptp(error, axis=1)
         return float(peak.max() if objective == "largest" else weights @ peak)
 
-    amounts, lengths = (np.linspace(low[k], high[k], grid[k]) for k in (0, 1))
-    mapped = np.array([[value((a, b)) for b in lengths] for a in amounts])
-    best, least = _search(value, (amounts, lengths), mapped)
-    given = pair.pinion.modification, pair.wheel.modification
-    bare = plain.pinion.modification, plain.wheel.modification
-    before = without if given == bare else _mesh_error(pair, mesh, provider)
-    after = mesh.error(*best)
-    ...
+    def value(place: FloatArray) -> float:
+        return measure(mesh.error(float(place[0]), float(place[1])))
+
+    axes = [np.linspace(low[k], high[k], grid[k]) for k in (0, 1)]
+    mapped = np.array([[value(np.array([a, b])) for b in axes[1]] for a in axes[0]])
+    best, least = _search(value, axes, mapped)
+    return TipReliefOptimum(
+        gear_pair=pair,
+        modified_pair=with_tip_relief(pair, *best, gears=gears, shape=shape),
+        gears=gears,
+        shape=shape,
+        amount=best[0],
+        length=best[1],
+        torque=torques,
+        weight=weights,
+        objective_kind=objective,
+        objective=least,
+        objective_before=measure(before),
+        phase=mesh.problems[0].places.phase,
+        transmission_error_before=before,
+        transmission_error_after=mesh.error(*best),
+        map_amount=axes[0],
+        map_length=axes[1],
+        map_objective=mapped,
+    )
+
+
+def _search(
+    value: Callable[[FloatArray], float], axes: list[FloatArray], mapped: FloatArray
+) -> tuple[tuple[float, float], float]:
+    """Go on from the best points of the map; amount and length, and the objective there."""
+    from scipy.optimize import minimize
+
+    low = np.array([axis[0] for axis in axes])
+    span = np.array([axis[-1] - axis[0] for axis in axes])
+    starts = _starts(mapped)
+    first = starts[0]
+    best, least = np.array([axes[k][first[k]] for k in (0, 1)]), float(mapped[first])
+    step = [0.5 / (axis.size - 1) for axis in axes]
+    for row, column in starts:
+        start = (np.array([axes[0][row], axes[1][column]]) - low) / span
+        toward = np.where(start + step > 1.0, -1.0, 1.0) * step
+        simplex = start + np.array([[0.0, 0.0], [toward[0], 0.0], [0.0, toward[1]]])
+        found = minimize(
+            lambda unit: value(low + span * unit) / mapped.max(),
+            start,
+            method="Nelder-Mead",
+            bounds=[(0.0, 1.0), (0.0, 1.0)],
+            options={
+                "initial_simplex": simplex, "maxfev": _STEPS, "xatol": _PLACE, "fatol": _VALUE,
+            },
+        )  # fmt: skip
+        place = low + span * np.clip(found.x, 0.0, 1.0)
+        reached = value(place)
+        if reached < least:
+            best, least = place, reached
+    return (float(best[0]), float(best[1])), least
+
+
+def _starts(mapped: FloatArray) -> list[tuple[int, int]]:
+    """Rows and columns of the least local minima of the map, the least of all first."""
+    padded = np.pad(mapped, 1, constant_values=np.inf)
+    rows, columns = mapped.shape
+    around = [
+        padded[1 + i : 1 + i + rows, 1 + j : 1 + j + columns]
+        for i in (-1, 0, 1)
+        for j in (-1, 0, 1)
+        if (i, j) != (0, 0)
+    ]
+    valleys = np.argwhere(mapped <= np.min(around, axis=0))
+    order = np.argsort([mapped[row, column] for row, column in valleys], kind="stable")
+    return [(int(row), int(column)) for row, column in valleys[order[:_STARTS]]]

@@ -78,6 +78,16 @@ class TipReliefOptimum:
         """Peak-to-peak transmission error with the relief that was found (t,) [m]."""
         return np.asarray(np.ptp(self.transmission_error_after, axis=1))
 
+    @property
+    def on_edge(self) -> bool:
+        """Whether amount or length is at the edge of its range: a wider one may hold a better."""
+        edges = [
+            abs(value - edge) < 1e-3 * np.ptp(axis)
+            for value, axis in ((self.amount, self.map_amount), (self.length, self.map_length))
+            for edge in axis[[0, -1]]
+        ]
+        return any(edges)
+
     def to_xarray(self) -> xarray.Dataset:
         """Convert to a labelled data set with units.
 

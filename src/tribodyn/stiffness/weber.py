@@ -82,7 +82,7 @@ def half_plane_compliance(
 
 
 def weber_influence(
-    gear: SpurGear, material: Material, *, reference: str = "rim", nodes: int = 24
+    gear: SpurGear, material: Material, *, reference: str = "rim", nodes: int = 30
 ) -> GearInfluence:
     """Influence of one gear by the energy method on a half plane.
 

@@ -11,6 +11,11 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline import run
     from tribodyn.study.read import read_case
     from tribodyn.study.result import Result
+    from tribodyn.study.static_studies import (
+        comprehensive_stiffness,
+        harris_map,
+        optimize_tip_relief,
+    )
     from tribodyn.study.summary_names import SUMMARY
     from tribodyn.study.transmission_error import loaded_contact
 
@@ -18,16 +23,22 @@ __all__ = [
     "SUMMARY",
     "Case",
     "Result",
+    "comprehensive_stiffness",
     "film_over_operation",
+    "harris_map",
     "loaded_contact",
+    "optimize_tip_relief",
     "read_case",
     "run",
 ]
 
 _HOMES = {
     "Case": "case",
+    "comprehensive_stiffness": "static_studies",
     "film_over_operation": "films",
+    "harris_map": "static_studies",
     "loaded_contact": "transmission_error",
+    "optimize_tip_relief": "static_studies",
     "read_case": "read",
     "run": "pipeline",
     "Result": "result",

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
 
-__all__ = ["mesh_force_of", "static_error", "system_of", "tangent_error"]
+__all__ = ["mesh_law_of", "static_error", "system_of"]
 
 _GEARS = ("pinion", "wheel")
 
 
-def mesh_force_of(case: Case) -> MeshForce:
+def mesh_law_of(case: Case) -> MeshForce:
     """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law.
 
     Parameters
@@ -34,31 +34,10 @@ def mesh_force_of(case: Case) -> MeshForce:
     """
     from tribodyn.stiffness import MODELS
 
-    if case.dynamics.mesh_force is not None:
-        return cast("MeshForce", case.dynamics.mesh_force)
+    if case.dynamics.mesh_law is not None:
+        return cast("MeshForce", case.dynamics.mesh_law)
     whole = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
     return "force-law" if whole else "stiffness"
-
-
-def tangent_error(
-    case: Case, mesh: MeshTable, phase: NDArray[np.float64] | float
-) -> NDArray[np.float64] | float:
-    """Error that a tangent stiffness needs; zero where the teeth carry in another way.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    mesh : MeshTable
-        Its tooth contact.
-    phase : float or array
-        Mesh phase.
-
-    Returns
-    -------
-    float or array [m]
-    """
-    return mesh.functions().tangent_error(phase) if mesh_force_of(case) == "tangent" else 0.0
 
 
 def static_error(case: Case, phase: NDArray[np.float64] | float) -> NDArray[np.float64]:
@@ -108,7 +87,7 @@ def system_of(case: Case, mesh: MeshTable, damping: Damping) -> System:
         "backlash": case.backlash,
         "damping_in_gap": case.dynamics.damping_in_gap,
         "torque_balance": case.operation.torque_balance,
-        "mesh_force": mesh_force_of(case),
+        "mesh_force": mesh_law_of(case),
     }
     if case.dynamics.transmission_error_amplitude > 0.0:
         shared["error"] = lambda phase: static_error(case, phase)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
 from tribodyn.progress import Progress
-from tribodyn.study.assembly import mesh_force_of
+from tribodyn.study.assembly import mesh_law_of
 from tribodyn.study.collect import collected
 from tribodyn.study.provenance import effective
 from tribodyn.study.steps import steps_of
@@ -110,7 +110,7 @@ def _warn_of_tension(case: Case, response: Response) -> None:
     """A mesh without backlash pulls where real flanks would part."""
     least = float(response.contact_force.sum(axis=1).min())
     if case.backlash == 0.0 and least < 0.0:
-        linear = mesh_force_of(case) != "force-law"
+        linear = mesh_law_of(case) != "force-law"
         kept = "makes the mesh linear" if linear else "lets the back flanks push at once"
         warn(
             "mesh-tension",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study import derive
-from tribodyn.study.assembly import mesh_force_of, system_of
+from tribodyn.study.assembly import mesh_law_of, system_of
 from tribodyn.study.cautions import case_cautions, mesh_cautions, motion_cautions, teeth_cautions
 from tribodyn.study.collect import collected
 from tribodyn.study.damping import damping_of
@@ -118,7 +118,7 @@ def _mesh(case: Case, progress: Progress = SILENT) -> MeshTable:
         friction_options=_options(case, "friction", case.friction.law),
         pinion_speed=case.pinion_speed,
         pinion_torque=case.pinion_torque,
-        force_law=mesh_force_of(case) == "force-law",
+        force_law=mesh_law_of(case) == "force-law",
         progress=progress,
         **model_settings(case),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.study.assembly import mesh_force_of
+from tribodyn.study.assembly import mesh_law_of
 from tribodyn.study.checks import DEFAULT_MARK
 from tribodyn.study.derived import BASIS, derived_values
 from tribodyn.study.faults import section_at
@@ -65,8 +65,8 @@ def spec_of(case: Case, key: str) -> Spec | None:
 def _option_default(case: Case, key: str) -> Any:
     """Default of an option of the chosen film model, stiffness model or friction law."""
     section, _, name = key.rpartition(".")
-    if key == "dynamics.mesh_force":
-        return mesh_force_of(case)
+    if key == "dynamics.mesh_law":
+        return mesh_law_of(case)
     chosen = {
         "film": case.film.model, "stiffness": case.stiffness.model, "friction": case.friction.law,
     }.get(section)  # fmt: skip

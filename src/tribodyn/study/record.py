@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.study.assembly import tangent_error
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples, Response, System
@@ -149,7 +148,6 @@ def transmission_error(result: Result, samples: FineSamples) -> NDArray[np.float
         Compression of the mesh, errors included [m].
     """
     error = compression(samples) + result.static_error(samples.phase)
-    error = error + tangent_error(result.case, result.mesh, one_sided_phase(samples))
     return np.asarray(error - result.half_backlash)
 
 

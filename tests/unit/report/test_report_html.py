@@ -66,7 +66,10 @@ def test_page_is_well_formed_and_complete(outline: Outline) -> None:
     for heading in (
         "The gear pair",
         "Along the path of contact",
+        "Flank modifications",
         "Mesh stiffness",
+        "Load sharing",
+        "Static transmission error",
         "Friction",
         "Mesh force",
         "Transmission error",
@@ -105,7 +108,8 @@ def test_every_drawn_figure_has_its_place_and_its_data(page: str, outline: Outli
     found = re.search(r"const figures = (\{.*?\n\});", page, re.DOTALL)
     assert found
     figures = json.loads(found.group(1))
-    assert set(figures) == set(SECTIONS) - {"film", "film_pressure", "film_stiffness"}
+    missing = {"film", "film_pressure", "film_stiffness", "flank_modification"}
+    assert set(figures) == set(SECTIONS) - missing
     for name, figure in figures.items():
         assert f"figure-{name}" in outline.ids
         assert figure["data"]
@@ -120,6 +124,14 @@ def test_missing_figures_are_explained(drawable: Any) -> None:
     assert together in Outline(page).headings
     assert "No film model was chosen" in page
     assert "figure-acceleration" not in Outline(page).ids
+
+
+def test_modified_flanks_are_drawn(drawable: Any) -> None:
+    relieved = drawable(changes={"gears.pinion.modification.tip_relief": "10 um"})
+    page = render_report(relieved)
+    assert "figure-flank_modification" in Outline(page).ids
+    assert "The flanks stand apart by up to 10.0 µm" in page
+    assert "neither gear has a modification" not in page
 
 
 def test_chips_name_the_method_and_the_models(page: str, drawable: Any) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+
 import numpy as np
 import pytest
 
@@ -109,3 +111,12 @@ def test_compliance_goes_with_the_size_and_the_inverse_of_the_modulus(steel):
 def test_a_body_that_is_no_ring_is_refused(steel, inner):
     with pytest.raises(InputError, match=r"smaller bore|greater than zero"):
         ring_compliance(inner, OUTER, steel, 3)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.6, 0.97])
+def test_waves_that_do_not_reach_the_bore_are_continued_without_it(steel, ratio, monkeypatch):
+    found = ring_compliance(ratio * OUTER, OUTER, steel, 1500)
+    module = importlib.import_module("tribodyn.stiffness.ring_fourier")
+    monkeypatch.setattr(module, "_DECAYED", 1e9)
+    all_felt = ring_compliance(ratio * OUTER, OUTER, steel, 1500)
+    assert found.waves == pytest.approx(all_felt.waves, rel=2e-10)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.fe2d.element import plane_stress
 from tribodyn.stiffness.fe2d.flamant import remainder_loads
-from tribodyn.stiffness.fe2d.flank_load import FlankLoads, flank_loads
+from tribodyn.stiffness.fe2d.flank_load import flank_loads
 from tribodyn.stiffness.fe2d.ring import Ring
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
 from tribodyn.stiffness.sainsot import LARGEST_RATIO
@@ -141,12 +141,10 @@ def unit_compliances(
     place, direction, depth = (part[~near] for part in loads[:3])
     forces[:, ~near] = remainder_loads(mesh, place, direction, depth, elasticity)
     solution = ring.solve(forces)
-    own = np.diagonal(ring.seen(solution, loads.forces, 0))
-    views = loads.forces[:, : rho.size]
-    cross = [ring.seen(solution, views, -n)[: rho.size] for n in range(1, neighbours + 1)]
-    return UnitCompliances(
-        rho, _carried_to_tip(rho, support, own, near[: rho.size]), np.stack(cross)
-    )
+    # the side of larger radii is the clockwise one
+    seen = ring.seen(solution, loads.forces, [-n for n in range(neighbours + 1)])
+    own = _carried_to_tip(rho, support, np.diagonal(seen[0]), near[: rho.size])
+    return UnitCompliances(rho, own, seen[1:, : rho.size, : rho.size].copy())
 
 
 def _places(gear: SpurGear) -> tuple[FloatArray, FloatArray]:

@@ -30,7 +30,7 @@ def quadratic_shapes(place: FloatArray) -> tuple[FloatArray, FloatArray]:
     Returns
     -------
     tuple of array
-        Values and slopes, shape (\\*place.shape, 3).
+        Values and slopes, one more axis of three.
     """
     x = np.asarray(place, dtype=float)
     values = np.stack([0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)], axis=-1)
@@ -101,10 +101,9 @@ def element_stiffness(corners: FloatArray, elasticity: FloatArray) -> FloatArray
     Full integration with 3 x 3 points. Source: Zienkiewicz and Taylor, The Finite Element
     Method, chapter on isoparametric elements.
     """
-    factor = np.linalg.cholesky(elasticity).T
+    factor: FloatArray = np.linalg.cholesky(elasticity).T.astype(float)
     parts = [
-        _block(corners[first : first + _BLOCK], factor)
-        for first in range(0, len(corners), _BLOCK)
+        _block(corners[first : first + _BLOCK], factor) for first in range(0, len(corners), _BLOCK)
     ]
     return np.concatenate(parts)
 

@@ -67,7 +67,7 @@ def fe2d_influence(
     ------
     InputError
         If the reference is unknown or is the bore of a gear without bore, the bore leaves hardly
-        any rim, or there are no neighbours.
+        any rim, or no neighbours are asked for.
 
     Notes
     -----
@@ -100,11 +100,23 @@ def fe2d_influence(
         )
     known = max(min(neighbours, (gear.teeth - 1) // 2), 1)
     found = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)
-    modulus = material.youngs_modulus
-    return GearInfluence(
-        found.curvature_radius,
-        found.self_compliance / modulus - wind_up,
-        found.cross_compliance / modulus - wind_up,
+    own = found.self_compliance / material.youngs_modulus - wind_up
+    if not np.all(own > 0.0):
+        raise InputError(_too_thin(gear))
+    cross = found.cross_compliance / material.youngs_modulus - wind_up
+    return GearInfluence(found.curvature_radius, own, cross)
+
+
+def _too_thin(gear: SpurGear) -> Problem:
+    rim = gear.root_radius - held_radius(gear)
+    return Problem(
+        what=f"the bore of {gear.bore_diameter * 1e3:.4g} mm leaves a rim of {rim * 1e3:.3g} mm "
+        "under the root circle",
+        where="bore_diameter",
+        why="The held bore lies so close to the lowest contacts that the local compression of the "
+        "contact alone, which reaches to the middle of the tooth, is more than the whole "
+        "deflection",
+        remedy="Give a smaller bore",
     )
 
 

@@ -7,6 +7,7 @@ result is that of the finite element mesh of the whole ring, to rounding.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,6 +21,9 @@ from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh
 __all__ = ["Ring", "RingSolution", "sector_stiffness"]
 
 FloatArray = NDArray[np.float64]
+
+#: Right-hand sides solved together: more would be handed to a threaded library in bits too small.
+_TOGETHER = 4
 
 
 def sector_stiffness(mesh: SectorMesh, elasticity: FloatArray) -> Any:
@@ -69,6 +73,12 @@ def _freedoms(nodes: NDArray[np.int64]) -> NDArray[np.int64]:
     return (2 * nodes[:, None] + np.arange(2)).ravel()
 
 
+def _summed(first: FloatArray, sparse: FloatArray) -> FloatArray:
+    """Product ``first.T @ sparse`` over the few rows where the second has entries."""
+    rows = np.flatnonzero(np.any(sparse, axis=1))
+    return np.asarray(first[rows].T @ sparse[rows])
+
+
 @dataclass(frozen=True, eq=False)
 class RingSolution:
     """Displacements of the ring under load cases that all act on the sector 0.
@@ -99,7 +109,9 @@ class Ring:
     def __init__(self, mesh: SectorMesh, elasticity: FloatArray | None = None) -> None:
         self.mesh = mesh
         self._turn = _polar_on_cuts(mesh)
-        matrix = sector_stiffness(mesh, plane_stress(1.0, 0.3) if elasticity is None else elasticity)
+        matrix = sector_stiffness(
+            mesh, plane_stress(1.0, 0.3) if elasticity is None else elasticity
+        )
         boundary = np.concatenate([mesh.right_cut, mesh.left_cut])
         inner = np.setdiff1d(np.arange(len(mesh.nodes)), np.concatenate([boundary, mesh.held]))
         self._inner, self._boundary = _freedoms(inner), _freedoms(boundary)
@@ -121,8 +133,16 @@ class Ring:
     @cached_property
     def _inside_per_cut(self) -> FloatArray:
         """Displacement of the inside per displacement of the cuts."""
-        solved: FloatArray = self._factors.solve(-self._coupling)
-        return solved
+        return self._solved(-self._coupling)
+
+    def _solved(self, loads: FloatArray) -> FloatArray:
+        """Displacement of the inside with the cuts held."""
+        factors = self._factors
+        parts = [
+            factors.solve(np.ascontiguousarray(loads[:, first : first + _TOGETHER]))
+            for first in range(0, loads.shape[1], _TOGETHER)
+        ]
+        return np.concatenate(parts, axis=1)
 
     def solve(self, loads: FloatArray) -> RingSolution:
         """Displacements under loads on the sector 0.
@@ -137,14 +157,14 @@ class Ring:
         -------
         RingSolution
         """
-        inner = np.ascontiguousarray(loads[self._inner])
-        inside = self._factors.solve(inner)
-        force = self._inside_per_cut.T @ inner + (self._turn.T @ loads)[self._boundary]
+        inner = loads[self._inner]
+        inside = self._solved(inner)
+        force = _summed(self._inside_per_cut, inner) + (self._turn.T @ loads)[self._boundary]
         return RingSolution(inside, self._around(force))
 
     def _around(self, force: FloatArray) -> FloatArray:
         """Displacement of the right cut of each sector under forces on both cuts of sector 0."""
-        condensed = self._edge + self._coupling.T @ self._inside_per_cut
+        condensed = self._edge + _summed(self._inside_per_cut, self._coupling)
         condensed = 0.5 * (condensed + condensed.T)
         half = condensed.shape[0] // 2
         right, left = slice(0, half), slice(half, None)
@@ -156,8 +176,10 @@ class Ring:
         waves = np.linalg.solve(systems, force[right] + force[left] * np.conj(turn))
         return np.fft.irfft(waves, count, axis=0)
 
-    def seen(self, solution: RingSolution, weights: FloatArray, sector: int) -> FloatArray:
-        """Weighted displacements of a sector.
+    def seen(
+        self, solution: RingSolution, weights: FloatArray, sectors: Sequence[int]
+    ) -> FloatArray:
+        """Weighted displacements of some sectors.
 
         Parameters
         ----------
@@ -165,20 +187,21 @@ class Ring:
             Of :meth:`solve`.
         weights : array (2 nodes, views)
             Weights of the displacements in x and y, in the frame of the sector that is seen.
-        sector : int
-            Number of the sector, counted anticlockwise from the loaded one.
+        sectors : sequence of int
+            Numbers of the sectors, counted anticlockwise from the loaded one.
 
         Returns
         -------
-        array (cases, views)
+        array (sectors, cases, views)
         """
         inner = weights[self._inner]
-        cuts = self._both_cuts(solution, sector)
         on_cuts = (self._turn.T @ weights)[self._boundary]
-        found = cuts.T @ (self._inside_per_cut.T @ inner + on_cuts)
-        if sector % self.mesh.count == 0:
-            found = found + solution.inside.T @ inner
-        return np.asarray(found)
+        per_cut = _summed(self._inside_per_cut, inner) + on_cuts
+        found = [self._both_cuts(solution, sector).T @ per_cut for sector in sectors]
+        for place, sector in enumerate(sectors):
+            if sector % self.mesh.count == 0:
+                found[place] = found[place] + _summed(solution.inside, inner)
+        return np.stack(found)
 
     def displacement(self, solution: RingSolution, sector: int) -> FloatArray:
         """Displacements of all nodes of a sector in x and y of its own frame.
@@ -204,6 +227,4 @@ class Ring:
 
     def _both_cuts(self, solution: RingSolution, sector: int) -> FloatArray:
         count = self.mesh.count
-        return np.concatenate(
-            [solution.cuts[sector % count], solution.cuts[(sector + 1) % count]]
-        )
+        return np.concatenate([solution.cuts[sector % count], solution.cuts[(sector + 1) % count]])

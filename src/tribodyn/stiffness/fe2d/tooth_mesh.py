@@ -23,17 +23,17 @@ _THINNEST_RIM = 0.1
 
 @dataclass(frozen=True)
 class MeshSize:
-    """Sizes of the elements in modules.
+    """Sizes of the elements over the module.
 
     Parameters
     ----------
-    flank : float
-        Along and across the loaded flank.
-    largest : float
+    flank : float [-]
+        Size along and across the loaded flank.
+    largest : float [-]
         Largest size in tooth and root.
-    growth : float
+    growth : float [-]
         Ratio of neighbouring elements away from the flank.
-    body_growth : float
+    body_growth : float [-]
         Growth of the radial size per depth under the root.
     body_ratio : float
         Largest radial size over the radius.
@@ -43,7 +43,7 @@ class MeshSize:
     largest: float = 0.09
     growth: float = 1.3
     body_growth: float = 0.3
-    body_ratio: float = 0.22
+    body_ratio: float = 0.17
 
     def refined(self, factor: float) -> MeshSize:
         """Mesh with smaller elements everywhere.
@@ -173,13 +173,13 @@ def _tooth_points(side: ToothSide, lengths: FloatArray, across: FloatArray) -> F
     tip, foot = (_arc(right[end], across)[:, None] for end in (0, -1))
     straight = (1.0 - u) * right[None] + u * left[None]
     corners = (1.0 - v) * straight[:, :1] + v * straight[:, -1:]
-    return straight + (1.0 - v) * tip + v * foot - corners
+    return np.asarray(straight + (1.0 - v) * tip + v * foot - corners)
 
 
 def _arc(begin: FloatArray, share: FloatArray) -> FloatArray:
     """Arc around the centre from a point to its mirror image."""
     angle = math.atan2(begin[0], begin[1]) * (1.0 - 2.0 * share)
-    return np.hypot(*begin) * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+    return np.asarray(np.hypot(*begin) * np.stack([np.sin(angle), np.cos(angle)], axis=-1))
 
 
 def _body_levels(side: ToothSide, bore: float, size: MeshSize) -> FloatArray:
@@ -194,7 +194,7 @@ def _body_levels(side: ToothSide, bore: float, size: MeshSize) -> FloatArray:
     while len(radii) < 4:
         radii = list(np.linspace(radii[0], radii[-1], 4))
     depths = radii[0] - np.array(radii)
-    return depths / depths[-1]
+    return np.asarray(depths / depths[-1])
 
 
 def _body_points(top: FloatArray, levels: FloatArray, bore: float) -> FloatArray:

@@ -90,7 +90,7 @@ class ToothSide:
 
         Returns
         -------
-        array (\\*length.shape, 2)
+        array (..., 2)
         """
         angle, fillet_length, _ = self._fillet
         on_fillet = length < self.form_length
@@ -110,7 +110,7 @@ class ToothSide:
 
         Returns
         -------
-        array (\\*share.shape, 2)
+        array (..., 2)
         """
         angle, length, foot = self._fillet
         begin = float(self.form.trochoid.half_tooth_angle(0.5 * math.pi))

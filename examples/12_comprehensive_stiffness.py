@@ -1,0 +1,42 @@
+"""Oil film and teeth in series over torque and speed, with two meanings of a film's stiffness.
+
+The tangent is the slope of load over film: what slow vibrations meet. The secant is the sum of
+pressure over film: it makes the oil ten times softer, and the mesh depend on the speed.
+
+Run it with a folder to keep the figures: ``python examples/12_comprehensive_stiffness.py figures``.
+"""
+
+import sys
+import tempfile
+import warnings
+from pathlib import Path
+
+import tribodyn as td
+
+warnings.simplefilter("ignore", td.ModelWarning)  # light loads have films that do not yield
+case = td.load_case("fzg-film")  # the wheel of 24 teeth drives; torque and speed are its own
+torques, speeds = (50, 150, 300), (400, 1400, 3000)
+figures = {}
+for kind in ("tangent", "secant"):
+    over_torque = td.comprehensive_stiffness(case, torque=[f"{t} N*m" for t in torques], kind=kind)
+    over_speed = td.comprehensive_stiffness(case, speed=[f"{n} rpm" for n in speeds], kind=kind)
+    figures[f"{kind}-torque"], figures[f"{kind}-speed"] = over_torque, over_speed
+    print(f"{kind} film stiffness, means over the mesh cycle [N/um]")
+    for found, names in (
+        (over_torque, [f"{torque} N*m" for torque in torques]),
+        (over_speed, [f"{speed} rpm" for speed in speeds]),
+    ):
+        films = found.film_mesh_stiffness.mean(axis=2).ravel()
+        teeth, whole = found.mean_tooth_stiffness.ravel(), found.mean_mesh_stiffness.ravel()
+        for name, film, tooth, both in zip(names, films, teeth, whole, strict=True):
+            print(
+                f"  {kind} {name:>9}  films {1e-6 * film:9.0f}  teeth {1e-6 * tooth:6.2f}  "
+                f"both {1e-6 * both:6.2f}"
+            )
+
+with tempfile.TemporaryDirectory() as scratch:
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, found in figures.items():
+        found.plot().write_html(folder / f"comprehensive-{name}.html")
+    print("figures:", *sorted(path.name for path in folder.glob("comprehensive-*.html")))

@@ -1,0 +1,180 @@
+"""Outlines of both gears near the contact, bent by their loads, in the common frame of the pair.
+
+The frame is that of :mod:`tribodyn.plot.gear_drawing`: the pinion's axis is the origin, the
+wheel's axis lies on the horizontal axis, and points are complex numbers.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.contact import path_of_contact
+from tribodyn.gear import Material
+from tribodyn.plot.gear_drawing import tooth_angles
+
+__all__ = ["BentMesh", "Load", "bent_mesh", "loads_at"]
+
+Points = NDArray[np.complex128]
+
+#: Part of the total force from which a load is drawn, and teeth drawn on each side of the middle.
+_LOADED, _TEETH = 1e-3, 2
+
+
+@dataclass(frozen=True)
+class Load:
+    """Load on one tooth pair.
+
+    Parameters
+    ----------
+    path : float [m]
+        Place on the line of action where involutes would touch.
+    pinion_curvature_radius, wheel_curvature_radius : float [m]
+        Where each gear is touched.
+    force : float [N]
+        Normal force.
+    """
+
+    path: float
+    pinion_curvature_radius: float
+    wheel_curvature_radius: float
+    force: float
+
+
+@dataclass(frozen=True, eq=False)
+class BentMesh:
+    """Both gears near the contact at one phase.
+
+    Parameters
+    ----------
+    outline : dict of str to complex array (n,) [m]
+        Of ``"pinion"`` and ``"wheel"`` without load; they touch on the line of action.
+    displacement : dict of str to complex array (n,) [m]
+        Of the same points, with the turn of the driving gear that keeps the flanks in touch.
+    contact : complex array (k,) [m]
+        Where the loaded pairs touch without load.
+    shift : complex array (k,) [m]
+        Displacement of these places.
+    loads : list of Load
+        On these pairs.
+    """
+
+    outline: dict[str, Points]
+    displacement: dict[str, Points]
+    contact: Points
+    shift: Points
+    loads: list[Load]
+
+
+def loads_at(contact: Any, phase: int, torque: int = 0) -> list[Load]:
+    """Pairs that carry load at one phase.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        What :func:`tribodyn.stiffness.loaded_contact` returns.
+    phase, torque : int
+        Indices of the phase and of the torque.
+
+    Returns
+    -------
+    list of Load
+        In the order of the pairs.
+    """
+    shape = contact.normal_force.shape
+    force = contact.normal_force.reshape(-1, *shape[-2:])[torque, phase]
+    return [
+        Load(
+            float(contact.path[phase, k]),
+            float(contact.pinion_curvature_radius[phase, k]),
+            float(contact.wheel_curvature_radius[phase, k]),
+            float(force[k]),
+        )
+        for k in np.flatnonzero(force > _LOADED * force.sum())
+    ]
+
+
+def _bent(
+    pair: Any, name: str, angle: float, given: list[tuple[int, float, float]], reference: str
+) -> tuple[Points, Points]:
+    """Outline and displacement of one gear, whose tooth 0 points into a direction."""
+    from tribodyn.stiffness.fe2d import deformed_gear
+
+    gear = getattr(pair, name)
+    held = "rim" if gear.bore_diameter == 0.0 else reference
+    middle = gear.base_radius * gear.roll_angle(0.5 * (gear.form_radius + gear.tip_radius))
+    # Unloaded teeth are named as well, so that the same ones are drawn at every phase.
+    loaded = {tooth for tooth, _, _ in given}
+    rest = [(k, middle, 0.0) for k in range(1 - _TEETH, _TEETH) if k not in loaded]
+    outline, moved = deformed_gear(gear, Material(), [*given, *rest], reference=held)
+    # There the right flank is loaded, here the left one.
+    turn = cmath.exp(1j * (angle - 0.5 * math.pi))
+    center = 0.0 if name == "pinion" else pair.center_distance
+    return center + turn * (-outline[0] + 1j * outline[1]), turn * (-moved[0] + 1j * moved[1])
+
+
+def _touched(pair: Any, name: str, angle: float, tooth: int, radius: float) -> complex:
+    """Place on the loaded flank of one gear with a radius of curvature."""
+    gear = getattr(pair, name)
+    distance = min(math.hypot(gear.base_radius, radius), gear.tip_radius)
+    center = 0.0 if name == "pinion" else pair.center_distance
+    direction = angle + 2.0 * math.pi * tooth / gear.teeth
+    return center + cmath.rect(distance, direction + float(gear.half_tooth_angle(distance)))
+
+
+def bent_mesh(contact: Any, phase: int, torque: int = 0) -> BentMesh:
+    """Bend both gears by the loads of one phase.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        What :func:`tribodyn.stiffness.loaded_contact` returns.
+    phase, torque : int
+        Indices of the phase and of the torque.
+
+    Returns
+    -------
+    BentMesh
+
+    Notes
+    -----
+    Gears of steel, their bores held. The driving gear turns so far that the loaded flanks touch
+    as they do without load, by the mean of all pairs weighted with their forces.
+    """
+    pair, loads = contact.gear_pair, loads_at(contact, phase, torque)
+    path = path_of_contact(pair)
+    middle = 0.5 * (path.A + path.E)
+    anchor = float(contact.path[phase, np.argmin(np.abs(contact.path[phase] - middle))])
+    steps = [round((load.path - anchor) / pair.base_pitch) for load in loads]
+    width = pair.common_face_width
+    outline, moved, angles = (
+        {},
+        {},
+        dict(zip(("pinion", "wheel"), tooth_angles(pair, anchor), strict=True)),
+    )
+    places: dict[str, list[complex]] = {}
+    shifts: dict[str, list[complex]] = {}
+    for name, sense in (("pinion", 1), ("wheel", -1)):
+        radii = [float(getattr(load, f"{name}_curvature_radius")) for load in loads]
+        # Teeth count to the side of larger radii of curvature of this gear.
+        given = [
+            (sense * step, radius, load.force / width)
+            for step, radius, load in zip(steps, radii, loads, strict=True)
+        ]
+        outline[name], moved[name] = _bent(pair, name, angles[name], given, contact.reference)
+        places[name] = [_touched(pair, name, angles[name], *each[:2]) for each in given]
+        nearest = [int(np.argmin(np.abs(outline[name] - place))) for place in places[name]]
+        shifts[name] = [complex(moved[name][at]) for at in nearest]
+    normal = cmath.rect(1.0, 0.5 * math.pi - pair.operating_pressure_angle)
+    forces = np.array([load.force for load in loads])
+    apart = (np.array(shifts["wheel"]) - np.array(shifts["pinion"])) * normal.conjugate()
+    turn = float(np.average(apart.real, weights=forces)) / pair.driving.base_radius
+    driver, center = pair.driver, 0.0 if pair.driver == "pinion" else pair.center_distance
+    moved[driver] = moved[driver] + 1j * turn * (outline[driver] - center)
+    driven = "wheel" if driver == "pinion" else "pinion"
+    return BentMesh(outline, moved, np.array(places[driven]), np.array(shifts[driven]), loads)

@@ -1,0 +1,157 @@
+"""Within which limits the best tip relief is searched, and over which torques."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.gear import SpurPair, default_relief_length, flank_ranges
+from tribodyn.stiffness.harris import increasing_torques
+
+__all__ = ["check_choices", "relief_bounds", "torques_and_weights"]
+
+FloatArray = NDArray[np.float64]
+
+#: Torques of a range that is given by its ends.
+_TORQUES = 5
+#: Lengths searched by default, over that where the number of pairs changes.
+_LENGTHS = (0.2, 2.0)
+#: Amounts searched by default, over the mean deflection under the greatest torque.
+_AMOUNT = 2.0
+#: Amount beyond which a unit is wrong [m], as for every modification.
+_LARGEST = 0.5e-3
+_CHOICES = {
+    "gears": ("both", "pinion", "wheel"),
+    "shape": ("linear", "parabolic"),
+    "objective": ("largest", "mean"),
+}
+
+
+def check_choices(grid: tuple[int, int], **chosen: str) -> None:
+    """Refuse words that are not known, and a map without points.
+
+    Parameters
+    ----------
+    grid : tuple of int
+        Amounts and lengths of the map.
+    **chosen : str
+        ``gears``, ``shape`` and ``objective``.
+
+    Raises
+    ------
+    InputError
+        Listing all of them.
+    """
+    problems = [
+        Problem(
+            what=f'{name} = "{value}"',
+            where=f"argument {name}",
+            why=f"Allowed: {', '.join(_CHOICES[name])}",
+            remedy="Choose one of these",
+        )
+        for name, value in chosen.items()
+        if value not in _CHOICES[name]
+    ]
+    if len(grid) != 2 or min(grid) < 2:
+        why = "The map has at least two amounts and two lengths"
+        problems.append(Problem(f"grid = {grid}", "argument grid", why, "Give for example (17, 11)"))
+    if problems:
+        raise InputError(problems)
+
+
+def torques_and_weights(
+    torque: ArrayLike, weight: ArrayLike | None
+) -> tuple[FloatArray, FloatArray]:
+    """Torques of a range and their weights.
+
+    Parameters
+    ----------
+    torque : float or array (t,) [N*m]
+        Torques; two are the ends of a range in which three more are taken.
+    weight : array (t,) or None
+        Weights in the order of the torques.
+
+    Returns
+    -------
+    tuple of array (t,)
+        Increasing torques [N*m], and weights that sum to one.
+
+    Raises
+    ------
+    InputError
+        If a torque is not positive, or the weights do not fit.
+
+    Examples
+    --------
+    >>> [values.tolist() for values in torques_and_weights((60.0, 100.0), None)]
+    [[60.0, 70.0, 80.0, 90.0, 100.0], [0.2, 0.2, 0.2, 0.2, 0.2]]
+    """
+    given = np.atleast_1d(np.asarray(torque, dtype=float))
+    ordered = increasing_torques(given)
+    torques = np.linspace(*ordered, _TORQUES) if ordered.size == 2 else ordered
+    if weight is None:
+        return torques, np.full(torques.size, 1.0 / torques.size)
+    weights = np.atleast_1d(np.asarray(weight, dtype=float))
+    fits = weights.shape == given.shape == ordered.shape and np.all(weights >= 0.0)
+    if not (fits and 0.0 < weights.sum() < np.inf):
+        raise InputError(
+            Problem(
+                what=f"weight = {weights.tolist()}",
+                where="argument weight",
+                why="There is one weight for each torque, none negative and not all zero",
+                remedy=f"Give {given.size} weights for {given.size} different torques",
+            )
+        )
+    spread = np.interp(torques, ordered, weights[np.argsort(given)])
+    return torques, spread / spread.sum()
+
+
+def relief_bounds(
+    pair: SpurPair,
+    amount: tuple[float, float] | None,
+    length: tuple[float, float] | None,
+    deflection: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest amount and length.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position.
+    amount, length : tuple of float or None [m]
+        As the user gave them.
+    deflection : float [m]
+        Mean deflection under the greatest torque.
+
+    Returns
+    -------
+    tuple of array (2,) [m]
+        Least amount and length, greatest amount and length.
+
+    Raises
+    ------
+    InputError
+        If a range is empty or beyond what a flank has.
+    """
+    flank = flank_ranges(pair)[0].length
+    if amount is None:
+        amount = (0.0, min(_AMOUNT * deflection, _LARGEST))
+    if length is None:
+        usual = default_relief_length(pair)
+        length = (_LENGTHS[0] * usual, min(_LENGTHS[1] * usual, flank))
+    problems = []
+    if not 0.0 <= amount[0] < amount[1] <= _LARGEST:
+        shown = " to ".join(f"{value * 1e6:.6g}" for value in amount)
+        why = f"Amounts increase, from zero or more to at most {_LARGEST * 1e6:g} um"
+        where = "argument amount"
+        problems.append(Problem(f"amount = {shown} um", where, why, "Check values and unit"))
+    if not 0.0 < length[0] < length[1] <= flank * (1.0 + 1e-9):
+        shown = " to ".join(f"{value * 1e3:.6g}" for value in length)
+        why = f"Lengths increase, above zero and up to the used flank of {flank * 1e3:.6g} mm"
+        where = "argument length"
+        problems.append(Problem(f"length = {shown} mm", where, why, "Search shorter reliefs"))
+    if problems:
+        raise InputError(problems)
+    low, high = (np.array(pair_of) for pair_of in zip(amount, length, strict=True))
+    return low, high

@@ -1,0 +1,211 @@
+"""Studies of a case at rest: transmission error over torque, the best tip relief, teeth and film."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic_core import PydanticCustomError
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.modification import Modification
+from tribodyn.study.operating_points import operation_values
+from tribodyn.study.pipeline import model_settings
+from tribodyn.study.places import placed
+from tribodyn.study.transmission_error import loaded_settings
+from tribodyn.study.values import Plain, read_value
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import ComprehensiveStiffness
+    from tribodyn.stiffness import HarrisMap, TipReliefOptimum
+    from tribodyn.study.case import Case
+
+__all__ = ["comprehensive_stiffness", "harris_map", "optimize_tip_relief"]
+
+#: Torques of a map over those of the case.
+_RANGE = (0.1, 2.0)
+_TORQUES = 20
+
+
+def _pinion_torques(case: Case, torque: Any) -> list[float]:
+    """Torques on the pinion from those of the case or of the user."""
+    turns = case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
+    return [value / turns for value in operation_values("torque", torque, case)]
+
+
+def harris_map(case: Case, torque: Any = None, *, phases: int = 64) -> HarrisMap:
+    """Find the static transmission error of a case over phase and torque (Harris map).
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`; its ``[stiffness]`` says how the teeth give way.
+    torque : list of float or str, optional
+        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
+        By default 20 of them up to twice that of the case.
+    phases : int
+        Evenly spaced phases of a mesh cycle.
+
+    Returns
+    -------
+    HarrisMap
+        Torques in it are those of the pinion; without oil film.
+
+    Raises
+    ------
+    InputError
+        If a torque is out of range.
+    ComputationError
+        If a load is beyond what the tooth contact covers.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+    >>> found = harris_map(case, torque=["60 N*m", "120 N*m"])
+    >>> bool(found.peak_to_peak_transmission_error[0] < found.peak_to_peak_transmission_error[1])
+    True
+    """
+    from tribodyn.stiffness import transmission_error_over_torque
+
+    torques = _pinion_torques(case, torque)
+    if torque is None:
+        torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
+    with placed(case):
+        return transmission_error_over_torque(
+            case.gear_pair, torques, phases=phases, **loaded_settings(case)
+        )
+
+
+def optimize_tip_relief(
+    case: Case, torque: Any = None, *, amount: Any = None, length: Any = None, **options: Any
+) -> TipReliefOptimum:
+    """Find the tip relief of a case that leaves least transmission error over a torque range.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    torque : tuple or list, optional
+        Two ends of a range, or more torques, on the gear named by ``operation.speed_of``: floats
+        in N*m, or text with a unit. By default from half the torque of the case to all of it.
+    amount, length : tuple, optional
+        Least and greatest amount and roll length: floats in m, or text with a unit.
+    **options : object
+        ``gears``, ``shape``, ``objective``, ``weight``, ``grid`` and ``phases`` of
+        :func:`tribodyn.stiffness.optimize_tip_relief`.
+
+    Returns
+    -------
+    TipReliefOptimum
+        Torques in it are those of the pinion.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a relief longer than the flank.
+    ComputationError
+        If a load is beyond what the tooth contact covers.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+    >>> best = optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16)
+    >>> bool(best.objective < best.objective_before)
+    True
+    """
+    from tribodyn.stiffness import optimize_tip_relief as compute
+
+    torques = _pinion_torques(case, torque)
+    if torque is None:
+        torques = [0.5 * torques[0], torques[0]]
+    with placed(case):
+        return compute(
+            case.gear_pair,
+            torques,
+            amount=_lengths("amount", amount),
+            length=_lengths("length", length),
+            **{**loaded_settings(case), **options},
+        )
+
+
+def _lengths(name: str, given: Any) -> tuple[float, float] | None:
+    """Read the two ends of a range of lengths."""
+    if given is None:
+        return None
+    spec = dict(Modification.specs())["tip_relief" if name == "amount" else "tip_relief_length"]
+    try:
+        low, high = (float(read_value(spec, name, Plain(item))) for item in given)
+    except PydanticCustomError as error:
+        told = error.context or {}
+        problem = Problem(told["what"], f"argument {name}", told["why"], told["remedy"])
+        raise InputError(problem) from None
+    return low, high
+
+
+def comprehensive_stiffness(
+    case: Case,
+    *,
+    torque: Any = None,
+    speed: Any = None,
+    kind: str | None = None,
+    steps: int = 128,
+    progress: Progress = SILENT,
+) -> ComprehensiveStiffness:
+    """Find the stiffness of oil film and teeth of a case over torques and speeds.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
+    torque : float, str or list, optional
+        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
+        That of the case where absent.
+    speed : float, str or list, optional
+        Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
+    kind : str, optional
+        ``"tangent"``, ``"secant"`` or ``"seed"``; by default ``film.stiffness`` of the case, or
+        ``"tangent"`` where that is ``"none"``.
+    steps : int
+        Phase intervals of a mesh cycle.
+    progress : Progress
+        Told how many films are solved; silent by default.
+
+    Returns
+    -------
+    ComprehensiveStiffness
+        Torques and speeds in it are those of the pinion.
+
+    Raises
+    ------
+    InputError
+        If a torque or speed is out of range, or the case has no film model.
+    ComputationError
+        If a film cannot be solved.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-film").replace({"film.model": "moes"})
+    >>> found = comprehensive_stiffness(case, torque=["50 N*m", "300 N*m"])
+    >>> bool(found.mean_mesh_stiffness[0, 0] < found.mean_mesh_stiffness[1, 0])
+    True
+    """
+    from tribodyn.mesh import comprehensive_stiffness as compute
+
+    turns = case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
+    settings = model_settings(case)
+    settings.pop("composite_roughness")
+    asked = settings["film_options"].get("stiffness", "none")
+    with placed(case):
+        return compute(
+            case.gear_pair,
+            pinion_torque=_pinion_torques(case, torque),
+            pinion_speed=[value * turns for value in operation_values("speed", speed, case)],
+            kind=kind or ("tangent" if asked == "none" else asked),
+            steps=steps,
+            progress=progress,
+            **settings,
+        )

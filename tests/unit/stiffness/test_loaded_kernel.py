@@ -1,0 +1,123 @@
+"""The compiled contact solver against the plain one, which tries every set of touching pairs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tribodyn.errors import ComputationError
+from tribodyn.stiffness.loaded.plain import plain_approach, plain_loads
+from tribodyn.stiffness.loaded.problem import ContactProblem
+from tribodyn.stiffness.loaded.structure import Compliance
+
+WIDTH = 0.02
+
+
+def problem(seed: int, *, phases: int = 6, pairs: int = 4, slices: int = 1) -> ContactProblem:
+    """Random compliances of the size of gear teeth; neighbours push or pull each other."""
+    random = np.random.default_rng(seed)
+    mixed = 0.3 * random.normal(size=(phases, pairs, pairs))
+    structure = 1e-10 * (np.eye(pairs) + mixed @ mixed.transpose(0, 2, 1))
+    logarithm = 2.0 * 0.91 / (np.pi * 206e9)
+    local = logarithm * random.uniform(15.0, 20.0, (phases, pairs))
+    gaps = 5e-6 * np.abs(random.normal(size=(phases, slices, pairs)))
+    gaps[:, 0, 0] = 0.0
+    compliance = Compliance(structure, local, logarithm)
+    return ContactProblem(None, compliance, gaps, np.full(slices, WIDTH / slices))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_loads_and_approach_are_those_of_the_plain_solver(seed):
+    given = problem(seed)
+    totals = np.array([50.0, 700.0, 9000.0])
+    found = given.at_loads(totals)
+    parts = given.compliance
+    for p in range(given.gaps.shape[0]):
+        for t, total in enumerate(totals):
+            arguments = parts.structure[p], parts.local[p], parts.logarithm
+            approach = plain_approach(*arguments, given.gaps[p], given.widths, total)
+            assert found.approach[t, p] == pytest.approx(approach, rel=1e-10)
+            loads = plain_loads(*arguments, given.gaps[p, 0], found.approach[t, p])
+            assert found.load[t, p, 0] == pytest.approx(loads, abs=1e-9 * loads.max())
+
+
+def test_slices_together_carry_the_load():
+    given = problem(1, slices=5, phases=3)
+    found = given.at_loads(np.array([4000.0]))
+    assert np.einsum("s,psn->p", given.widths, found.load[0]) == pytest.approx(4000.0, rel=1e-11)
+    parts = given.compliance
+    for p in range(3):
+        arguments = parts.structure[p], parts.local[p], parts.logarithm
+        approach = plain_approach(*arguments, given.gaps[p], given.widths, 4000.0)
+        assert found.approach[0, p] == pytest.approx(approach, rel=1e-10)
+
+
+def test_no_pair_pulls_and_no_flank_sinks_into_another():
+    given = problem(7, phases=40)
+    found = given.at_loads(np.array([2000.0]))
+    load, parts = found.load[0, :, 0], given.compliance
+    assert np.all(load >= 0.0)
+    assert 0 < (load == 0.0).sum() < load.size
+    pressed = load * (parts.local - parts.logarithm * np.log(np.maximum(load, 1e-300)))
+    inner = np.einsum("pij,pj->pi", parts.structure, load) + pressed
+    apart = given.gaps[:, 0] + inner - found.approach[0][:, None]
+    assert np.abs(apart[load > 0.0]).max() < 1e-15
+    assert apart[load == 0.0].min() > -1e-15
+
+
+def test_force_at_an_approach_is_the_inverse_and_its_slope_the_tangent():
+    given = problem(3)
+    totals = np.array([300.0, 1000.0, 5000.0])
+    found = given.at_loads(totals)
+    force, slope = given.at_approach(found.approach)
+    assert force == pytest.approx(np.broadcast_to(totals[:, None], force.shape), rel=1e-10)
+    assert slope == pytest.approx(found.tangent, rel=1e-9)
+    step = 1e-10
+    above, below = (given.at_approach(found.approach + sign * step)[0] for sign in (1.0, -1.0))
+    assert (above - below) / (2.0 * step) == pytest.approx(found.tangent, rel=1e-4)
+    assert given.tangent_at(found.load[1, :, 0]) == pytest.approx(found.tangent[1], rel=1e-10)
+
+
+def test_below_the_smallest_gap_there_is_no_force():
+    given = problem(4)
+    force, slope = given.at_approach(given.least_gap[None] - 1e-9)
+    assert not force.any()
+    assert not slope.any()
+
+
+def test_a_pair_begins_to_carry_where_it_is_said():
+    given = problem(5, phases=20)
+    most = given.at_loads(np.array([300.0])).approach[0]
+    begin = given.pickups(most)
+    inside = begin < most[:, None] * (1.0 - 1e-9)
+    assert 20 < inside.sum() < inside.size
+    for p, i in np.argwhere(inside):
+        parts = given.compliance
+        arguments = parts.structure[p], parts.local[p], parts.logarithm, given.gaps[p, 0]
+        later = plain_loads(*arguments, begin[p, i] * (1.0 + 1e-5) + 1e-12)
+        earlier = plain_loads(*arguments, begin[p, i] * (1.0 - 1e-5) - 1e-12)
+        assert later[i] > 0.0
+        assert earlier[i] == 0.0
+
+
+def test_stored_energy_is_the_integral_of_the_force():
+    given = problem(8)
+    most = given.at_loads(np.array([4000.0])).approach[0]
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    reach = 0.5 * (nodes[:, None] + 1.0) * most
+    work = 0.5 * most * (weights @ given.at_approach(reach)[0])
+    parts, load = given.compliance, given.at_loads(np.array([4000.0])).load[0, :, 0]
+    bent = 0.5 * np.einsum("pi,pij,pj->p", load, parts.structure, load)
+    bracket = parts.local - parts.logarithm * np.log(np.maximum(load, 1e-300))
+    pressed = 0.5 * load**2 * bracket - 0.25 * parts.logarithm * load**2
+    lifted = (given.gaps[:, 0] * load).sum(axis=1)
+    # Work done on flanks that had a gap to close is done without force: gaps store nothing.
+    stored = WIDTH * (bent + pressed.sum(axis=1))
+    assert lifted.max() > 0.0
+    assert work == pytest.approx(stored, rel=2e-5)
+
+
+def test_a_contact_as_wide_as_the_teeth_is_told():
+    given = problem(9)
+    with pytest.raises(ComputationError, match="as wide as the teeth are thick"):
+        given.at_loads(np.array([1e12]))

@@ -1,0 +1,109 @@
+"""Static studies of a case: units, whose torque is meant, defaults, and where faults are found."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.stiffness import loaded_contact
+from tribodyn.study.transmission_error import loaded_settings
+
+
+@pytest.fixture(scope="module")
+def case():
+    return td.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+
+
+@pytest.fixture(scope="module")
+def film_case():
+    return td.load_case("fzg-film").replace({"film.model": "moes"})
+
+
+def test_harris_map_reads_units(case):
+    found = td.harris_map(case, torque=["0.09 kN*m", 60.0], phases=16)
+    np.testing.assert_allclose(found.torque, [60.0, 90.0])
+    one = loaded_contact(case.gear_pair, 90.0, phases=16, **loaded_settings(case))
+    np.testing.assert_allclose(found.transmission_error[1], one.transmission_error, rtol=1e-9)
+
+
+def test_map_goes_up_to_twice_the_torque_of_the_case(case):
+    found = td.harris_map(case, phases=16)
+    assert found.torque.size == 20
+    assert found.torque[-1] == pytest.approx(2.0 * case.pinion_torque)
+    assert found.torque[0] == pytest.approx(0.1 * case.pinion_torque)
+
+
+def test_torques_of_a_driving_wheel_become_those_of_the_pinion(film_case):
+    wheel = film_case.replace({"stiffness.model": "analytic"})
+    assert td.harris_map(wheel, [150.0], phases=16).torque[0] == pytest.approx(100.0)
+    best = td.optimize_tip_relief(wheel, [150.0], phases=16, grid=(3, 3))
+    assert best.torque[0] == pytest.approx(100.0)
+    stiffness = td.comprehensive_stiffness(film_case, torque=150.0, speed="1400 rpm", steps=32)
+    assert stiffness.pinion_torque[0] == pytest.approx(100.0)
+    assert stiffness.pinion_speed[0] == pytest.approx(1400.0 * np.pi / 30.0 * 1.5)
+
+
+def test_tip_relief_reads_amounts_and_lengths_with_units(case):
+    given = {"amount": ("0 um", "20 um"), "length": ("2 mm", 6e-3), "phases": 16, "grid": (5, 4)}
+    found = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), **given)
+    np.testing.assert_allclose(found.map_amount, np.linspace(0.0, 20e-6, 5))
+    np.testing.assert_allclose(found.map_length, np.linspace(2e-3, 6e-3, 4))
+    assert (found.torque[0], found.torque[-1]) == (60.0, 120.0)
+    assert found.objective < 0.6 * found.objective_before
+    changed = case.replace(
+        {
+            f"gears.{gear}.modification.{name}": value
+            for gear in ("pinion", "wheel")
+            for name, value in (("tip_relief", found.amount), ("tip_relief_length", found.length))
+        }
+    )
+    after = td.harris_map(changed, found.torque, phases=16).peak_to_peak_transmission_error
+    np.testing.assert_allclose(after, found.peak_to_peak_after, rtol=1e-9)
+
+
+def test_tip_relief_range_is_half_the_torque_of_the_case_to_all_of_it(case):
+    found = td.optimize_tip_relief(case, phases=16, grid=(3, 3))
+    assert found.torque[0] == pytest.approx(0.5 * case.pinion_torque)
+    assert found.torque[-1] == pytest.approx(case.pinion_torque)
+
+
+def test_comprehensive_stiffness_has_the_kind_of_the_case(film_case):
+    found = td.comprehensive_stiffness(film_case, steps=32)
+    assert found.kind == "tangent"
+    assert found.comprehensive_mesh_stiffness.shape[:2] == (1, 1)
+    none = film_case.replace({"film.stiffness": "none"})
+    again = td.comprehensive_stiffness(none, steps=32)
+    np.testing.assert_array_equal(again.pair_stiffness, found.pair_stiffness)
+
+
+@pytest.mark.parametrize(
+    ("study", "options", "told"),
+    [
+        ("harris_map", {"torque": ["90 mm"]}, "torque"),
+        ("harris_map", {"torque": [-1.0]}, "torque"),
+        ("optimize_tip_relief", {"amount": ("0 um", "10 s")}, "amount"),
+        ("optimize_tip_relief", {"length": ("1 mm", "25 mm")}, "used flank"),
+        ("comprehensive_stiffness", {"speed": "fast"}, "speed"),
+    ],
+)
+def test_faults_name_the_argument(case, study, options, told):
+    with pytest.raises(InputError, match=told):
+        getattr(td, study)(case, **options)
+
+
+def test_a_case_without_film_has_no_comprehensive_stiffness(case):
+    with pytest.raises(InputError, match="no oil film"):
+        td.comprehensive_stiffness(case.replace({"film.model": "none"}))
+
+
+def test_every_study_draws_itself(case, film_case):
+    torque = ("60 N*m", "120 N*m")
+    results = (
+        td.harris_map(case, torque, phases=16),
+        td.optimize_tip_relief(case, torque, phases=16, grid=(4, 3)),
+        td.comprehensive_stiffness(film_case, torque=torque, steps=32),
+    )
+    for result in results:
+        assert len(result.plot().data) > 1
