@@ -15,6 +15,8 @@ SCRIPTS = (
     "steady_state_speed",
     "film_speed",
     "film_batch",
+    "fe2d_speed",
+    "stiffness_speed",
     "cold_start",
 )
 

@@ -178,7 +178,7 @@ def ross_mesh() -> Callable[[int], np.ndarray] | None:
     try:
         from ross.gear_element import GearElementTVMS, Mesh
         from ross.materials import steel
-    except ImportError:
+    except (ImportError, ValueError):  # the latter where its figures do not suit Plotly
         return None
     given = {
         "material": steel, "width": 20e-3, "bore_diameter": 35e-3, "module": 2e-3,
@@ -215,7 +215,7 @@ def _against_plain(quick: bool) -> float:
 def _against_ross(phases: int, rounds: int) -> None:
     theirs, pair = ross_mesh(), standard_pair()
     if theirs is None:
-        print("ROSS: not installed (pip install ross-rotordynamics)\n")
+        print('ROSS: not installed (pip install ross-rotordynamics "plotly<6")\n')
         return
 
     def ours(name: str) -> float:

@@ -15,10 +15,10 @@ from tribodyn.errors import require_between, require_positive
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.carried import carried_columns
 from tribodyn.mesh.cycle import mesh_cycle
 from tribodyn.mesh.film import FILM_COLUMNS, as_columns
 from tribodyn.mesh.film_friction import film_friction
-from tribodyn.mesh.force_ramps import force_ramps
 from tribodyn.mesh.loads import (
     IN_SERIES,
     Loads,
@@ -160,27 +160,12 @@ def build(
         "friction_coefficient": _friction(friction_law, friction_options, tribology, motion, loads),
         **as_columns(loads.film_at(loads.tribological), composite_roughness),
     }
-    without_film = carried if options["stiffness"] not in IN_SERIES else teeth.carried()
-    if force_law or teeth.stiffness is None:
-        film = _spread_film(columns, cycle.in_contact, options["stiffness"])
-        ramps = force_ramps(teeth.with_film(film), total_force)
-    else:
-        whole = carried.stiffness.sum(axis=1)[:, None]
-        ramps = np.zeros_like(whole), whole
+    in_series = columns["film_stiffness"] if options["stiffness"] in IN_SERIES else None
     return MeshTable(
         grid=cycle.grid,
         path=cycle.path,
         in_contact=cycle.in_contact,
-        stiffness=carried.stiffness,
-        tooth_stiffness=without_film.stiffness,
-        corner_share=carried.corner_share,
-        static_transmission_error=carried.transmission_error,
-        mesh_stiffness_tangent=carried.tangent,
-        maximum_single_pair_stiffness=teeth.maximum_single_pair_stiffness,
-        ramp_deflection=ramps[0],
-        ramp_stiffness=ramps[1],
-        load_share=carried.share,
-        normal_force=total_force * carried.share,
+        **carried_columns(teeth, carried, in_series, force_law=force_law),
         gear_pair=pair,
         pinion_speed=float(pinion_speed),
         pinion_torque=float(pinion_torque),
@@ -196,17 +181,6 @@ def build(
 def _steps(pair: SpurPair, model: str) -> int:
     together = MODELS[model].coupled or pair.has_modification
     return 1024 if together else 512
-
-
-def _spread_film(
-    columns: dict[str, FloatArray], in_contact: BoolArray, kind: str
-) -> FloatArray | None:
-    """Stiffness of the films that are in series with the teeth."""
-    if kind not in IN_SERIES:
-        return None
-    found = np.zeros(in_contact.shape)
-    found[in_contact] = columns["film_stiffness"]
-    return found
 
 
 def _friction(

@@ -206,8 +206,8 @@ class MeshColumns:
 
         Parameters
         ----------
-        column : array (n, pairs)
-            Values in any unit; a tip corner beyond the path of contact has that of the end which
+        column : array (n, pairs) [any unit]
+            Values; a tip corner beyond the path of contact has that of the end which
             is next to it.
 
         Returns

@@ -37,9 +37,7 @@ _SAME = 1e-9
 _FAINT = 1e-9
 
 
-def force_ramps(
-    problem: ContactProblem, total_force: float
-) -> tuple[FloatArray, FloatArray]:
+def force_ramps(problem: ContactProblem, total_force: float) -> tuple[FloatArray, FloatArray]:
     """Fit ramps to the force over the deflection of a mesh.
 
     Parameters

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.errors import ComputationError, Problem, warn
+from tribodyn.errors import warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle
 from tribodyn.mesh.path_film import FilmAt, PathFilm, SolvedPath, path_film

@@ -126,7 +126,7 @@ class Teeth:
 
     @property
     def _extended(self) -> bool:
-        return self.problem.gaps.shape[2] > self.in_contact.shape[1]
+        return bool(self.problem.gaps.shape[2] > self.in_contact.shape[1])
 
     def _ends(self) -> tuple[tuple[int, int], tuple[int, int]]:
         """Row and column of the pair at A, and of the pair at E."""

@@ -8,9 +8,10 @@ import numpy as np
 
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.loaded_life import pair_letters, roll_label, torque_colors, torque_texts
+from tribodyn.plot.loaded_life import pair_letters, roll_label
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
+from tribodyn.plot.torques import torque_colors, torque_texts
 
 __all__ = ["comprehensive_stiffness"]
 

@@ -106,7 +106,8 @@ def _bent(
     from tribodyn.stiffness.fe2d import deformed_gear
 
     gear = getattr(pair, name)
-    held = "rim" if gear.bore_diameter == 0.0 else reference
+    # Models of the literature that know no reference are drawn as held at the bore.
+    held = "rim" if reference == "rim" or gear.bore_diameter == 0.0 else "bore"
     middle = gear.base_radius * gear.roll_angle(0.5 * (gear.form_radius + gear.tip_radius))
     # Unloaded teeth are named as well, so that the same ones are drawn at every phase.
     loaded = {tooth for tooth, _, _ in given}

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.loaded_life import mesh_marks, named, torque_colors, torque_names, whole_cycles
+from tribodyn.plot.loaded_life import mesh_marks, whole_cycles
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line
+from tribodyn.plot.torques import named, torque_colors, torque_names
 
 __all__ = ["harris_map"]
 

@@ -63,8 +63,8 @@ def _caption(result: Any) -> str:
     words = "How much of the load one tooth pair carries from where it comes in to where it leaves."
     if np.any(result.mesh.corner_share > _LOADED):
         return (
-            f"{words} The loaded teeth bend, so that it begins before A and ends after E, on a tip "
-            "corner: there the background is grey."
+            f"{words} The loaded teeth bend: where the background is grey, before A or after E, a "
+            "tip corner bears."
         )
     return words
 

@@ -11,7 +11,6 @@ from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import (
     Life,
-    named,
     needs_loaded_contact,
     pair_letters,
     roll_angle_of,
@@ -19,20 +18,21 @@ from tribodyn.plot.loaded_life import (
     rows,
     several_cycles,
     span,
-    torque_colors,
-    torque_names,
     whole_cycles,
 )
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
+from tribodyn.plot.torques import named, torque_colors, torque_names
 
 __all__ = ["loaded_contact"]
 
 Array = NDArray[np.float64]
 
 _QUANTITY = "static_transmission_error"
-#: Width of lines over many mesh cycles [px].
-_THIN = 1.2
+#: Width of lines over many mesh cycles or for more than a few torques [px].
+_THIN, _FEW = 1.2, 8
+#: Torques for which stiffness is drawn: its curves lie close to one another.
+_STIFFNESSES = 4
 
 
 def _title(contact: Any) -> str:
@@ -74,7 +74,7 @@ def _curves(contact: Any, quantity: str, values: Array, **look: Any) -> list[dic
             color,
             unit=display_unit(quantity),
             dash=look.get("dash", "solid"),
-            width=_THIN if several_cycles(contact) else 2.0,
+            width=_THIN if several_cycles(contact) or len(names) > _FEW else 2.0,
         )
         traces.append({**trace, "showlegend": shown and len(names) > 1})
     return traces
@@ -88,11 +88,13 @@ def _stiffness(contact: Any) -> list[dict[str, Any]]:
     if several_cycles(contact):
         found = _curves(contact, "mesh_stiffness_secant", contact.mesh_stiffness_secant)
         return [{**trace, "showlegend": False} for trace in found]
-    traces = []
+    traces: list[dict[str, Any]] = []
+    chosen = named(np.size(contact.torque), _STIFFNESSES)
     for kind, dash in (("secant", "solid"), ("tangent", "dash")):
         name = f"mesh_stiffness_{kind}"
         found = _curves(contact, name, getattr(contact, name), name=kind, dash=dash)
-        traces += [{**trace, "showlegend": number == 0} for number, trace in enumerate(found)]
+        kept = [trace for trace, shown in zip(found, chosen, strict=True) if shown]
+        traces += [{**trace, "showlegend": number == 0} for number, trace in enumerate(kept)]
     return traces
 
 

@@ -9,15 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
-from tribodyn.plot.labels import axis_label, display_unit, displayed
+from tribodyn.plot.labels import axis_label, displayed
 from tribodyn.plot.sharing import further_changes
-from tribodyn.plot.style import MUTED, TOTAL
+from tribodyn.plot.style import MUTED
 
 __all__ = [
     "Life",
     "corner_shades",
     "mesh_marks",
-    "named",
     "needs_loaded_contact",
     "pair_letters",
     "roll_angle_of",
@@ -25,18 +24,11 @@ __all__ = [
     "rows",
     "several_cycles",
     "span",
-    "torque_colors",
-    "torque_names",
-    "torque_texts",
     "whole_cycles",
 ]
 
 Array = NDArray[np.float64]
 
-#: Colours from the least to the greatest torque; between them they are mixed.
-_ANCHORS = ("#0d0887", "#7e03a8", "#cc4778", "#f0893e")
-#: Names of torques in a legend; further ones are told by the pointer.
-_NAMED = 8
 #: Mesh cycles shown beyond both ends of what is loaded.
 _MARGIN = 0.04
 #: Part of the total force that counts as load.
@@ -75,7 +67,7 @@ class Life:
     Parameters
     ----------
     age : array (k,)
-        Mesh cycles since a pair passed A, increasing.
+        Mesh cycles since a pair passed A, in order; twice the same where the load jumps.
     least, mean, greatest : array (torques, k)
         Over the pairs; equal where all teeth are alike.
     """
@@ -110,7 +102,11 @@ class Life:
             found.append(np.moveaxis(each, 2, 1).reshape(many.shape[0], -1))
         age = (phases[:, None] + contact.number).T.ravel()
         order = np.argsort(age, kind="stable")
-        return cls(age[order], *(part[:, order] for part in found))
+        age, found = age[order], [part[:, order] for part in found]
+        if np.min(contact.number) == 0:
+            # Without tip corners the load begins at A at once.
+            age, found = np.append(0.0, age), [np.pad(part, ((0, 0), (1, 0))) for part in found]
+        return cls(age, *found)
 
 
 def rows(contact: Any, values: Array) -> list[Array]:
@@ -277,89 +273,6 @@ def mesh_marks(pair: Any, repeats: int) -> list[tuple[str, float]]:
         marks.append(("C", pitch_point % 1.0))
     placed = [(name, at + cycle) for cycle in range(repeats) for name, at in marks]
     return [*placed, ("A", float(repeats))]
-
-
-def torque_names(contact: Any) -> list[str]:
-    """Name of each torque with its unit.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns.
-
-    Returns
-    -------
-    list of str
-    """
-    return torque_texts(np.ravel(contact.torque))
-
-
-def torque_texts(torques: Array) -> list[str]:
-    """Write torques with as many digits as tell them apart.
-
-    Parameters
-    ----------
-    torques : array [N*m]
-        Torques.
-
-    Returns
-    -------
-    list of str
-
-    Examples
-    --------
-    >>> torque_texts(np.array([50.0, 112.5]))
-    ['50 N·m', '112.5 N·m']
-    """
-    unit = display_unit("torque")
-    return [f"{torque:.4g} {unit}" for torque in displayed("torque", torques)]
-
-
-def torque_colors(count: int) -> list[str]:
-    """Colours of curves that belong to rising torques.
-
-    Parameters
-    ----------
-    count : int
-        Number of torques.
-
-    Returns
-    -------
-    list of str
-        From dark to light; black for a single one.
-
-    Examples
-    --------
-    >>> torque_colors(1), torque_colors(2)
-    (['#1f2933'], ['#0d0887', '#f0893e'])
-    """
-    if count == 1:
-        return [TOTAL]
-    anchors = np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in _ANCHORS])
-    places = np.linspace(0.0, len(_ANCHORS) - 1.0, count)
-    mixed = [np.interp(places, range(len(_ANCHORS)), anchors[:, k]) for k in range(3)]
-    return ["#" + "".join(f"{round(part):02x}" for part in each) for each in np.transpose(mixed)]
-
-
-def named(count: int) -> list[bool]:
-    """Which of many torques are named in a legend: all of few, first, last and some of many.
-
-    Parameters
-    ----------
-    count : int
-        Number of torques.
-
-    Returns
-    -------
-    list of bool
-
-    Examples
-    --------
-    >>> named(2), sum(named(20))
-    ([True, True], 8)
-    """
-    chosen = np.linspace(0, count - 1, min(count, _NAMED)).round().astype(int)
-    return [number in set(chosen.tolist()) for number in range(count)]
 
 
 def corner_shades(pair: Any, first: float, last: float) -> dict[str, list[dict[str, Any]]]:

@@ -12,17 +12,15 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import (
     Life,
     corner_shades,
-    named,
     needs_loaded_contact,
     pair_letters,
     roll_angle_of,
     roll_label,
     span,
-    torque_colors,
-    torque_names,
 )
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
+from tribodyn.plot.torques import named, torque_colors, torque_names
 
 __all__ = ["loaded_sharing"]
 

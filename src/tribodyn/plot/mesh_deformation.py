@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from tribodyn.plot.deformed_mesh import BentMesh, bent_mesh
 from tribodyn.plot.gear_drawing import on_line_of_action
 from tribodyn.plot.labels import axis_label, displayed, rounded, significant
-from tribodyn.plot.loaded_life import needs_loaded_contact, torque_names
+from tribodyn.plot.loaded_life import needs_loaded_contact, several_cycles
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import FILLS, INK, MUTED, PINION, WHEEL, figure
+from tribodyn.plot.torques import torque_names
 
 __all__ = ["mesh_deformation"]
 
@@ -140,8 +141,12 @@ def _controls(words: Sequence[str]) -> dict[str, Any]:
 
 def _window(pair: Any) -> dict[str, Any]:
     """Axes of equal scale around the middle of the path of contact."""
-    middle = displayed("center_distance", on_line_of_action(pair, sum(pair.path_limits) / 2.0))
-    half = displayed("center_distance", np.array(_WINDOW) * pair.pinion.normal_module)
+    ends = on_line_of_action(pair, np.array(pair.path_limits))
+    # As high as the path of contact and the arrows need.
+    wanted = 0.5 * abs(ends[1, 1] - ends[1, 0]) + _ARROW * pair.pinion.normal_module
+    scale = max(1.0, wanted / (_WINDOW[1] * pair.pinion.normal_module))
+    middle = displayed("center_distance", ends.mean(axis=1))
+    half = displayed("center_distance", scale * np.array(_WINDOW) * pair.pinion.normal_module)
     common = {"zeroline": False, "showgrid": False}
     ranges = [
         [float(at - reach), float(at + reach)] for at, reach in zip(middle, half, strict=True)
@@ -164,7 +169,8 @@ def _window(pair: Any) -> dict[str, Any]:
 def _chosen(contact: Any, phase: float | None) -> list[int]:
     """Indices of the phases that are drawn."""
     if phase is not None:
-        apart = np.abs((contact.phase - phase + 0.5) % 1.0 - 0.5)
+        period = contact.mesh_cycles if several_cycles(contact) else 1
+        apart = np.abs((contact.phase - phase + 0.5 * period) % period - 0.5 * period)
         return [int(np.argmin(apart))]
     first = np.flatnonzero(contact.phase < 1.0)
     places = np.linspace(0, first.size, min(_FRAMES, first.size), endpoint=False)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.loaded_life import mesh_marks, torque_colors, torque_names, whole_cycles
+from tribodyn.plot.loaded_life import mesh_marks, whole_cycles
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import INK, MUTED, TOTAL, WHEEL, Panel, line
+from tribodyn.plot.torques import torque_colors, torque_names
 
 __all__ = ["tip_relief_map"]
 

@@ -1,13 +1,13 @@
 """How stiff a tooth pair is: one model per file, picked by name from :data:`MODELS`."""
 
 from tribodyn.stiffness.fourier import fourier_mesh_stiffness
+from tribodyn.stiffness.harris import HarrisMap, transmission_error_over_torque
+from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.iso6336 import (
     iso6336_mesh_stiffness,
     iso6336_pair_stiffness,
     iso6336_single_stiffness,
 )
-from tribodyn.stiffness.harris import HarrisMap, transmission_error_over_torque
-from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.load_point import LoadPoint, load_point
 from tribodyn.stiffness.loaded import (
     ContactProblem,

@@ -233,8 +233,9 @@ def transmission_error_over_torque(
     --------
     >>> from tribodyn.gear import spur_pair
     >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
-    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
-    >>> found = transmission_error_over_torque(pair, [50.0, 100.0], provider="potential-energy")
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02,
+    ...     pinion_bore_diameter=0.03, wheel_bore_diameter=0.03)
+    >>> found = transmission_error_over_torque(pair, [50.0, 100.0], provider="analytic")
     >>> found.transmission_error.shape
     (2, 64)
     """

@@ -69,7 +69,9 @@ class GearInfluence:
         nodes = self.curvature_radius.size
         shapes = self.self_compliance.shape, self.cross_compliance.shape[1:]
         if shapes != ((nodes,), (nodes, nodes)) or nodes < 4:
-            raise _unusable(f"{nodes} nodes with compliances of the shapes {shapes[0]}, {shapes[1]}")
+            raise _unusable(
+                f"{nodes} nodes with compliances of the shapes {shapes[0]}, {shapes[1]}"
+            )
         if np.any(np.diff(self.curvature_radius) <= 0.0):
             raise _unusable("radii of curvature that do not increase")
         if not np.all(self.self_compliance > 0.0):
@@ -177,7 +179,7 @@ class GearInfluence:
                     remedy="Load the tooth on its involute",
                 )
             )
-        return np.clip(places, low, high)
+        return np.asarray(np.clip(places, low, high))
 
     def __repr__(self) -> str:
         """One line with the range and the stiffest and softest place."""

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.loaded.gaps import mesh_period
+from tribodyn.stiffness.loaded.gaps import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.prepare import NO_OPTIONS, phases_of
 from tribodyn.stiffness.model import MODELS
 from tribodyn.stiffness.tip_relief_bounds import (
     check_choices,
-    relief_bounds,
+    relief_axes,
     torques_and_weights,
 )
 from tribodyn.stiffness.tip_relief_mesh import relief_mesh, with_tip_relief
@@ -24,6 +24,8 @@ __all__ = ["optimize_tip_relief"]
 
 FloatArray = NDArray[np.float64]
 
+#: Phases of a mesh cycle where nothing multiplies the work, and where something does.
+_MOST, _LEAST = 512, 64
 #: Points of the map from which the search goes on: the best one, and others that lie apart.
 _STARTS = 3
 #: Steps of a simplex; it ends when neither place nor value move by more than these parts.
@@ -43,7 +45,7 @@ def optimize_tip_relief(
     weight: ArrayLike | None = None,
     grid: tuple[int, int] = (17, 11),
     provider: str = "fe2d",
-    phases: int = 64,
+    phases: int | None = None,
     extended_contact: bool = True,
     reference: str | None = None,
     material: Material | None = None,
@@ -72,13 +74,14 @@ def optimize_tip_relief(
     objective : str
         ``"largest"`` or ``"mean"`` peak-to-peak transmission error over the torques.
     weight : array (t,), optional
-        Weights in the mean, in the order of the torques given; even by default.
+        How much each torque counts: pure numbers in their order; even by default.
     grid : tuple of int
         Amounts and lengths of the map with which the search begins.
     provider : str
         Where the tooth compliances come from.
-    phases : int
-        Evenly spaced phases of a mesh cycle.
+    phases : int, optional
+        Evenly spaced phases of a mesh cycle; by default 512, and fewer where slices of the face
+        width or the hunting tooth period multiply the work, but 64 at least.
     extended_contact : bool
         Let tip corners touch before A and after E.
     reference : str, optional
@@ -106,7 +109,8 @@ def optimize_tip_relief(
     -----
     The objective has kinks and several minima: it is mapped on a grid, and from the best points of
     the map a simplex goes on within the bounds. Nothing is left to chance. Compliances are found
-    once; only the gaps change. Source of the simplex: Nelder and Mead (1965), Comput. J. 7,
+    once; only the gaps change. The best relief puts its peaks between the phases: with 64 of them
+    the error of FZG type A is 15 % greater than it seems there, with 512 2 %. Source of the simplex: Nelder and Mead (1965), Comput. J. 7,
     308-313.
 
     Examples
@@ -121,17 +125,15 @@ def optimize_tip_relief(
     """
     check_choices(grid, gears=gears, shape=shape, objective=objective)
     torques, weights = torques_and_weights(torque, weight)
-    chosen = dict(options)
-    if reference is not None and "reference" in MODELS[provider].options:
-        chosen["reference"] = reference
     settings = {
-        "provider": provider, "phase": phases_of(phases, mesh_period(pair)), "slices": slices,
+        "provider": provider, "phase": _phases(pair, phases, slices), "slices": slices,
         "extended_contact": extended_contact, "material": material or Material(),
-        "options": chosen,
+        "options": _options(provider, reference, options),
     }  # fmt: skip
-    mesh = relief_mesh(with_tip_relief(pair, 0.0, 0.0, gears=gears), gears, shape, torques, settings)
+    bare = with_tip_relief(pair, 0.0, 0.0, gears=gears)
+    mesh = relief_mesh(bare, gears, shape, torques, settings)
     deflection = float(mesh.error(0.0, 0.0)[-1].mean())
-    low, high = relief_bounds(pair, amount, length, deflection)
+    axes = relief_axes(pair, amount, length, deflection, grid)
     before = relief_mesh(pair, gears, shape, torques, settings).error(0.0, 0.0)
 
     def measure(error: FloatArray) -> float:
@@ -141,7 +143,6 @@ def optimize_tip_relief(
     def value(place: FloatArray) -> float:
         return measure(mesh.error(float(place[0]), float(place[1])))
 
-    axes = [np.linspace(low[k], high[k], grid[k]) for k in (0, 1)]
     mapped = np.array([[value(np.array([a, b])) for b in axes[1]] for a in axes[0]])
     best, least = _search(value, axes, mapped)
     return TipReliefOptimum(
@@ -163,6 +164,19 @@ def optimize_tip_relief(
         map_length=axes[1],
         map_objective=mapped,
     )
+
+
+def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> FloatArray:
+    """Mesh phases, as many as asked for or as there is time for."""
+    cycles = mesh_period(pair)
+    work = cycles * slice_widths(pair, slices).size
+    return phases_of(max(_LEAST, _MOST // work) if phases is None else phases, cycles)
+
+
+def _options(provider: str, reference: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of a provider with the reference among them, where it has one."""
+    known = reference is not None and "reference" in MODELS[provider].options
+    return {**options, "reference": reference} if known else dict(options)
 
 
 def _search(

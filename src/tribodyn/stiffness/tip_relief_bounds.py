@@ -9,7 +9,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.gear import SpurPair, default_relief_length, flank_ranges
 from tribodyn.stiffness.harris import increasing_torques
 
-__all__ = ["check_choices", "relief_bounds", "torques_and_weights"]
+__all__ = ["check_choices", "relief_axes", "torques_and_weights"]
 
 FloatArray = NDArray[np.float64]
 
@@ -55,7 +55,9 @@ def check_choices(grid: tuple[int, int], **chosen: str) -> None:
     ]
     if len(grid) != 2 or min(grid) < 2:
         why = "The map has at least two amounts and two lengths"
-        problems.append(Problem(f"grid = {grid}", "argument grid", why, "Give for example (17, 11)"))
+        problems.append(
+            Problem(f"grid = {grid}", "argument grid", why, "Give for example (17, 11)")
+        )
     if problems:
         raise InputError(problems)
 
@@ -70,7 +72,7 @@ def torques_and_weights(
     torque : float or array (t,) [N*m]
         Torques; two are the ends of a range in which three more are taken.
     weight : array (t,) or None
-        Weights in the order of the torques.
+        How much each counts: pure numbers in the order of the torques.
 
     Returns
     -------
@@ -89,7 +91,9 @@ def torques_and_weights(
     """
     given = np.atleast_1d(np.asarray(torque, dtype=float))
     ordered = increasing_torques(given)
-    torques = np.linspace(*ordered, _TORQUES) if ordered.size == 2 else ordered
+    torques = ordered
+    if ordered.size == 2:
+        torques = np.linspace(ordered[0], ordered[1], _TORQUES)
     if weight is None:
         return torques, np.full(torques.size, 1.0 / torques.size)
     weights = np.atleast_1d(np.asarray(weight, dtype=float))
@@ -107,13 +111,14 @@ def torques_and_weights(
     return torques, spread / spread.sum()
 
 
-def relief_bounds(
+def relief_axes(
     pair: SpurPair,
     amount: tuple[float, float] | None,
     length: tuple[float, float] | None,
     deflection: float,
-) -> tuple[FloatArray, FloatArray]:
-    """Least and greatest amount and length.
+    grid: tuple[int, int],
+) -> list[FloatArray]:
+    """Amounts and lengths of the map, from the least to the greatest that are searched.
 
     Parameters
     ----------
@@ -123,11 +128,13 @@ def relief_bounds(
         As the user gave them.
     deflection : float [m]
         Mean deflection under the greatest torque.
+    grid : tuple of int
+        Number of amounts and of lengths.
 
     Returns
     -------
-    tuple of array (2,) [m]
-        Least amount and length, greatest amount and length.
+    list of array [m]
+        Amounts and lengths.
 
     Raises
     ------
@@ -153,5 +160,4 @@ def relief_bounds(
         problems.append(Problem(f"length = {shown} mm", where, why, "Search shorter reliefs"))
     if problems:
         raise InputError(problems)
-    low, high = (np.array(pair_of) for pair_of in zip(amount, length, strict=True))
-    return low, high
+    return [np.linspace(*ends, count) for ends, count in zip((amount, length), grid, strict=True)]

@@ -20,7 +20,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TipReliefOptimum:
-    """Best tip relief over a range of torques; made by :func:`tribodyn.stiffness.optimize_tip_relief`.
+    """Best tip relief over torques; made by :func:`tribodyn.stiffness.optimize_tip_relief`.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class TipReliefOptimum:
     torque : array (t,) [N*m]
         Torques on the pinion.
     weight : array (t,)
-        Parts of the torques in a mean objective; they sum to one.
+        Parts of the torques in a mean objective: pure numbers that sum to one.
     objective_kind : str
         ``"largest"`` or ``"mean"`` peak-to-peak transmission error over the torques.
     objective, objective_before : float [m]

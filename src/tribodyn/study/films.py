@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.operating_points import operation_values
 from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
-from tribodyn.study.operating_points import operation_values
 
 if TYPE_CHECKING:
     from tribodyn.mesh import FilmOverOperation

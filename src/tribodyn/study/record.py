@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples, Response, System
     from tribodyn.study.result import Result

@@ -17,12 +17,12 @@ from tribodyn.study.provenance import Assumption, assumptions
 from tribodyn.study.save import new_directory
 
 if TYPE_CHECKING:
-    from tribodyn.stiffness import LoadedContact
     import xarray
 
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
     from tribodyn.mesh import MeshTable
+    from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
 

@@ -1,4 +1,4 @@
-"""Studies of a case at rest: transmission error over torque, the best tip relief, teeth and film."""
+"""Studies of a case at rest: transmission error over torque, best tip relief, teeth and film."""
 
 from __future__ import annotations
 

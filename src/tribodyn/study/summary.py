@@ -80,14 +80,20 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
 def _static_error_figures(result: Result) -> dict[str, Any]:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
+    figures: tuple[Any, Any, Any]
     if result.case.gear_pair.teeth_differ:
         loaded = result.loaded_contact()
-        mean, most = loaded.mean_transmission_error, loaded.peak_to_peak_transmission_error
-        amplitudes = loaded.transmission_error_harmonics(_HARMONICS)
+        figures = (
+            loaded.mean_transmission_error,
+            loaded.peak_to_peak_transmission_error,
+            loaded.transmission_error_harmonics(_HARMONICS),
+        )
     else:
         error = result.mesh.static_transmission_error
-        mean, most = result.mesh.grid.mean(error), np.ptp(error)
-        amplitudes = result.mesh.harmonics(name, _HARMONICS)
+        figures = (
+            result.mesh.grid.mean(error), np.ptp(error), result.mesh.harmonics(name, _HARMONICS),
+        )  # fmt: skip
+    mean, most, amplitudes = figures
     return {
         f"mean_{name}": mean,
         f"peak_to_peak_{name}": most,

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known_pairs import pair_of, standard, type_c
 
+from known_pairs import pair_of, standard, type_c
 from tribodyn.gear import FlankModification, Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, build
@@ -29,9 +29,7 @@ PAIRS = {
     "wheel drives": pair_of(driver="wheel"),
     "relieved": relieved(pair_of(), tip_relief=15e-6, tip_relief_length=4e-3),
     "crowned": relieved(pair_of(), crowning=5e-6),
-    "high contact": standard(
-        (30, 40), pinion_tip_diameter=129.2e-3, wheel_tip_diameter=169.2e-3
-    ),
+    "high contact": standard((30, 40), pinion_tip_diameter=129.2e-3, wheel_tip_diameter=169.2e-3),
 }
 
 

@@ -88,3 +88,13 @@ def test_what_a_model_does_not_know_is_told(drawable: Any, result: Any) -> None:
     result.mesh = replace(result.mesh, film_stiffness=None)
     with pytest.raises(InputError, match="gives no film stiffness"):
         FIGURES["film_stiffness"](result)
+
+
+def test_a_pair_without_load_does_not_count_in_the_ratio(result: Any) -> None:
+    """Relieved flanks are apart where they come in: the teeth have no stiffness there."""
+    before = FIGURES["film_stiffness"](result).layout.title.text
+    teeth = result.mesh.tooth_stiffness.copy()
+    teeth[:3, 0] = 0.0
+    result.mesh = replace(result.mesh, tooth_stiffness=teeth)
+    after = FIGURES["film_stiffness"](result).layout.title.text
+    assert after.split(" to ")[1] == before.split(" to ")[1]

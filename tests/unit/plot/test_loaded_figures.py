@@ -301,3 +301,35 @@ def test_film_and_teeth_have_a_curve_for_each_point(
     looks = {(trace.line.color, trace.line.dash) for trace in film}
     assert len(looks) == len(film)
     assert "from 300 N/µm to 200 N/µm" in figure.layout.title.text
+
+
+def test_many_torques_stay_readable() -> None:
+    figure = loaded(np.linspace(20.0, 300.0, 12)).plot()
+    errors, stiffness = on_axis(figure, "y"), on_axis(figure, "y2")
+    assert len(errors) == 12
+    assert sum(bool(trace.showlegend) for trace in errors) == 8
+    assert len(stiffness) == 2 * 4
+    assert [trace.name for trace in stiffness if trace.showlegend] == ["secant", "tangent"]
+    assert len({trace.line.color for trace in errors}) == 12
+
+
+def test_without_tip_corners_the_load_begins_and_ends_at_once() -> None:
+    pair = loaded(90.0).gear_pair
+    contact = loaded_contact(pair, 90.0, provider="iso6336", phases=32)
+    life = Life.of(contact, contact.load_share)
+    assert (life.age[0], life.mean[0, 0]) == (0.0, 0.0)
+    assert life.mean[0, 1] > 0.1
+    figure = contact.plot_load_sharing()
+    assert not [shape for shape in figure.layout.shapes if shape.type == "rect"]
+
+
+def test_the_phase_of_a_hunting_pair_counts_all_mesh_cycles() -> None:
+    late = FlankModification(cumulative_pitch_deviation=(0.0, 9e-6) + (0.0,) * 14)
+    contact = loaded(90.0, phases=16, pinion_modification=late)
+    drawn = FIGURES["mesh_deformation"]
+    assert isinstance(drawn, Drawing)
+    words = [
+        next(trace for trace in drawn(contact, phase=phase).data if trace.name == "values").text
+        for phase in (0.25, 1.25)
+    ]
+    assert words[0] != words[1]

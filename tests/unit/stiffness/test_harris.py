@@ -1,4 +1,4 @@
-"""The map of the static transmission error: identities, order, hunting teeth, and what it refuses."""
+"""The map of the static transmission error: identities, hunting teeth, and what it refuses."""
 
 from __future__ import annotations
 
@@ -111,7 +111,9 @@ def test_what_makes_no_map_is_refused(pair, torque, options, told):
 
 
 def test_wear_moves_the_map_up_and_stays_in_the_unloaded_error(pair):
-    worn = replace(pair, pinion=replace(pair.pinion, modification=FlankModification(wear_depth=5e-6)))
+    worn = replace(
+        pair, pinion=replace(pair.pinion, modification=FlankModification(wear_depth=5e-6))
+    )
     before, after = (
         transmission_error_over_torque(gears, [90.0], provider="analytic", phases=32)
         for gears in (pair, worn)

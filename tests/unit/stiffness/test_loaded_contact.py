@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known_pairs import pair_of, standard, type_c
 
+from known_pairs import pair_of, standard, type_c
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, Material

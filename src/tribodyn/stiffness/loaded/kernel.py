@@ -59,9 +59,7 @@ def _eliminate(m: int, a: Array, b: Array) -> None:
 
 
 @nb.njit(**_INNER)
-def _touching_system(
-    n: int, C: Array, A: Array, B: float, f: Array, a: Array, place: Array
-) -> int:
+def _touching_system(n: int, C: Array, A: Array, B: float, f: Array, a: Array, place: Array) -> int:
     """Tangent compliances of the pairs that carry; returns their number, -1 out of range."""
     m = 0
     for i in range(n):
@@ -80,7 +78,9 @@ def _touching_system(
 
 
 @nb.njit(**_INNER)
-def _residual(n: int, C: Array, A: Array, B: float, gap: float, delta: float, f: Array, i: int) -> float:
+def _residual(
+    n: int, C: Array, A: Array, B: float, gap: float, delta: float, f: Array, i: int
+) -> float:
     total = gap - delta
     for j in range(n):
         total += C[i, j] * f[j]
@@ -91,8 +91,16 @@ def _residual(n: int, C: Array, A: Array, B: float, gap: float, delta: float, f:
 
 @nb.njit(**_INNER)
 def _slice(
-    n: int, C: Array, A: Array, B: float, gaps: Array, delta: float, f: Array, a: Array,
-    b: Array, place: Array,
+    n: int,
+    C: Array,
+    A: Array,
+    B: float,
+    gaps: Array,
+    delta: float,
+    f: Array,
+    a: Array,
+    b: Array,
+    place: Array,
 ) -> int:
     """Loads ``f`` of one slice at an approach, from the loads that it holds."""
     least = gaps[0]
@@ -142,9 +150,19 @@ def _slice(
 
 @nb.njit(**_INNER)
 def _whole(
-    n: int, C: Array, A: Array, B: float, gaps: Array, width: Array, delta: float, f: Array,
-    a: Array, b: Array, place: Array, sums: Array,
-) -> int:
+    n: int,
+    C: Array,
+    A: Array,
+    B: float,
+    gaps: Array,
+    width: Array,
+    delta: float,
+    f: Array,
+    a: Array,
+    b: Array,
+    place: Array,
+    sums: Array,
+) -> Any:
     """Force and tangent stiffness of all slices at an approach, into ``sums``."""
     sums[0] = 0.0
     sums[1] = 0.0
@@ -164,8 +182,19 @@ def _whole(
 
 @nb.njit(**_INNER)
 def _approach(
-    n: int, C: Array, A: Array, B: float, gaps: Array, width: Array, total: float, start: float,
-    f: Array, a: Array, b: Array, place: Array, sums: Array,
+    n: int,
+    C: Array,
+    A: Array,
+    B: float,
+    gaps: Array,
+    width: Array,
+    total: float,
+    start: float,
+    f: Array,
+    a: Array,
+    b: Array,
+    place: Array,
+    sums: Array,
 ) -> tuple[float, int]:
     """Approach at which all slices together carry ``total``, by safeguarded Newton steps."""
     low, high = gaps.min(), np.inf
@@ -197,9 +226,16 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
 
     @nb.njit(cache=True, **_JIT)
     def solve_loads(
-        C: Array, A: Array, B: float, gaps: Array, width: Array, totals: Array, delta: Array,
-        force: Array, tangent: Array,
-    ) -> int:
+        C: Array,
+        A: Array,
+        B: float,
+        gaps: Array,
+        width: Array,
+        totals: Array,
+        delta: Array,
+        force: Array,
+        tangent: Array,
+    ) -> Any:
         """Solve every phase at every total load, in the order of the loads.
 
         ``C`` (P, n, n), ``A`` (P, n), ``gaps`` (P, S, n), ``width`` (S,) [m], ``totals`` (T,)
@@ -225,9 +261,15 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
 
     @nb.njit(cache=True, **_JIT)
     def solve_deflections(
-        C: Array, A: Array, B: float, gaps: Array, width: Array, delta: Array, total: Array,
+        C: Array,
+        A: Array,
+        B: float,
+        gaps: Array,
+        width: Array,
+        delta: Array,
+        total: Array,
         tangent: Array,
-    ) -> int:
+    ) -> Any:
         """Force and tangent stiffness (D, P) of every phase at every approach ``delta`` (D, P)."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, slices = A.shape[1], width.size
@@ -236,9 +278,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         for p in range(A.shape[0]):
             f[:] = 0.0
             for d in range(delta.shape[0]):
-                status = _whole(
-                    n, C[p], A[p], B, gaps[p], width, delta[d, p], f, a, b, place, sums
-                )
+                status = _whole(n, C[p], A[p], B, gaps[p], width, delta[d, p], f, a, b, place, sums)
                 if status != 0:
                     return status
                 total[d, p] = sums[0]
@@ -246,7 +286,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         return 0
 
     @nb.njit(cache=True, **_JIT)
-    def pickups(C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array) -> int:
+    def pickups(C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array) -> Any:
         """Approach (P, n) at which each pair of a single slice begins to carry, up to ``most``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n = A.shape[1]

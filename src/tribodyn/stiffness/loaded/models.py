@@ -75,9 +75,7 @@ def _pair_stiffness(name: str) -> Callable[..., FloatArray]:
 def _register(
     name: str, influence: Callable[..., GearInfluence], options: dict[str, Any], coupled: bool
 ) -> None:
-    MODELS.register(name)(
-        StiffnessModel(name, _pair_stiffness(name), options, influence, coupled)
-    )
+    MODELS.register(name)(StiffnessModel(name, _pair_stiffness(name), options, influence, coupled))
 
 
 _register("fe2d", _fe2d, OPTIONS, coupled=True)

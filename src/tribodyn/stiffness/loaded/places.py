@@ -51,12 +51,12 @@ class ContactPlaces:
     @property
     def possible(self) -> BoolArray:
         """Which pairs may touch (p, n)."""
-        return self.separation < FAR
+        return np.asarray(self.separation < FAR)
 
     @property
     def on_path(self) -> BoolArray:
         """Which pairs are between A and E, where involutes roll on each other (p, n)."""
-        return self.separation == 0.0
+        return np.asarray(self.separation == 0.0)
 
     @property
     def direction(self) -> int:
@@ -103,9 +103,7 @@ def contact_places(
     return extended_places(contact, turned, path)
 
 
-def extended_places(
-    contact: PathOfContact, phase: FloatArray, path: FloatArray
-) -> ContactPlaces:
+def extended_places(contact: PathOfContact, phase: FloatArray, path: FloatArray) -> ContactPlaces:
     """Places of given pairs and of one more on each side, all of which may touch at a tip corner.
 
     Parameters

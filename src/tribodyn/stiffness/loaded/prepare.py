@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded.gaps import slice_gaps, slice_widths
@@ -27,7 +28,7 @@ from tribodyn.stiffness.loaded.structure import (
 )
 from tribodyn.stiffness.model import MODELS, StiffnessModel
 
-__all__ = ["compliance_of", "contact_problem", "mesh_problem"]
+__all__ = ["compliance_of", "contact_problem", "mesh_problem", "phases_of"]
 
 FloatArray = NDArray[np.float64]
 NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
@@ -69,9 +70,11 @@ def compliance_of(
     """
     if model.influence is not None:
         reference = {**model.options, **options}["reference"]
-        gears = [model.influence(gear, material, reference=reference)
-                 for gear in (pair.pinion, pair.wheel)]  # fmt: skip
-        structure = coupled_compliance(*gears, places)
+        pinion, wheel = (
+            model.influence(gear, material, reference=reference)
+            for gear in (pair.pinion, pair.wheel)
+        )
+        structure = coupled_compliance(pinion, wheel, places)
         return Compliance(structure, *local_coefficients(pair, material, places))
     stiffness = model(
         pair, material, places.path, places.on_path, places.phase, total_force, **options
@@ -120,6 +123,16 @@ def contact_problem(
     ------
     InputError
         If the provider is unknown or something is out of range.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
+    >>> problem = contact_problem(pair, provider="analytic", phase=np.array([0.0, 0.5]),
+    ...     total_force=2000.0, material=Material(), options={"reference": "rim"})
+    >>> problem.gaps.shape
+    (2, 1, 4)
     """
     model = MODELS[provider]
     extended = extended_contact and model.influence is not None
@@ -138,7 +151,6 @@ def mesh_problem(
     extended_contact: bool,
     material: Material,
     options: Mapping[str, Any] = NO_OPTIONS,
-    slices: int | None = None,
 ) -> ContactProblem:
     """Prepare the loaded tooth contact on the knots of a mesh table, one-sided at its events.
 
@@ -160,8 +172,6 @@ def mesh_problem(
         Material of both gears.
     options : mapping
         Options of the provider.
-    slices : int, optional
-        Slices of the face width.
 
     Returns
     -------
@@ -171,9 +181,19 @@ def mesh_problem(
     ------
     InputError
         As :func:`contact_problem`.
-    """
-    from tribodyn.contact import path_of_contact
 
+    Examples
+    --------
+    >>> from tribodyn.contact import path_of_contact
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
+    >>> phase = np.array([0.0, 1.0])
+    >>> places = phase, *path_of_contact(pair).pair_paths(phase)
+    >>> mesh_problem(pair, provider="analytic", places=places, total_force=2000.0,
+    ...     extended_contact=False, material=Material(), options={"reference": "rim"}).gaps.shape
+    (2, 1, 2)
+    """
     model, contact = MODELS[provider], path_of_contact(pair)
     phase, path, touching = places
     if extended_contact and model.influence is not None:
@@ -181,7 +201,7 @@ def mesh_problem(
     else:
         where = on_path_places(contact, phase, path, touching)
     compliance = compliance_of(pair, material, where, total_force, model, options)
-    widths = slice_widths(pair, slices)
+    widths = slice_widths(pair, None)
     gaps = slice_gaps(where, widths.size, teeth_alike=True)
     return ContactProblem(where, compliance, gaps, widths)
 
