@@ -155,7 +155,8 @@ def studies(pair: SpurPair, phases: int, torques: int) -> dict[str, Runner]:
         return float(loaded_contact(pair, load, provider=name, phases=phases).phase.size > 0)
 
     def relief(name: str) -> float:
-        found = optimize_tip_relief(pair, (60.0, 120.0), provider=name, phases=phases)
+        coarse = {"phases": phases} if phases < 64 else {}
+        found = optimize_tip_relief(pair, (60.0, 120.0), provider=name, **coarse)
         return float(found.objective < found.objective_before)
 
     return {

@@ -13,7 +13,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from known_pairs import pair_of, standard, type_c
-
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness import LoadedContact, loaded_contact
 from tribodyn.stiffness.loaded.places import contact_places

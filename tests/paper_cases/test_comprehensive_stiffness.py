@@ -147,3 +147,27 @@ def test_series_on_totals_hardly_differs_from_series_of_each_pair(kind):
     apart = found.series_of_totals / found.comprehensive_mesh_stiffness - 1.0
     assert np.all(apart > -1e-6)
     assert apart.max() < 0.02
+
+
+# Whatever the teeth are modelled by, the trends are the same; Moes' film, whose slope is known.
+
+
+@pytest.mark.parametrize(
+    ("model", "reference", "rises", "falls"),
+    [
+        ("weber", "rim", 0.099, -0.0090),  # the energy method that the source names
+        ("potential-energy", "bore", 0.075, -0.0068),
+        ("analytic", "bore", 0.090, -0.0064),
+        ("fe2d", "bore", 0.089, -0.0064),
+    ],
+)
+def test_trends_do_not_hang_on_the_model_of_the_teeth(model, reference, rises, falls):
+    case = td.load_case("fzg-film").replace(
+        {"film.model": "moes", "stiffness.model": model, "stiffness.reference": reference}
+    )
+    torque = td.comprehensive_stiffness(case, torque=TORQUES, steps=64).mean_mesh_stiffness[:, 0]
+    speed = td.comprehensive_stiffness(case, speed=SPEEDS, steps=64).mean_mesh_stiffness[0]
+    assert np.all(np.diff(torque) > 0.0)
+    assert np.all(np.diff(speed) < 0.0)
+    assert rise(torque) == pytest.approx(rises, abs=0.002)
+    assert rise(speed) == pytest.approx(falls, abs=0.0004)

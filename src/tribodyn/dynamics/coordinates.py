@@ -109,7 +109,6 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
     system, nodes = compiled.system, compiled.nodes
     lower = np.linalg.cholesky(np.asarray(system.mass))
     inverse = np.linalg.inv(lower)
-    size = system.size
     used = _used_directions(nodes.direction, nodes.direction_slope) @ inverse.T
     spring = inverse @ np.asarray(system.stiffness) @ inverse.T
     damper = inverse @ np.asarray(system.damping) @ inverse.T

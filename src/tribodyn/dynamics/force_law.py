@@ -168,4 +168,3 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     if lowest is not None:
         return (ramps[lowest], *carrying)
     return (replace(contact, stiffness=0.0, gap=opening), *carrying)
-

@@ -116,9 +116,10 @@ def build(
     Loads are quasi-static: those of the loaded tooth contact where the stiffness model couples
     the pairs or flanks are modified; else pairs deflect alike, so each carries a share in
     proportion to its secant stiffness. A tip corner that touches beyond the path of contact has
-    the friction of the end that is next to it, and no film of its own. Hertz pressure, film and friction of a pair come from its own share. A film
-    that is solved is solved at some positions of the path of contact and interpolated between
-    them. Source: the single laws, each named in its function.
+    the friction of the end that is next to it, and no film of its own. Hertz pressure, film and
+    friction of a pair come from its own share. A film that is solved is solved at some positions
+    of the path of contact and interpolated between them. Source: the single laws, each named in
+    its function.
 
     Examples
     --------

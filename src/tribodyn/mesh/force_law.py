@@ -46,8 +46,8 @@ class MeshForceLaw:
     -----
     Deflection is counted along the line of action from where the driving flanks of the nominal
     teeth touch. Because no ramp softens, force and tangent never fall with deflection and every
-    force has one deflection. Between the knots several ramps follow monotone cubics, because pairs come
-    to bear at phases that are no events; on an event the values after it are returned.
+    force has one deflection. Between the knots several ramps follow monotone cubics, because
+    pairs come to bear at phases that are no events; on an event the values after it are returned.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """The force law of a mesh, fitted to the loaded tooth contact by straight pieces.
 
-Points of the law lie at chosen total forces, and where a pair begins to carry; between them the
-force is joined by chords. Forces are added until the chords are close enough everywhere, so that
+Points of the law lie at chosen deflections, and where a pair begins to carry; between them the
+force is joined by chords. Points are added until the chords are close enough everywhere, so that
 a mesh of linear pairs has one ramp and a mesh of modified flanks twenty.
 """
 
@@ -22,14 +22,16 @@ FloatArray = NDArray[np.float64]
 #: Largest error of the force over the force, from a tenth of the load to three times of it, and
 #: the one where flanks vary over the face, so that pairs begin to carry gradually.
 LARGEST_ERROR, LARGEST_GRADUAL_ERROR = 2e-3, 1e-2
-#: What is aimed at, for the error between the forces that are looked at.
+#: What is aimed at, for the error between the deflections that are looked at.
 _AIM = 1e-3
-#: Forces that are looked at, over the load of the mesh; the law is straight above the last.
-_LOOKED_AT = np.concatenate([[0.02, 0.05], np.geomspace(0.1, 3.0, 41), [4.0]])
-_RANGE = slice(2, -1)
+#: Range of the force, over the load of the mesh, in which the error counts; and where the law ends
+#: and goes on straight.
+_RANGE, _LAST = (0.1, 3.0), 4.0
+#: Deflections that are looked at, over that at the end, from the first touch on.
+_LOOKED_AT = np.geomspace(0.02, 1.0, 45)
 #: Slices, from the first to the last that touches, whose pairs are followed.
 _SLICES = 7
-#: Most forces that become points.
+#: Most deflections that become points.
 _MOST = 30
 #: Distance of two points, over the largest deflection, below which they are one.
 _SAME = 1e-9
@@ -68,15 +70,19 @@ def force_ramps(problem: ContactProblem, total_force: float) -> tuple[FloatArray
         return problem.least_gap[:, None], problem.tangent_at(
             np.where(problem.places.on_path, 1.0, 0.0)
         )[:, None]
-    forces = total_force * _LOOKED_AT
-    found = problem.at_loads(forces)
-    kinks = _kinks(problem, found.approach[-1])
-    chosen = [3, _LOOKED_AT.size // 2, _LOOKED_AT.size - 1]
+    last = problem.at_loads(np.array([_LAST * total_force]))
+    first = problem.least_gap
+    approach = first + _LOOKED_AT[:, None] * (last.approach[0] - first)
+    force = problem.at_approach(approach)[0]
+    counts = (force >= _RANGE[0] * total_force) & (force <= _RANGE[1] * total_force)
+    kinks = _kinks(problem, approach[-1])
+    chosen = [0, _LOOKED_AT.size // 2, _LOOKED_AT.size - 1]
     while True:
-        place, slope = _chords(problem, found.approach, found.tangent[-1], forces, chosen, kinks)
-        excess = _force(place, slope, found.approach) / forces[:, None] - 1.0
-        error = np.abs(excess)[_RANGE].max(axis=1)
-        worst = int(np.argmax(error)) + _RANGE.start
+        points = np.concatenate([approach[chosen].T, kinks[0]], axis=1)
+        forces = np.concatenate([force[chosen].T, kinks[1]], axis=1)
+        place, slope = _chords(first, points, forces, last.tangent[0])
+        error = np.where(counts, np.abs(_force(place, slope, approach) / force - 1.0), 0.0)
+        worst = int(np.argmax(error.max(axis=1)))
         if error.max() < _AIM or worst in chosen or len(chosen) >= _MOST:
             break
         chosen = sorted([*chosen, worst])
@@ -84,7 +90,7 @@ def force_ramps(problem: ContactProblem, total_force: float) -> tuple[FloatArray
         warn(
             "force-law",
             f"the force law of the mesh is {100.0 * error.max():.2g} % off the loaded tooth "
-            f"contact with {place.shape[1]} ramps; fewer slices or smoother flanks are closer",
+            f"contact with {place.shape[1]} ramps; smoother flanks are closer",
             stacklevel=4,
         )
     return place, slope
@@ -102,18 +108,11 @@ def _kinks(problem: ContactProblem, most: FloatArray) -> tuple[FloatArray, Float
 
 
 def _chords(
-    problem: ContactProblem,
-    approach: FloatArray,
-    last_slope: FloatArray,
-    forces: FloatArray,
-    chosen: list[int],
-    kinks: tuple[FloatArray, FloatArray],
+    first: FloatArray, points: FloatArray, forces: FloatArray, last_slope: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Ramps through the chosen forces and all kinks, each column following its own point."""
-    first = problem.least_gap[:, None]
-    place = np.concatenate([first, approach[chosen].T, kinks[0]], axis=1)
-    force = np.broadcast_to(forces[chosen], (first.size, len(chosen)))
-    force = np.concatenate([np.zeros_like(first), force, kinks[1]], axis=1)
+    """Ramps from the first touch through all points, each column following its own point."""
+    place = np.concatenate([first[:, None], points], axis=1)
+    force = np.concatenate([np.zeros((first.size, 1)), forces], axis=1)
     order = np.argsort(place, axis=1, kind="stable")
     x, y = np.take_along_axis(place, order, 1), np.take_along_axis(force, order, 1)
     slope = np.zeros_like(x)

@@ -25,7 +25,8 @@ FloatArray = NDArray[np.float64]
 
 #: Loads of single pairs in single slices that are held in memory at the same time.
 _AT_ONCE = 4_000_000
-#: Harmonics where nothing is said.
+#: Phases and harmonics where nothing is said.
+_PHASES = 256
 _HARMONICS = 10
 #: Tooth pairs that may touch, about.
 _PAIRS = 4
@@ -179,7 +180,7 @@ def transmission_error_over_torque(
     torque: ArrayLike,
     *,
     provider: str = "fe2d",
-    phases: int = 64,
+    phases: int | None = None,
     harmonics: int | None = None,
     extended_contact: bool = True,
     reference: str | None = None,
@@ -197,8 +198,9 @@ def transmission_error_over_torque(
         Torques on the pinion, in any order.
     provider : str
         Where the tooth compliances come from.
-    phases : int
-        Evenly spaced phases of a mesh cycle.
+    phases : int, optional
+        Evenly spaced phases of a mesh cycle; by default 256, or 64 where slices of the face width
+        or the hunting tooth period multiply the work.
     harmonics : int, optional
         Number of mesh harmonics, less than half the phases; 10 by default, or all that there are.
     extended_contact : bool
@@ -237,14 +239,18 @@ def transmission_error_over_torque(
     ...     pinion_bore_diameter=0.03, wheel_bore_diameter=0.03)
     >>> found = transmission_error_over_torque(pair, [50.0, 100.0], provider="analytic")
     >>> found.transmission_error.shape
-    (2, 64)
+    (2, 256)
     """
-    torques, orders = increasing_torques(torque), _orders(harmonics, phases)
+    torques = increasing_torques(torque)
+    work = mesh_period(pair) * slice_widths(pair, slices).size
+    if phases is None:
+        phases = _PHASES if work == 1 else _PHASES // 4
+    orders = _orders(harmonics, phases)
     given: dict[str, Any] = {
         "provider": provider, "phases": phases, "extended_contact": extended_contact,
         "reference": reference, "material": material, "slices": slices, "options": options,
     }  # fmt: skip
-    size = max(phases, 1) * mesh_period(pair) * slice_widths(pair, slices).size * _PAIRS
+    size = max(phases, 1) * work * _PAIRS
     count = min(torques.size, 1 + torques.size * size // _AT_ONCE)
     rows = []
     for part in np.array_split(torques, count):

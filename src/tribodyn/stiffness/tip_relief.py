@@ -110,8 +110,8 @@ def optimize_tip_relief(
     The objective has kinks and several minima: it is mapped on a grid, and from the best points of
     the map a simplex goes on within the bounds. Nothing is left to chance. Compliances are found
     once; only the gaps change. The best relief puts its peaks between the phases: with 64 of them
-    the error of FZG type A is 15 % greater than it seems there, with 512 2 %. Source of the simplex: Nelder and Mead (1965), Comput. J. 7,
-    308-313.
+    the error of FZG type A is 15 % greater than it seems there, with 512 it is 2 %. Source of the
+    simplex: Nelder and Mead (1965), Comput. J. 7, 308-313.
 
     Examples
     --------

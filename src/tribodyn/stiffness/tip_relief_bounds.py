@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import SpurPair, default_relief_length, flank_ranges
+from tribodyn.gear.modification_checks import LARGEST_AMOUNT
 from tribodyn.stiffness.harris import increasing_torques
 
 __all__ = ["check_choices", "relief_axes", "torques_and_weights"]
@@ -19,8 +20,6 @@ _TORQUES = 5
 _LENGTHS = (0.2, 2.0)
 #: Amounts searched by default, over the mean deflection under the greatest torque.
 _AMOUNT = 2.0
-#: Amount beyond which a unit is wrong [m], as for every modification.
-_LARGEST = 0.5e-3
 _CHOICES = {
     "gears": ("both", "pinion", "wheel"),
     "shape": ("linear", "parabolic"),
@@ -143,14 +142,14 @@ def relief_axes(
     """
     flank = flank_ranges(pair)[0].length
     if amount is None:
-        amount = (0.0, min(_AMOUNT * deflection, _LARGEST))
+        amount = (0.0, min(_AMOUNT * deflection, LARGEST_AMOUNT))
     if length is None:
         usual = default_relief_length(pair)
         length = (_LENGTHS[0] * usual, min(_LENGTHS[1] * usual, flank))
     problems = []
-    if not 0.0 <= amount[0] < amount[1] <= _LARGEST:
+    if not 0.0 <= amount[0] < amount[1] <= LARGEST_AMOUNT:
         shown = " to ".join(f"{value * 1e6:.6g}" for value in amount)
-        why = f"Amounts increase, from zero or more to at most {_LARGEST * 1e6:g} um"
+        why = f"Amounts increase, from zero or more to at most {LARGEST_AMOUNT * 1e6:g} um"
         where = "argument amount"
         problems.append(Problem(f"amount = {shown} um", where, why, "Check values and unit"))
     if not 0.0 < length[0] < length[1] <= flank * (1.0 + 1e-9):

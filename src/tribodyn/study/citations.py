@@ -17,6 +17,9 @@ STYLES = ("text", "bibtex")
 
 #: Section and chosen name -> papers; the empty name holds for every choice.
 _BEHIND: dict[tuple[str, str], tuple[str, ...]] = {
+    ("stiffness", "fe2d"): ("weber-banaschek", "conry-seireg"),
+    ("stiffness", "analytic"): ("weber-banaschek", "conry-seireg"),
+    ("stiffness", "weber"): ("weber-banaschek",),
     ("stiffness", "potential-energy"): ("sainsot", "weber-banaschek"),
     ("stiffness", "iso6336"): ("iso-6336-1",),
     ("stiffness", "rectangular"): ("kahraman-singh",),

@@ -34,7 +34,7 @@ def _pinion_torques(case: Case, torque: Any) -> list[float]:
     return [value / turns for value in operation_values("torque", torque, case)]
 
 
-def harris_map(case: Case, torque: Any = None, *, phases: int = 64) -> HarrisMap:
+def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> HarrisMap:
     """Find the static transmission error of a case over phase and torque (Harris map).
 
     Parameters
@@ -44,8 +44,9 @@ def harris_map(case: Case, torque: Any = None, *, phases: int = 64) -> HarrisMap
     torque : list of float or str, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
         By default 20 of them up to twice that of the case.
-    phases : int
-        Evenly spaced phases of a mesh cycle.
+    phases : int, optional
+        Evenly spaced phases of a mesh cycle; 256 by default, or 64 where flanks vary over the face
+        width or from tooth to tooth.
 
     Returns
     -------

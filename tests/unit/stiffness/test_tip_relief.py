@@ -102,6 +102,15 @@ def test_mean_is_the_mean(pair):
     assert found.objective_before == pytest.approx(found.peak_to_peak_before.mean(), rel=1e-9)
 
 
+def test_the_error_between_the_phases_is_that_between_them(pair):
+    """A coarse phase grid lets the search hide its peaks; the default must not."""
+    found = optimize_tip_relief(pair, TORQUES, provider="analytic", grid=(9, 7))
+    assert found.phase.size == 512
+    fine = loaded_contact(found.modified_pair, TORQUES, provider="analytic", phases=4096)
+    peak = fine.peak_to_peak_transmission_error.max()
+    assert peak == pytest.approx(found.objective, rel=0.03)
+
+
 def test_two_torques_are_a_range(pair):
     found = optimize_tip_relief(pair, (120.0, 60.0), **FAST)
     assert found.torque.tolist() == [60.0, 75.0, 90.0, 105.0, 120.0]

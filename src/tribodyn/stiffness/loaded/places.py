@@ -1,4 +1,4 @@
-"""Where tooth pairs may touch at a mesh phase: on the path of contact, and a little outside of it."""
+"""Where tooth pairs may touch at a mesh phase: on the path of contact and a little beyond it."""
 
 from __future__ import annotations
 

@@ -175,6 +175,16 @@ class LoadedContact:
         """
         return self._figure("loaded_sharing")
 
+    def plot_deformation(self) -> Any:
+        """Draw the teeth in mesh with their deformation enlarged and the forces on them.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+            With a slider over the mesh phase; bodies are those of ``fe2d`` whatever the provider.
+        """
+        return self._figure("mesh_deformation")
+
     def _figure(self, name: str) -> Any:
         # The one step upward of the layers: a result draws itself.
         from tribodyn.plot import FIGURES

@@ -35,8 +35,9 @@ def coupled_compliance(
     Notes
     -----
     Places are those of contacts, on the involute; what rounding takes them beyond its ends is
-    brought back. A contact that is a base pitch further along the path has larger radii of curvature on the
-    pinion and smaller ones on the wheel, so that it is on the other side of the wheel's tooth.
+    brought back. A contact that is a base pitch further along the path has larger radii of
+    curvature on the pinion and smaller ones on the wheel, so that it is on the other side of the
+    wheel's tooth.
     """
     radii = [
         np.clip(radius, *gear.curvature_radius[[0, -1]])
