@@ -133,9 +133,7 @@ def build(
     ...       composite_roughness=0.0, pinion_speed=100.0, pinion_torque=90.0)  # doctest: +ELLIPSIS
     MeshTable(contact ratio 1.5477, mesh frequency 270.6 Hz, mean stiffness 7.739e+08 N/m, ...)
     """
-    require_positive("pinion_speed", pinion_speed, "rad/s")
-    require_positive("pinion_torque", pinion_torque, "N*m")
-    require_between("composite_roughness", composite_roughness, 0.0, _LARGEST_ROUGHNESS, "m")
+    _check(pinion_speed, pinion_torque, composite_roughness)
     options = FILM_MODELS[film_model].complete(film_options)
     cycle = mesh_cycle(pair, steps or _steps(pair, stiffness_model))
     total_force = pinion_torque / pair.pinion.base_radius
@@ -154,8 +152,7 @@ def build(
     carried = loads.carried
     load_per_width = total_load * carried.share[cycle.in_contact]
     columns: dict[str, FloatArray] = {
-        **_motion_columns(motion),
-        "sliding_direction": cycle.sliding_direction,
+        **_motion_columns(motion, cycle.sliding_direction),
         "load_per_width": load_per_width,
         "hertz_pressure": np.where(load_per_width > 0.0, tribology.hertz_pressure, 0.0),
         "friction_coefficient": _friction(friction_law, friction_options, tribology, motion, loads),
@@ -179,6 +176,12 @@ def build(
     )
 
 
+def _check(pinion_speed: float, pinion_torque: float, composite_roughness: float) -> None:
+    require_positive("pinion_speed", pinion_speed, "rad/s")
+    require_positive("pinion_torque", pinion_torque, "N*m")
+    require_between("composite_roughness", composite_roughness, 0.0, _LARGEST_ROUGHNESS, "m")
+
+
 def _steps(pair: SpurPair, model: str) -> int:
     together = MODELS[model].coupled or pair.has_modification
     return 1024 if together else 512
@@ -197,8 +200,9 @@ def _friction(
     return LAWS[law](contact, **options)
 
 
-def _motion_columns(motion: Kinematics) -> dict[str, FloatArray]:
+def _motion_columns(motion: Kinematics, direction: FloatArray) -> dict[str, FloatArray]:
     return {
+        "sliding_direction": direction,
         "sliding_speed": motion.sliding_speed,
         "entrainment_speed": motion.entrainment_speed,
         "slide_to_roll_ratio": motion.slide_to_roll_ratio,
