@@ -118,7 +118,7 @@ def test_secant_stiffness_of_a_single_pair(pair, influences, record_property):
         "E": stiffness[-2],
     }
     for place, expected in {"A": 1.449e8, "C": 1.709e8, "maximum": 2.039e8, "E": 1.590e8}.items():
-        record_property(place, found[place])
+        record_property(place, float(found[place]))
         tolerance = 0.005 if place in "AE" else 0.001
         assert found[place] == pytest.approx(expected, rel=tolerance), place
 
@@ -200,8 +200,8 @@ def test_refined_mesh_changes_little(name, record_property):
     own = np.abs(found.self_compliance / fine.self_compliance - 1.0).max()
     scale = np.abs(fine.cross_compliance).max(axis=(1, 2), keepdims=True)
     cross = np.abs((found.cross_compliance - fine.cross_compliance) / scale).max()
-    record_property("self_change", own)
-    record_property("cross_change", cross)
+    record_property("self_change", float(own))
+    record_property("cross_change", float(cross))
     assert own < 1e-3
     assert cross < 1e-3
 
@@ -213,7 +213,7 @@ def test_error_falls_as_the_mesh_is_refined(record_property):
     for part in ("self_compliance", "cross_compliance"):
         tables = [getattr(one, part) for one in found]
         steps = [np.abs(b - a).max() / np.abs(b).max() for a, b in itertools.pairwise(tables)]
-        record_property(part, steps)
+        record_property(part, [float(step) for step in steps])
         assert steps[0] < 2e-3, part
         assert steps[1] < 0.3 * steps[0], part
 
