@@ -14,12 +14,13 @@ import tribodyn as td
 from tribodyn.ehl import FILM_MODELS, FilmState
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.friction import LAWS
-from tribodyn.gear import BasicRack, Material, SpurPair, spur_pair
+from tribodyn.gear import BasicRack, FlankModification, Material, SpurPair, spur_pair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import build, film_columns, film_over_operation
 from tribodyn.mesh.cycle import mesh_cycle
 from tribodyn.mesh.loads import tribological_contact
 from tribodyn.mesh.touching import touching_pairs
+from tribodyn.stiffness import loaded_contact
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)
 STEEL = Material(youngs_modulus=200.2e9)
@@ -55,6 +56,7 @@ PAIRS = {
 
 def table(name: str = "pinion drives", **changes: Any) -> Any:
     pair, torque = PAIRS[name]
+    pair = changes.pop("pair", pair)
     conditions = {
         "material": STEEL,
         "lubricant": OIL,
@@ -303,3 +305,42 @@ def test_the_printed_sum_is_shown_once_and_is_no_spring() -> None:
     assert np.array_equal(mesh.stiffness, mesh.tooth_stiffness)
     assert mesh.film_stiffness_kind == "seed"
     assert np.all(mesh.film_stiffness[mesh.in_contact] < 1e6)
+
+
+@pytest.mark.parametrize("kind", ["tangent", "secant"])
+def test_coupled_pairs_with_tip_contact_need_no_more_positions(kind: str) -> None:
+    # Zones end where a tip corner begins or ceases to carry: no warning, and more change nothing.
+    options = {"stiffness_model": "analytic", "film_options": {"stiffness": kind}, "steps": 512}
+    mesh = table(**options)
+    assert mesh.corner_share.max() > 0.1
+    options["film_options"] = {"stiffness": kind, "positions": 60}
+    finer = table(**options)
+    on = mesh.in_contact
+    assert mesh.central_film[on] == pytest.approx(finer.central_film[on], rel=2e-3)
+    assert mesh.static_transmission_error == pytest.approx(
+        finer.static_transmission_error, rel=5e-4
+    )
+    assert mesh.load_share == pytest.approx(finer.load_share, abs=5e-4)
+
+
+def test_a_pair_that_its_relief_keeps_apart_settles() -> None:
+    pair = fzg("pinion")
+    relief = FlankModification(tip_relief=40e-6)
+    relieved = replace(pair, pinion=replace(pair.pinion, modification=relief))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        mesh = table(
+            pair=relieved, stiffness_model="analytic", film_options={"stiffness": "tangent"},
+            steps=128,
+        )  # fmt: skip
+    total = mesh.load_share.sum(axis=1) + mesh.corner_share.sum(axis=1)
+    assert total == pytest.approx(1.0, abs=1e-8)
+    assert (mesh.in_contact & (mesh.load_share == 0.0)).any()
+    # One pair alone: its film in series with its teeth, by hand.
+    alone = mesh.load_share.max(axis=1) > 1.0 - 1e-12
+    dry = loaded_contact(
+        relieved, mesh.pinion_torque, provider="analytic", phases=mesh.phase[alone], material=STEEL
+    )
+    film = mesh.film_stiffness[alone][np.arange(alone.sum()), mesh.load_share[alone].argmax(axis=1)]
+    added = mesh.static_transmission_error[alone] - dry.transmission_error
+    assert added == pytest.approx(mesh.total_normal_force / film, rel=1e-5)

@@ -22,7 +22,6 @@ from tribodyn.progress import Progress
 
 __all__ = [
     "IN_SERIES",
-    "LEAST_SHARE",
     "Loads",
     "quasi_static_loads",
     "tribological_contact",
@@ -33,8 +32,6 @@ FloatArray = NDArray[np.float64]
 #: Kinds of film stiffness that are springs; the printed sum of one source has the unit of a length.
 IN_SERIES = ("tangent", "secant")
 BoolArray = NDArray[np.bool_]
-#: Part of the load of all pairs for which film and friction of a pair are found at least.
-LEAST_SHARE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +95,7 @@ def quasi_static_loads(
     ComputationError
         If a film cannot be solved, or the load share does not settle.
     """
-    least = 0.0 if teeth.stiffness is not None else LEAST_SHARE * total_load
+    least = teeth.least_share * total_load
 
     def raised(loads: FloatArray) -> FloatArray:
         return np.where(cycle.in_contact, np.maximum(loads, least), 0.0)
@@ -107,12 +104,13 @@ def quasi_static_loads(
         return lambda load: touching.films(model, np.maximum(load, least), **options)
 
     def of_path(loads: FloatArray) -> FilmAt:
-        return along.solve(along.load_of(cycle.grid, raised(loads)), progress)
+        at_places = along.load_of(cycle.grid, raised(loads))
+        return along.solve(np.maximum(at_places, least), progress)
 
     film_of = of_formula
     if FILM_MODELS[model].method:
         along: PathFilm = path_film(
-            model, options, cycle.contact, pinion_speed, touching, cycle.side
+            model, options, cycle.contact, pinion_speed, touching, cycle.side, teeth.bends
         )
         film_of = of_path
     if options["stiffness"] in IN_SERIES:

@@ -17,9 +17,8 @@ from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.film import as_columns
 from tribodyn.mesh.film_places import film_places
-from tribodyn.mesh.loads import LEAST_SHARE
 from tribodyn.mesh.positions import PathPositions, path_positions
-from tribodyn.mesh.teeth import teeth_of
+from tribodyn.mesh.teeth import LEAST_SHARE, teeth_of
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
 

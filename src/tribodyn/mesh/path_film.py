@@ -35,6 +35,8 @@ FilmAt = Callable[[FloatArray], Films]
 _ROUGH = 3e-3
 #: Compliance over its estimate below which a film counts as rigid: its stiffness has a bound.
 _RIGID = 1e-3
+#: Distance from an event that tells its two sides apart [mesh cycles].
+_BESIDE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,6 +189,7 @@ def path_film(
     pinion_speed: float,
     touching: Touching,
     side: FloatArray,
+    bends: tuple[float, ...] = (),
 ) -> PathFilm:
     """Choose the positions at which a solved film is computed.
 
@@ -204,6 +207,8 @@ def path_film(
         Contacts of the mesh table.
     side : array
         Age of a place beside each contact, on the side of an edge that is meant.
+    bends : tuple of float, optional
+        Mesh phases where the load of a pair has a bend.
 
     Returns
     -------
@@ -214,7 +219,7 @@ def path_film(
     InputError
         If the number of positions is out of range.
     """
-    places = path_positions(contact, options["positions"])
+    places = path_positions(contact, options["positions"], bends)
     path = contact.A + contact.direction * places.age * contact.pair.base_pitch
     motion = contact.kinematics(path, pinion_speed)
     solved = replace(
@@ -231,5 +236,6 @@ def path_film(
         roll_angle=radius / contact.pair.driving.base_radius,
         solved=solved,
         touching=touching,
-        zone=places.zone_of(side),
+        # On an event the side tells the zone; bends lie between the knots.
+        zone=places.zone_of(touching.age + np.clip(side - touching.age, -_BESIDE, _BESIDE)),
     )

@@ -34,6 +34,8 @@ LEAST, MOST = 8, 200
 _LEAST_IN_ZONE = 4
 #: Zones narrower than this are rounding [mesh cycles].
 _ROUNDING = 1e-9
+#: A bend this near to an edge is left to it [mesh cycles].
+_NARROW = 0.01
 #: Fall from term to term that is assumed where terms do not fall at all.
 _SLOWEST = 0.9
 #: Distance from the end of a zone that tells its two sides apart [mesh cycles].
@@ -193,7 +195,9 @@ def _rest(values: FloatArray) -> float:
     return float(last * ratio / (1.0 - ratio))
 
 
-def path_positions(contact: PathOfContact, positions: int) -> PathPositions:
+def path_positions(
+    contact: PathOfContact, positions: int, bends: tuple[float, ...] = ()
+) -> PathPositions:
     """Spread positions over the zones of the path of contact.
 
     Parameters
@@ -202,11 +206,14 @@ def path_positions(contact: PathOfContact, positions: int) -> PathPositions:
         Path of contact of the pair.
     positions : int
         Positions wanted, from 8 to 200; every zone has at least four.
+    bends : tuple of float, optional
+        Further mesh phases where the load of a pair has a bend, because another begins or ceases
+        to carry.
 
     Returns
     -------
     PathPositions
-        Zones end where a pair enters or leaves, and at the pitch point.
+        Zones end where a pair enters or leaves, at the pitch point and at the bends.
 
     Raises
     ------
@@ -235,6 +242,9 @@ def path_positions(contact: PathOfContact, positions: int) -> PathPositions:
         found += [float(number), ratio - number]
     pitch_point = contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
     found.append(pitch_point)
+    for number in range(contact.pairs):
+        wide = [number + bend for bend in bends]
+        found += [age for age in wide if np.min(np.abs(np.array(found) - age)) > _NARROW]
     edges = [0.0]
     for edge in sorted(edge for edge in found if 0.0 < edge <= ratio):
         if edge - edges[-1] > _ROUNDING:

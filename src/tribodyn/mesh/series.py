@@ -24,7 +24,7 @@ _PASSES = 20
 #: every few of them the limit is extrapolated.
 _SETTLED = 1e-13
 #: Pairs that are solved together are solved to this.
-_SETTLED_TOGETHER = 1e-10
+_SETTLED_TOGETHER = 1e-9
 _STEPS = 200
 _ROUND = 4
 #: Change of the steps, relative to them, without which nothing can be extrapolated.
@@ -90,25 +90,54 @@ def _settle(
     where: Callable[[int, int], str],
 ) -> Carried:
     """Find the fixed point of share and stiffness with the films as a function of their load."""
+    if teeth.stiffness is None:
+        return _settle_together(teeth, total_load, film_at, share, where)
     earlier = [share]
-    settled = _SETTLED_TOGETHER if teeth.stiffness is None else _SETTLED
     loaded = teeth.in_contact & (share > _LOST)
     for _ in range(_STEPS):
         carried = teeth.carried(_film_stiffness(teeth.in_contact, total_load * share, film_at))
         share = carried.share
         change = np.abs(share - earlier[-1])
-        if change.max() < settled:
+        if change.max() < _SETTLED:
             return carried
         lost = loaded & (share < _LOST)
-        if teeth.stiffness is not None and lost.any():
+        if lost.any():
             row, pair = np.argwhere(lost)[0]
             raise _unsettled(f"{where(row, pair)} loses its whole load to its film")
         earlier.append(share)
         if len(earlier) == _ROUND:
             share = _extrapolated(earlier, teeth.in_contact)
             earlier = [share]
+    raise _still_moving(change, where)
+
+
+def _settle_together(
+    teeth: Teeth,
+    total_load: float,
+    film_at: FilmAt,
+    share: FloatArray,
+    where: Callable[[int, int], str],
+) -> Carried:
+    """The same for pairs that are solved together; a share that swings to and fro is slowed down.
+
+    A pair may carry nothing, so that nothing can be extrapolated.
+    """
+    least = teeth.least_share * total_load
+    pace, before = np.ones(share.shape), np.zeros(share.shape)
+    for _ in range(_STEPS):
+        load = np.maximum(total_load * share, least)
+        carried = teeth.carried(_film_stiffness(teeth.in_contact, load, film_at))
+        step = carried.share - share
+        if np.abs(step).max() < _SETTLED_TOGETHER:
+            return carried
+        pace = np.where(step * before < 0.0, 0.5 * pace, np.minimum(1.1 * pace, 1.0))
+        share, before = share + pace * step, step
+    raise _still_moving(np.abs(step), where)
+
+
+def _still_moving(change: FloatArray, where: Callable[[int, int], str]) -> ComputationError:
     row, pair = np.unravel_index(int(np.argmax(change)), change.shape)
-    raise _unsettled(
+    return _unsettled(
         f"the load share of {where(int(row), int(pair))} still moves by {change.max():.2g} after "
         f"{_STEPS} steps"
     )

@@ -14,10 +14,14 @@ from tribodyn.errors import ComputationError, Problem
 from tribodyn.gear import Material
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
 
-__all__ = ["Carried", "Teeth", "teeth_of", "usable_stiffness"]
+__all__ = ["LEAST_SHARE", "Carried", "Teeth", "teeth_of", "usable_stiffness"]
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+
+
+#: A pair that is kept apart has the film and the friction of this part of the load of all.
+LEAST_SHARE = 1e-3
 
 
 class Carried(NamedTuple):
@@ -151,6 +155,24 @@ class Teeth:
             transmission_error=found.approach[0],
             tangent=found.tangent[0],
         )
+
+    @property
+    def least_share(self) -> float:
+        """Part of the load for which film and friction of a pair are found at least.
+
+        Pairs that are springs of their own all carry; others may be kept apart by their flanks.
+        """
+        return 0.0 if self.stiffness is not None else LEAST_SHARE
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """Mesh phases, no events, at which a pair begins or ceases to carry."""
+        if self.stiffness is not None:
+            return ()
+        carries = self.problem.at_loads(np.array([self.total_force])).load[0].any(axis=1)
+        phase = self.problem.places.phase
+        turns = (carries[1:] != carries[:-1]).any(axis=1) & (np.diff(phase) > 0.0)
+        return tuple(float(bend) for bend in 0.5 * (phase[1:] + phase[:-1])[turns])
 
     @property
     def maximum_single_pair_stiffness(self) -> float:

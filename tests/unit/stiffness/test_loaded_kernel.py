@@ -121,3 +121,17 @@ def test_a_contact_as_wide_as_the_teeth_is_told():
     given = problem(9)
     with pytest.raises(ComputationError, match="as wide as the teeth are thick"):
         given.at_loads(np.array([1e12]))
+
+
+def test_a_soft_pair_that_is_touched_first_does_not_lead_astray():
+    structure = np.diag([1e-4, 1e-10])[None]
+    logarithm = 2.0 * 0.91 / (np.pi * 206e9)
+    compliance = Compliance(structure, logarithm * np.full((1, 2), 17.0), logarithm)
+    given = ContactProblem(None, compliance, np.array([[[0.0, 3e-6]]]), np.array([WIDTH]))
+    found = given.at_loads(np.array([1e-3, 4000.0]))
+    load = found.load[1, 0, 0]
+    assert WIDTH * load.sum() == pytest.approx(4000.0, rel=1e-11)
+    assert load[1] > 1e4 * load[0] > 0.0
+    arguments = structure[0], compliance.local[0], logarithm
+    approach = plain_approach(*arguments, given.gaps[0], given.widths, 4000.0)
+    assert found.approach[1, 0] == pytest.approx(approach, rel=1e-9)

@@ -203,6 +203,12 @@ def _approach(
         delta = low + total / width.sum() * (C[0, 0] + A[0])
     for _ in range(_OUTER_STEPS):
         status = _whole(n, C, A, B, gaps, width, delta, f, a, b, place, sums)
+        if status == 2 and delta - low > 1e-9 * (abs(delta) + abs(low)):
+            # A soft pair was touched alone, and its slope led far beyond the load: come back.
+            high = delta
+            delta = 0.5 * (low + high)
+            f[:] = 0.0
+            continue
         if status != 0:
             return delta, status
         excess = sums[0] - total
