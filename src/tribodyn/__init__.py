@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tribodyn.study import (
         Case,
         Result,
+        bifurcation,
         comprehensive_stiffness,
         film_over_operation,
         harris_map,
@@ -37,6 +38,7 @@ __all__ = [
     "ModelWarning",
     "Result",
     "__version__",
+    "bifurcation",
     "cases",
     "comprehensive_stiffness",
     "film_over_operation",
@@ -53,6 +55,7 @@ _HOMES = {
     "InputError": "errors",
     "ModelWarning": "errors",
     "Result": "study",
+    "bifurcation": "study",
     "comprehensive_stiffness": "study",
     "film_over_operation": "study",
     "harris_map": "study",

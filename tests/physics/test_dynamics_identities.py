@@ -165,7 +165,7 @@ def test_meissner_multipliers():
 def test_product_of_multipliers_is_the_trace_of_the_damping():
     """Liouville: the state volume shrinks with exp(-trace(M^-1 C) T)."""
     motion = steady_state(hysteresis_system(), 0.88 / (2 * np.pi), start=([2.2], [0.3]), steps=2048)
-    shrink = np.exp(-0.1 * motion.period)
+    shrink = np.exp(-0.1 * motion.duration)
     assert np.prod(motion.floquet_multipliers).real == pytest.approx(shrink, rel=1e-5)
 
 

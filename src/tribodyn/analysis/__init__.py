@@ -1,5 +1,9 @@
 """Figures read off a motion: rms, peaks, mesh harmonics, spectra, direction indicator."""
 
+from tribodyn.analysis.bifurcation import bifurcation
+from tribodyn.analysis.bifurcation_result import Bifurcation
+from tribodyn.analysis.dynamic_factor import direction_shares, dynamic_factor
+from tribodyn.analysis.envelope import envelope, envelope_spectrum
 from tribodyn.analysis.harmonics import Spectrum, amplitude_spectrum, mesh_harmonics
 from tribodyn.analysis.indicators import (
     alternating_rms,
@@ -10,16 +14,61 @@ from tribodyn.analysis.indicators import (
     rms,
 )
 from tribodyn.analysis.line_of_action import line_of_action_indicator
+from tribodyn.analysis.lyapunov import LyapunovExponents, lyapunov_exponents
+from tribodyn.analysis.order_map import order_map
+from tribodyn.analysis.order_map_resampling import AngularSignal, angular_resampling
+from tribodyn.analysis.order_map_result import OrderCut, OrderMap
+from tribodyn.analysis.poincare import PoincareSection, poincare
+from tribodyn.analysis.sidebands import Sidebands, sidebands
+from tribodyn.analysis.spectrogram import Spectrogram, spectrogram
+from tribodyn.analysis.spectrum import spectrum
+from tribodyn.analysis.spectrum_peaks import Peak
+from tribodyn.analysis.spectrum_result import SignalSpectrum
+from tribodyn.analysis.spectrum_zoom import zoom_spectrum
+from tribodyn.analysis.synchronous_average import SynchronousAverage, time_synchronous_average
+from tribodyn.analysis.synchronous_average_condition import (
+    ConditionIndicators,
+    condition_indicators,
+    kurtosis,
+)
 
 __all__ = [
+    "AngularSignal",
+    "Bifurcation",
+    "ConditionIndicators",
+    "LyapunovExponents",
+    "OrderCut",
+    "OrderMap",
+    "Peak",
+    "PoincareSection",
+    "Sidebands",
+    "SignalSpectrum",
+    "Spectrogram",
     "Spectrum",
+    "SynchronousAverage",
     "alternating_rms",
     "amplitude_spectrum",
+    "angular_resampling",
+    "bifurcation",
+    "condition_indicators",
     "crest_factor",
+    "direction_shares",
+    "dynamic_factor",
+    "envelope",
+    "envelope_spectrum",
     "extremes",
+    "kurtosis",
     "line_of_action_indicator",
+    "lyapunov_exponents",
     "mean",
     "mesh_harmonics",
+    "order_map",
     "peak_to_peak",
+    "poincare",
     "rms",
+    "sidebands",
+    "spectrogram",
+    "spectrum",
+    "time_synchronous_average",
+    "zoom_spectrum",
 ]

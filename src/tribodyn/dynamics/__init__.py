@@ -1,9 +1,16 @@
 """Lumped structures with time-varying contacts: steady states, transients, ensembles."""
 
+from tribodyn.dynamics.branch import Branch, SpecialPoint
+from tribodyn.dynamics.campbell import Campbell, Resonance, campbell
+from tribodyn.dynamics.continuation import continuation
 from tribodyn.dynamics.energy import EnergyAudit, energy_audit
 from tribodyn.dynamics.ensemble import Ensemble, LaneStatistics, simulate_ensemble
 from tribodyn.dynamics.force_law import MeshForce, law_contacts
+from tribodyn.dynamics.forced_response import ForcedResponse, forced_response
+from tribodyn.dynamics.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12
+from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.response import FineSamples, Response
+from tribodyn.dynamics.shafts import Body, GearMesh, assemble, shaft_chain, torsional_stiffness
 from tribodyn.dynamics.simulate import simulate
 from tribodyn.dynamics.spur6 import SPUR6_NAMES, spur6
 from tribodyn.dynamics.steady_state import steady_state
@@ -12,23 +19,42 @@ from tribodyn.dynamics.system import Contact, Entry, System
 from tribodyn.dynamics.torsional import TORSIONAL_NAMES, torsional
 
 __all__ = [
+    "FZG12_LIGHT",
+    "FZG12_MESH_FREQUENCY",
+    "FZG12_NAMES",
     "SPUR6_NAMES",
     "TORSIONAL_NAMES",
+    "Body",
+    "Branch",
+    "Campbell",
     "Contact",
     "EnergyAudit",
     "Ensemble",
     "Entry",
     "FineSamples",
+    "ForcedResponse",
+    "GearMesh",
     "LaneStatistics",
     "MeshForce",
+    "NaturalModes",
+    "Resonance",
     "Response",
+    "SpecialPoint",
     "System",
+    "assemble",
+    "campbell",
+    "continuation",
     "energy_audit",
+    "forced_response",
+    "fzg12",
     "law_contacts",
+    "natural_modes",
     "recommended_steps",
+    "shaft_chain",
     "simulate",
     "simulate_ensemble",
     "spur6",
     "steady_state",
     "torsional",
+    "torsional_stiffness",
 ]

@@ -110,7 +110,7 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
     kinetic = 0.5 * _form(system.mass, v)
     strain = 0.5 * _form(system.stiffness, q)
     total = kinetic + strain + elastic.sum(axis=-1)
-    weight = fine.weight.reshape(shape) * response.period
+    weight = fine.weight.reshape(shape) * response.duration
 
     def work(power: Array) -> float:
         return float((weight * power).sum())

@@ -29,6 +29,11 @@ class OrbitMap:
         Mesh frequency [Hz].
     periods : int
         Mesh cycles of a period.
+    coordinates : OrbitCoordinates, optional
+        Those of a neighbouring system, so that reduced vectors of both can be compared.
+    width : int, optional
+        Lanes per block of fewer than 32 vectors, marched at a time; None for as many lanes as
+        suit them, one block after the other.
 
     Raises
     ------
@@ -36,9 +41,17 @@ class OrbitMap:
         If a balancing torque is asked for that drives no free motion.
     """
 
-    def __init__(self, compiled: Compiled, mesh_frequency: float, periods: int) -> None:
+    def __init__(
+        self,
+        compiled: Compiled,
+        mesh_frequency: float,
+        periods: int,
+        coordinates: OrbitCoordinates | None = None,
+        width: int | None = 1,
+    ) -> None:
+        self.width, self.threads = width, None if width else 1
         self.compiled = compiled
-        self.coordinates: OrbitCoordinates = orbit_coordinates(compiled, mesh_frequency)
+        self.coordinates = coordinates or orbit_coordinates(compiled, mesh_frequency)
         self.period = 1.0 / mesh_frequency
         self.periods = periods
         self.cycles = 0
@@ -74,7 +87,7 @@ class OrbitMap:
         period = np.full(state.shape[0], self.period)
         new = march(
             self.compiled, period, state, self.periods, extra_force=extra,
-            width=1 if state.shape[0] < 32 else None,
+            width=self.width if state.shape[0] < 32 else None, threads=self.threads,
         )  # fmt: skip
         self.cycles += self.periods
         reduced = self.coordinates.reduce(new)
@@ -84,6 +97,29 @@ class OrbitMap:
             gained = self.coordinates.free_velocity(new) @ direction
             reduced = np.column_stack((reduced, np.atleast_2d(y)[:, -1] - gained))
         return reduced[0] if y.ndim == 1 else reduced
+
+    @property
+    def affine(self) -> bool:
+        """Whether no contact has a dead zone, so that the map is linear but for a constant."""
+        code = self.compiled.program.code
+        return not any(code[4 + 4 * j + 2] for j in range(self.contacts))
+
+    def multipliers(self, matrix: Array) -> NDArray[np.complex128]:
+        """Floquet multipliers under a held torque, the largest first.
+
+        Parameters
+        ----------
+        matrix : (k, k) array
+            Derivative of the map [-].
+
+        Returns
+        -------
+        (m,) complex array
+            Without the free motion of the whole drive and without the unknown torque.
+        """
+        inner = matrix if self.balance is None else matrix[:-1, :-1]
+        values = np.linalg.eigvals(inner).astype(complex)
+        return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
     def record(self, y: Array) -> tuple[Array, Array]:
         """March one period and keep every state.

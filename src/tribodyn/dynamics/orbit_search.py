@@ -39,12 +39,15 @@ class OrbitPoint:
         Derivative of the map, the monodromy matrix [-].
     scale : float
         Size of the motion [m/s].
+    multipliers : (m,) complex array
+        Floquet multipliers, the largest first.
     """
 
     point: Array
     residual: Array
     matrix: Array
     scale: float
+    multipliers: NDArray[np.complex128]
 
     @property
     def correction(self) -> Array:
@@ -58,19 +61,14 @@ class OrbitPoint:
         """Distance to the orbit over its size; at least the rounding of the map."""
         return float(np.linalg.norm(self.correction)) / self.scale
 
-    @property
-    def multipliers(self) -> NDArray[np.complex128]:
-        """Eigenvalues of the matrix, the largest first."""
-        values = np.linalg.eigvals(self.matrix).astype(complex)
-        return np.asarray(values[np.argsort(-np.abs(values))])
-
 
 def _examine(mapping: OrbitMap, y: Array, scale: float) -> OrbitPoint:
     """Evaluate the map and its matrix at a point."""
     image = mapping(y)
-    step = _DISTURBANCE * scale
-    disturbed = mapping(y + step * np.eye(y.size))
-    return OrbitPoint(y, image - y, (disturbed - image).T / step, scale)
+    # Of a linear map any difference is exact, and a large one loses no digits.
+    step = scale if mapping.affine else _DISTURBANCE * scale
+    matrix = (mapping(y + step * np.eye(y.size)) - image).T / step
+    return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix))
 
 
 def _newton(mapping: OrbitMap, y: Array, scale: float, tolerance: float) -> OrbitPoint:
@@ -116,8 +114,7 @@ def find_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
     OrbitPoint
         The last attempt, whether or not it meets the tolerance.
     """
-    dead_zone = any(mapping.compiled.program.code[4 + 4 * j + 2] for j in range(mapping.contacts))
-    periods = _SETTLE_DEAD_ZONE if dead_zone else _SETTLE
+    periods = _SETTLE if mapping.affine else _SETTLE_DEAD_ZONE
     for patience in (0, *_PATIENCE):
         y, scale = _settle(mapping, y, max(periods, patience))
         near, _, _ = anderson(mapping, y, tolerance=1e-3 * tolerance, limit=_ANDERSON_LIMIT)

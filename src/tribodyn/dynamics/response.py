@@ -99,6 +99,8 @@ class Response:
         Mesh cycles that were marched to find the orbit.
     extra_force : (n,) array
         Generalized force that the torque balance added [N or N*m].
+    period : int
+        Mesh cycles after which the orbit repeats, at most ``periods``; 0 for a transient.
     """
 
     time: Array
@@ -120,15 +122,19 @@ class Response:
     )
     cycles_used: int = 0
     extra_force: Array = field(default_factory=lambda: np.zeros(0))
+    period: int = 0
 
     @property
-    def period(self) -> float:
+    def duration(self) -> float:
         """Length of the record [s]."""
         return self.periods / self.mesh_frequency
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle; False for a transient."""
+        """Whether all multipliers lie inside the unit circle; False for a transient.
+
+        The free rotation of the whole drive has no multiplier.
+        """
         multipliers = np.abs(self.floquet_multipliers)
         return bool(multipliers.size) and bool(multipliers.max() < 1.0)
 

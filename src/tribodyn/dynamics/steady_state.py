@@ -10,7 +10,7 @@ multipliers and the error: the residual alone understates the distance to the or
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.orbit_map import OrbitMap
@@ -26,6 +26,8 @@ __all__ = ["TOLERANCE", "steady_state"]
 
 #: An orbit whose certified error is above this is not converged.
 TOLERANCE = 1e-8
+#: States one period apart that differ by less than this part of the motion are the same.
+_REPEATS = 1e-5
 
 
 def steady_state(
@@ -60,9 +62,10 @@ def steady_state(
     Returns
     -------
     Response
-        With ``steps * periods`` rows, ``error``, ``converged``, ``stable`` and
-        ``floquet_multipliers``. A warning is issued when the orbit is not converged
-        (``steady-state``) or not stable (``unstable-orbit``).
+        With ``steps * periods`` rows, ``error``, ``converged``, ``stable``,
+        ``floquet_multipliers`` and ``period``, the mesh cycles after which it repeats. A warning
+        is issued when the orbit is not converged (``steady-state``) or not stable
+        (``unstable-orbit``).
 
     Raises
     ------
@@ -139,4 +142,17 @@ def _finish(mapping: OrbitMap, orbit: OrbitPoint, frequency: float, tolerance: f
         converged=converged,
         floquet_multipliers=orbit.multipliers,
         cycles_used=mapping.cycles,
+        period=_shortest(mapping, states),
     )
+
+
+def _shortest(mapping: OrbitMap, states: NDArray[np.float64]) -> int:
+    """Mesh cycles after which a recorded orbit repeats: a divisor of those recorded."""
+    steps, whole = mapping.compiled.grid.steps, mapping.periods
+    reduced = mapping.coordinates.reduce(states[: whole * steps : steps])
+    size = max(float(np.linalg.norm(mapping.coordinates.reduce(states), axis=1).max()), 1e-300)
+    for count in range(1, whole):
+        apart = np.linalg.norm(np.roll(reduced, count, axis=0) - reduced, axis=1).max()
+        if whole % count == 0 and apart <= _REPEATS * size:
+            return count
+    return whole

@@ -8,7 +8,10 @@ from __future__ import annotations
 from tribodyn.plot.acceleration import acceleration
 from tribodyn.plot.bearing_force import bearing_force
 from tribodyn.plot.bearing_spectrum import bearing_spectrum
+from tribodyn.plot.bifurcation import bifurcation
+from tribodyn.plot.campbell import campbell
 from tribodyn.plot.comprehensive_stiffness import comprehensive_stiffness
+from tribodyn.plot.continuation import continuation
 from tribodyn.plot.film import film
 from tribodyn.plot.film_along_path import film_along_path, film_over_time
 from tribodyn.plot.film_comparison import compare_line_contacts
@@ -17,6 +20,7 @@ from tribodyn.plot.film_pressure import film_pressure
 from tribodyn.plot.film_stiffness import film_stiffness
 from tribodyn.plot.flank_modification import flank_modification
 from tribodyn.plot.force_law import force_law
+from tribodyn.plot.forced_response import forced_response
 from tribodyn.plot.friction import friction
 from tribodyn.plot.gear_pair import gear_pair
 from tribodyn.plot.harris_map import harris_map
@@ -27,6 +31,7 @@ from tribodyn.plot.loaded_sharing import loaded_sharing
 from tribodyn.plot.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh_force import mesh_force
 from tribodyn.plot.mesh_stiffness import mesh_stiffness
+from tribodyn.plot.mode_shapes import mode_shapes
 from tribodyn.plot.path_of_contact import path_of_contact
 from tribodyn.plot.registry import FIGURES, Drawing, drawing
 from tribodyn.plot.spectrum import spectrum
@@ -41,8 +46,11 @@ __all__ = [
     "acceleration",
     "bearing_force",
     "bearing_spectrum",
+    "bifurcation",
+    "campbell",
     "compare_line_contacts",
     "comprehensive_stiffness",
+    "continuation",
     "drawing",
     "film",
     "film_along_path",
@@ -53,6 +61,7 @@ __all__ = [
     "film_transient",
     "flank_modification",
     "force_law",
+    "forced_response",
     "friction",
     "gear_pair",
     "harris_map",
@@ -63,6 +72,7 @@ __all__ = [
     "mesh_deformation",
     "mesh_force",
     "mesh_stiffness",
+    "mode_shapes",
     "path_of_contact",
     "spectrum",
     "static_stiffness",

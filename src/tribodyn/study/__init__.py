@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tribodyn.study.bifurcation_diagram import bifurcation
     from tribodyn.study.case import Case
     from tribodyn.study.films import film_over_operation
     from tribodyn.study.pipeline import run
@@ -23,6 +24,7 @@ __all__ = [
     "SUMMARY",
     "Case",
     "Result",
+    "bifurcation",
     "comprehensive_stiffness",
     "film_over_operation",
     "harris_map",
@@ -34,6 +36,7 @@ __all__ = [
 
 _HOMES = {
     "Case": "case",
+    "bifurcation": "bifurcation_diagram",
     "comprehensive_stiffness": "static_studies",
     "film_over_operation": "films",
     "harris_map": "static_studies",

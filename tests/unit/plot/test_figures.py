@@ -42,13 +42,18 @@ UNITLESS = {
 }
 #: Figures of studies, and figures that these results have not.
 OTHERS = {
+    "bifurcation",
+    "campbell",
     "comprehensive_stiffness",
+    "continuation",
     "film_pressure",
     "flank_modification",
+    "forced_response",
     "harris_map",
     "loaded_contact",
     "loaded_sharing",
     "mesh_deformation",
+    "mode_shapes",
     "tip_relief_map",
 }
 

@@ -1,0 +1,89 @@
+"""Exponents of a motion whose disturbances see the same matrices again and again.
+
+They are the logarithms of the Floquet multipliers. The multipliers may differ by more than a
+product of matrices can hold, so that they are read off the orthogonal frame, block by block.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["floquet_growth", "repeats_after"]
+
+Array = NDArray[np.float64]
+
+#: Mesh cycles after which matrices may repeat, and how closely.
+_PERIODS = 16
+_REPEATS = 1e-8
+#: Blocks of the frame are apart when they exchange less than this.
+_APART = 1e-10
+
+
+def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
+    """Tell after how many mesh cycles the matrices repeat.
+
+    Parameters
+    ----------
+    cycles : sequence of (groups, k, k) array
+        Matrices of the last mesh cycles, at least twice as many as a period has [mixed].
+
+    Returns
+    -------
+    tuple of int and float
+        Mesh cycles, 0 if they do not repeat within 16; and how well they repeat [-].
+
+    Examples
+    --------
+    >>> repeats_after([np.eye(2)[None], 2 * np.eye(2)[None]] * 4)
+    (2, 0.0)
+    """
+    known = np.asarray(cycles)
+    size = np.linalg.norm(known, axis=(-2, -1))
+    for period in range(1, min(_PERIODS, len(known) // 2) + 1):
+        apart = np.linalg.norm(known[period:] - known[:-period], axis=(-2, -1)) / size[period:]
+        if apart.max() <= _REPEATS:
+            return period, float(apart.max())
+    return 0, float("nan")
+
+
+def floquet_growth(cycles: Sequence[Array], frame: Array) -> Array:
+    """Growth of disturbances over one period, from matrices and a frame that has turned in.
+
+    Parameters
+    ----------
+    cycles : sequence of (groups, k, k) array
+        Matrices of all mesh cycles of the period [mixed].
+    frame : (k, k) array
+        Orthogonal disturbances at its beginning, after many periods [-].
+
+    Returns
+    -------
+    (k,) array
+        Logarithm of the modulus of every multiplier, the largest first [-].
+
+    Examples
+    --------
+    >>> floquet_growth([np.diag([1.0, 0.5])[None]], np.eye(2)).round(6)
+    array([ 0.      , -0.693147])
+    """
+    old, uppers = frame, []
+    for product in (product for groups in cycles for product in groups):
+        frame, upper = np.linalg.qr(product @ frame)
+        uppers.append(upper)
+    turn = old.T @ frame
+    size = turn.shape[0]
+    edges = [0, *(i for i in range(1, size) if np.abs(turn[i:, :i]).max() < _APART), size]
+    growth = np.zeros(size)
+    for first, last in pairwise(edges):
+        block, scale = np.eye(last - first), 0.0
+        for upper in uppers:
+            block = upper[first:last, first:last] @ block
+            norm = float(np.linalg.norm(block))
+            block, scale = block / norm, scale + float(np.log(norm))
+        values = np.linalg.eigvals(turn[first:last, first:last] @ block)
+        growth[first:last] = np.log(np.abs(values)) + scale
+    return np.asarray(np.sort(growth)[::-1])

@@ -1,0 +1,210 @@
+"""Matrices that carry a small disturbance of a motion over one integration step.
+
+Between two changes of contact a structure is linear in its state, so that these matrices depend
+on the mesh phase and on which contacts carry, not on the motion. They are exponentials of the
+Magnus series of fourth order (Blanes, Casas, Oteo and Ros, Physics Reports 470, 2009), whose
+determinant is exact. Disturbances are taken in the coordinates in which an orbit closes: the free
+rotation of the whole drive has no part in them.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.coordinates import orbit_coordinates
+from tribodyn.dynamics.march import Compiled
+
+__all__ = ["TangentTables", "contact_sides", "within"]
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Places = NDArray[np.int64]
+
+#: Terms of the exponential series of a matrix no larger than a quarter: exact to rounding.
+_TAYLOR = 12
+
+
+def contact_sides(deflection: Array, gap: Array, dead: Flags) -> Array:
+    """Tell on which side of its dead zone every contact is.
+
+    Parameters
+    ----------
+    deflection, gap : (..., contacts) array
+        Compression and half of the dead zone [m].
+    dead : (contacts,) bool array
+        Whether a contact has a dead zone.
+
+    Returns
+    -------
+    (..., contacts) array
+        1 on the driving flank, -1 on the back flank, 0 in between; 1 without a dead zone.
+
+    Examples
+    --------
+    >>> contact_sides(np.array([2.0, 0.5]), np.array([1.0, 1.0]), np.array([True, True]))
+    array([1., 0.])
+    """
+    side = np.where(deflection > gap, 1.0, np.where(deflection < -gap, -1.0, 0.0))
+    return np.where(dead, side, 1.0)
+
+
+class TangentTables:
+    """Matrices of the disturbances of one system on its grid.
+
+    Parameters
+    ----------
+    compiled : Compiled
+        The system on its grid.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    """
+
+    def __init__(self, compiled: Compiled, mesh_frequency: float) -> None:
+        system, nodes = compiled.system, compiled.nodes
+        self.compiled = compiled
+        self.mesh_frequency = mesh_frequency
+        self.coordinates = orbit_coordinates(compiled, mesh_frequency)
+        self.width = compiled.grid.width / mesh_frequency
+        self.dead = np.asarray(np.any(nodes.gap > 0.0, axis=(0, 1)))
+        free = [contact.damping_in_gap for contact in system.contacts]
+        self.in_gap = np.array(free, dtype=bool)
+        c = self.coordinates
+        inverse = np.linalg.inv(c.lower)
+        place, speed = inverse.T @ c.elastic / c.rate, inverse.T @ c.moving
+        self.size = place.shape[1] + speed.shape[1]
+        still = np.zeros((*nodes.stiffness.shape, speed.shape[1]))
+        self._rigid = np.zeros((self.size, self.size))
+        count = place.shape[1]
+        self._rigid[:count, count:] = c.rate * c.elastic.T @ c.moving
+        self._rigid[count:, :count] = -speed.T @ np.asarray(system.stiffness) @ place
+        self._rigid[count:, count:] = -speed.T @ np.asarray(system.damping) @ speed
+        #: How the compression of each contact feels a disturbance, (steps, 3, contacts, k).
+        self.feel = np.concatenate((nodes.direction @ place, still), axis=-1)
+        rate = np.concatenate(
+            (mesh_frequency * nodes.direction_slope @ place, nodes.direction @ speed), axis=-1
+        )
+        self._spring = nodes.stiffness[..., None] * self.feel
+        #: How its damping force does, and what a force does to the disturbance.
+        self.damp = nodes.damping[..., None] * rate
+        none = np.zeros((*nodes.stiffness.shape, count))
+        self.push = np.concatenate((none, nodes.force_direction @ speed), axis=-1)
+        self._known: dict[int, tuple[Array, Array]] = {}
+
+    def rate_matrix(self, push: Array, spring: Array, damp: Array, touching: Flags) -> Array:
+        """Matrix of the equations of a disturbance.
+
+        Parameters
+        ----------
+        push, spring, damp : (..., contacts, k) array
+            Rows at one place each [mixed].
+        touching : (..., contacts) bool array
+            Which contacts carry.
+
+        Returns
+        -------
+        (..., k, k) array
+            In 1/s.
+        """
+        carried = touching[..., None] * spring + (touching | self.in_gap)[..., None] * damp
+        return np.asarray(self._rigid - np.swapaxes(push, -1, -2) @ carried)
+
+    def whole_steps(self, touching: Flags) -> tuple[Array, Array]:
+        """Matrices of all steps of a mesh cycle for one set of contacts that carry.
+
+        Parameters
+        ----------
+        touching : (contacts,) bool array
+            Which contacts carry.
+
+        Returns
+        -------
+        tuple of (steps, k, k) array and (steps,) array
+            Matrix of each step, and the integral of the trace of the equations over it.
+        """
+        key = int(sum(1 << j for j in np.flatnonzero(touching)))
+        if key not in self._known:
+            wide = np.broadcast_to(touching, self.push.shape[:3])
+            rates = self.rate_matrix(self.push, self._spring, self.damp, wide)
+            self._known[key] = _propagate(rates, self.width)
+        return self._known[key]
+
+    def part_steps(
+        self, steps: Places, begin: Array, end: Array, touching: Flags
+    ) -> tuple[Array, Array]:
+        """Matrices of parts of steps.
+
+        Parameters
+        ----------
+        steps : (m,) int array
+            Numbers of the steps within the mesh cycle.
+        begin, end : (m,) array
+            Where the parts begin and end, as fractions of the step [-].
+        touching : (m, contacts) bool array
+            Which contacts carry.
+
+        Returns
+        -------
+        tuple of (m, k, k) array and (m,) array
+        """
+        taus = np.stack((begin, 0.5 * (begin + end), end), axis=1)
+        push, spring, damp = (
+            within(item, steps, taus) for item in (self.push, self._spring, self.damp)
+        )
+        wide = np.broadcast_to(touching[:, None], (*taus.shape, touching.shape[1]))
+        return _propagate(
+            self.rate_matrix(push, spring, damp, wide), self.width[steps] * (end - begin)
+        )
+
+
+def within(values: Array, steps: Places, taus: Array) -> Array:
+    """Interpolate rows quadratically within their steps, as the integrator does.
+
+    Parameters
+    ----------
+    values : (steps, 3, ...) array
+        Rows at the left end, middle and right end of every step.
+    steps : (m,) int array
+        Numbers of the steps.
+    taus : (m, p) array
+        Fractions of the step [-].
+
+    Returns
+    -------
+    (m, p, ...) array
+        In the unit of the values.
+
+    Examples
+    --------
+    >>> within(np.array([[0.0, 1.0, 4.0]]), np.array([0]), np.array([[0.25]]))
+    array([[0.25]])
+    """
+    weights = ((1 - taus) * (1 - 2 * taus), 4 * taus * (1 - taus), taus * (2 * taus - 1))
+    chosen = values[steps]
+    shape = (*taus.shape, *(1,) * (values.ndim - 2))
+    return np.asarray(sum(w.reshape(shape) * chosen[:, i, None] for i, w in enumerate(weights)))
+
+
+def _propagate(rates: Array, width: Array) -> tuple[Array, Array]:
+    """Matrix of a step from those of the equations (m, 3, k, k); integral of their trace."""
+    h = width[:, None, None]
+    first, middle, last = rates[:, 0], rates[:, 1], rates[:, 2]
+    mean = h / 6.0 * (first + 4.0 * middle + last)
+    matrix = _exponential(mean - h * h / 12.0 * (first @ last - last @ first))
+    return matrix, np.trace(mean, axis1=-2, axis2=-1)
+
+
+def _exponential(matrices: Array) -> Array:
+    """Exponentials of matrices (m, k, k) by scaling, Taylor series and squaring."""
+    size = float(np.abs(matrices).sum(axis=-1).max(initial=0.0))
+    halvings = max(0, math.ceil(math.log2(max(size, 1e-300) / 0.25)))
+    small = matrices / 2.0**halvings
+    unit = np.eye(matrices.shape[-1])
+    result = np.broadcast_to(unit, matrices.shape)
+    for order in range(_TAYLOR, 0, -1):
+        result = unit + small @ result / order
+    for _ in range(halvings):
+        result = result @ result
+    return np.asarray(result)

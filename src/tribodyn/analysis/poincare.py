@@ -1,0 +1,227 @@
+"""Stroboscopic sections: the state once per mesh cycle, and after how many cycles it repeats."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.dynamics.coordinates import orbit_coordinates
+from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics.response import Response
+from tribodyn.dynamics.simulate import read_start
+from tribodyn.dynamics.start import static_start
+from tribodyn.dynamics.system import System
+from tribodyn.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["PoincareSection", "poincare", "repeat_period"]
+
+Array = NDArray[np.float64]
+
+#: Mesh cycles after which a motion may repeat.
+_PERIODS = 16
+#: Points that differ by less than this, relative to their size, are the same.
+_SAME = 1e-5
+#: Points that still approach each other are the same when this near.
+_NEARLY = 1e-3
+_CALMS_DOWN = 0.5
+
+
+@dataclass(frozen=True)
+class PoincareSection:
+    """States of a motion once per mesh cycle, at the mesh phase 0.
+
+    Parameters
+    ----------
+    position, velocity : (points, n) array
+        Coordinates and their velocities [m or rad, m/s or rad/s].
+    deflection : (points, contacts) array
+        Compression of each contact [m].
+    names : tuple of str
+        Names of the coordinates.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    period : int
+        Mesh cycles after which the motion repeats, 1 to 16; 0 if it is quasi-periodic, chaotic or
+        not yet settled.
+    """
+
+    position: Array = field(repr=False)
+    velocity: Array = field(repr=False)
+    deflection: Array = field(repr=False)
+    names: tuple[str, ...]
+    mesh_frequency: float
+    period: int
+
+    def __repr__(self) -> str:
+        """One line."""
+        kind = f"period {self.period}" if self.period else "no period up to 16"
+        return (
+            f"PoincareSection({len(self.position)} points at {self.mesh_frequency:.6g} Hz, {kind})"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the points as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``mesh_cycle``, ``coordinate`` and ``contact``.
+        """
+        import xarray
+
+        coordinate, contact = ("mesh_cycle", "coordinate"), ("mesh_cycle", "contact")
+        data: dict[str, Any] = {
+            "position": (coordinate, self.position, {"units": "m or rad"}),
+            "velocity": (coordinate, self.velocity, {"units": "m/s or rad/s"}),
+            "deflection": (contact, self.deflection, {"units": "m"}),
+        }
+        attributes = {"mesh_frequency": self.mesh_frequency, "period": self.period}
+        return xarray.Dataset(data, {"coordinate": list(self.names)}, attributes)
+
+
+def repeat_period(points: Array) -> int:
+    """Tell after how many points a sequence repeats.
+
+    Parameters
+    ----------
+    points : (m, k) array
+        Points in the order of time [any one unit].
+
+    Returns
+    -------
+    int
+        1 to 16, and at most half of the points; 0 if it does not repeat.
+
+    Notes
+    -----
+    Points are the same within 1e-5 of their size, or within 1e-3 as long as they approach each
+    other.
+
+    Examples
+    --------
+    >>> repeat_period(np.array([[1.0], [2.0]] * 8))
+    2
+    """
+    size = float(np.linalg.norm(points, axis=1).max(initial=0.0)) or 1.0
+    for period in range(1, min(_PERIODS, len(points) // 2) + 1):
+        apart = np.linalg.norm(points[period:] - points[:-period], axis=1) / size
+        third = max(1, len(apart) // 3)
+        first, last = float(apart[:third].max()), float(apart[-third:].max())
+        if last <= _SAME or (last <= _NEARLY and last <= _CALMS_DOWN * first):
+            return period
+    return 0
+
+
+def poincare(
+    motion: System | Response,
+    mesh_frequency: float | None = None,
+    *,
+    start: tuple[ArrayLike, ArrayLike] | None = None,
+    cycles: int = 64,
+    transient: int = 200,
+    steps: int = 512,
+    extra_force: ArrayLike | None = None,
+) -> PoincareSection:
+    """Look at a motion once per mesh cycle, and find its period.
+
+    Parameters
+    ----------
+    motion : System or Response
+        A system to march, or a motion that is known already; its first ``transient`` mesh cycles
+        are left out if more than as many are there.
+    mesh_frequency : float, optional
+        Mesh frequency [Hz]; needed with a system.
+    start : (position, velocity), optional
+        Two (n,) arrays [m or rad, m/s or rad/s]; the static equilibrium at mean stiffness by
+        default.
+    cycles : int
+        Mesh cycles, one point each.
+    transient : int
+        Mesh cycles before the first point.
+    steps : int
+        Steps per mesh cycle.
+    extra_force : (n,) array, optional
+        Constant generalized force on top of the system's [N or N*m].
+
+    Returns
+    -------
+    PoincareSection
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or the step is too long.
+    ComputationError
+        If the motion grows beyond all bounds.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
+    >>> poincare(System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair]), 1.0)
+    PoincareSection(64 points at 1 Hz, period 1)
+    """
+    if isinstance(motion, Response):
+        return _section_of(motion, transient)
+    if mesh_frequency is None or cycles < 1 or transient < 0:
+        what = f"mesh_frequency = {mesh_frequency}, cycles = {cycles}, transient = {transient}"
+        why = "A system needs a mesh frequency, at least one mesh cycle and no negative transient"
+        raise InputError(Problem(what, "argument mesh_frequency", why))
+    compiled = compile_for(motion, mesh_frequency, steps)
+    coordinates = orbit_coordinates(compiled, mesh_frequency)
+    state = (static_start(compiled) if start is None else read_start(motion, start))[None, :]
+    force = np.zeros(motion.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    period = np.array([1.0 / mesh_frequency])
+    states = np.empty((cycles, 2 * motion.size))
+    for cycle in range(-transient, cycles):
+        if cycle >= 0:
+            states[cycle] = state[0]
+        state = march(compiled, period, state, 1, extra_force=force[None, :])
+        state = coordinates.expand(coordinates.reduce(state))
+    nodes = compiled.nodes
+    position = states[:, : motion.size]
+    return PoincareSection(
+        position=position,
+        velocity=states[:, motion.size :],
+        deflection=position @ nodes.direction[0, 0].T - nodes.error[0, 0],
+        names=tuple(motion.names),
+        mesh_frequency=float(mesh_frequency),
+        period=repeat_period(coordinates.reduce(states)),
+    )
+
+
+def _section_of(response: Response, transient: int) -> PoincareSection:
+    """Points of a motion that is known already."""
+    steps = len(response.position) // response.periods
+    skipped = transient if response.periods > transient else 0
+    if response.floquet_multipliers.size:
+        skipped = 0
+    rows = slice(skipped * steps, None, steps)
+    deflection = response.deflection[rows]
+    place = deflection if deflection.shape[1] else response.position[rows]
+    known = response.floquet_multipliers.size and response.converged
+    return PoincareSection(
+        position=response.position[rows],
+        velocity=response.velocity[rows],
+        deflection=deflection,
+        names=response.names,
+        mesh_frequency=response.mesh_frequency,
+        period=_least_period(response, place) if known else repeat_period(place),
+    )
+
+
+def _least_period(orbit: Response, points: Array) -> int:
+    """Mesh cycles of an orbit, fewer than it has where its points repeat."""
+    size = float(np.linalg.norm(points, axis=1).max()) or 1.0
+    for period in range(1, orbit.periods):
+        if orbit.periods % period == 0:
+            apart = np.linalg.norm(np.roll(points, -period, axis=0) - points, axis=1)
+            if apart.max() <= _SAME * size:
+                return period
+    return orbit.periods

@@ -1,0 +1,192 @@
+"""Checks that all analyses of recorded signals share: finite, long enough, rising, fast enough."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.errors import InputError, Problem, require_positive
+
+__all__ = ["checked_rising", "checked_signal", "refuse_above_half", "window_values"]
+
+Array = NDArray[np.float64]
+
+
+def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
+    """Return a signal as floats, or say what is wrong with it.
+
+    Parameters
+    ----------
+    signal : (n,) array
+        Signal in any unit.
+    least : int
+        Least number of samples.
+    name : str
+        Name of the argument for the message.
+
+    Returns
+    -------
+    (n,) array
+
+    Raises
+    ------
+    InputError
+        If it is not one row of finite numbers, or too short.
+    """
+    where = f"argument {name}"
+    given = np.asarray(signal)
+    if given.dtype.kind not in "biuf":
+        raise InputError(
+            Problem(
+                what=f"{name} holds {given.dtype} values",
+                where=where,
+                why="A recorded signal holds real numbers",
+                remedy="Pass real and imaginary parts one by one, and text as numbers",
+            )
+        )
+    values = given.astype(float)
+    if values.ndim != 1:
+        raise InputError(
+            Problem(
+                what=f"{name} has the shape {values.shape}",
+                where=where,
+                why="One recorded signal is a row of numbers, (n,)",
+                remedy="Pass the columns of a record one by one",
+            )
+        )
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise InputError(
+            Problem(
+                what=f"{name} is {values[bad[0]]} at sample {bad[0]} ({bad.size} such samples)",
+                where=where,
+                why="A spectrum needs every sample",
+                remedy="Cut the record there, or fill short gaps by interpolation",
+            )
+        )
+    if values.size < least:
+        raise InputError(
+            Problem(
+                what=f"{name} has {values.size} samples",
+                where=where,
+                why=f"At least {least} are needed",
+                remedy="Record longer",
+            )
+        )
+    return values
+
+
+def checked_rising(values: Any, size: int, name: str, unit: str) -> Array:
+    """Return times or rotation angles that rise from sample to sample.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Values in ``unit``.
+    size : int
+        Number of samples of the signal that they belong to.
+    name : str
+        Name of the argument for the message.
+    unit : str
+        Unit for the message.
+
+    Returns
+    -------
+    (n,) array
+
+    Raises
+    ------
+    InputError
+        If they are not finite, of another number or do not rise.
+    """
+    rising = checked_signal(values, 2, name)
+    if rising.size != size:
+        raise InputError(
+            Problem(
+                what=f"{name} has {rising.size} samples, the signal has {size}",
+                where=f"argument {name}",
+                why="Each sample of the signal has its own value",
+            )
+        )
+    falls = np.flatnonzero(np.diff(rising) <= 0.0)
+    if falls.size:
+        first = int(falls[0])
+        raise InputError(
+            Problem(
+                what=f"{name} goes from {rising[first]:.6g} to {rising[first + 1]:.6g} {unit} "
+                f"at sample {first + 1}",
+                where=f"argument {name}",
+                why="It must rise from sample to sample",
+                remedy="Sort the record, drop repeated samples, or count the rotation without wrap",
+            )
+        )
+    return rising
+
+
+def refuse_above_half(highest: float, sampling_rate: float, what: str, where: str) -> None:
+    """Refuse a frequency that the sampling cannot tell from a lower one.
+
+    Parameters
+    ----------
+    highest : float
+        Highest frequency asked for [Hz].
+    sampling_rate : float
+        Samples per second [Hz].
+    what : str
+        What has this frequency, for the message.
+    where : str
+        Argument, for the message.
+
+    Raises
+    ------
+    InputError
+        If it is not below half the sampling rate, or the rate is not positive.
+    """
+    require_positive("sampling_rate", sampling_rate, "Hz")
+    if not highest < 0.5 * sampling_rate:
+        raise InputError(
+            Problem(
+                what=f"{what} is at {highest:.6g} Hz",
+                where=where,
+                why=f"Sampled with {sampling_rate:.6g} Hz, only frequencies below "
+                f"{0.5 * sampling_rate:.6g} Hz can be told apart (Nyquist)",
+                remedy="Sample faster, or ask for less",
+            )
+        )
+
+
+def window_values(window: str, length: int) -> Array:
+    """Return a window of SciPy, periodic so that its lines fall on bins.
+
+    Parameters
+    ----------
+    window : str
+        Name as in :func:`scipy.signal.get_window`, for example ``"hann"`` or ``"flattop"``.
+    length : int
+        Number of samples.
+
+    Returns
+    -------
+    (length,) array
+        Weights [-].
+
+    Raises
+    ------
+    InputError
+        If there is no such window.
+    """
+    from scipy.signal import get_window
+
+    try:
+        return np.asarray(get_window(window, length, fftbins=True), dtype=float)
+    except (ValueError, TypeError) as error:
+        raise InputError(
+            Problem(
+                what=f"there is no window {window!r}",
+                where="argument window",
+                why=str(error),
+                remedy='Take "flattop" for amplitudes, "hann" for noise, "boxcar" for none',
+            )
+        ) from error

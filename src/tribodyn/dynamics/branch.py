@@ -1,0 +1,213 @@
+"""A branch of periodic orbits over a parameter, with its special points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Branch", "SpecialPoint"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """A point of a branch at which something changes.
+
+    Parameters
+    ----------
+    kind : str
+        ``"fold"``, ``"period-doubling"``, ``"neimark-sacker"``, ``"branch-point"`` or
+        ``"grazing"``, where a contact begins to open.
+    parameter : float
+        Value of the parameter [its unit].
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    position, velocity : (n,) array
+        State at mesh phase 0 [m or rad, m/s or rad/s].
+    floquet_multipliers : (m,) complex array
+        Multipliers, the largest first.
+    rms, peak_to_peak : (signals,) array
+        Alternating rms and range of each signal [m or rad].
+    period : int
+        Mesh cycles after which the motion repeats.
+    index : int
+        Number of the point of the branch before it.
+    """
+
+    kind: str
+    parameter: float
+    mesh_frequency: float
+    position: Array = field(repr=False)
+    velocity: Array = field(repr=False)
+    floquet_multipliers: NDArray[np.complex128] = field(repr=False)
+    rms: Array = field(repr=False)
+    peak_to_peak: Array = field(repr=False)
+    period: int = 1
+    index: int = 0
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Periodic orbits joined over a parameter, stable and unstable, in their order.
+
+    Parameters
+    ----------
+    name : str
+        What the parameter is.
+    parameter : (p,) array
+        Value of the parameter at each point [its unit].
+    mesh_frequency : (p,) array
+        Mesh frequency [Hz].
+    period : int
+        Mesh cycles after which the motions repeat.
+    position, velocity : (p, n) array
+        States at mesh phase 0 [m or rad, m/s or rad/s].
+    names : tuple of str
+        Names of the coordinates.
+    signals : tuple of str
+        Names of the signals.
+    mean, rms, peak_to_peak : (p, signals) array
+        Mean, alternating rms and range of each signal [m or rad].
+    peak_force : (p, contacts) array
+        Largest force of each contact [N].
+    contact_loss : (p, contacts) array
+        Part of the time off the driving flank [-].
+    clearance : (p, contacts) array
+        Least compression beyond the gap [m]; negative where a contact opens.
+    floquet_multipliers : (p, m) complex array
+        Multipliers, the largest first.
+    stable : (p,) bool array
+        Whether all multipliers lie inside the unit circle.
+    error : (p,) array
+        Distance to the exact branch of the stepped system, relative to the motion [-].
+    special_points : tuple of SpecialPoint
+        In the order of the branch.
+    ending : str
+        Why the branch ends where it does.
+    complete : bool
+        Whether it left the range or closed, or has as many points as allowed.
+    cycles_used : int
+        Mesh cycles that were marched.
+    """
+
+    name: str
+    parameter: Array
+    mesh_frequency: Array
+    period: int
+    position: Array = field(repr=False)
+    velocity: Array = field(repr=False)
+    names: tuple[str, ...]
+    signals: tuple[str, ...]
+    mean: Array = field(repr=False)
+    rms: Array = field(repr=False)
+    peak_to_peak: Array = field(repr=False)
+    peak_force: Array = field(repr=False)
+    contact_loss: Array = field(repr=False)
+    clearance: Array = field(repr=False)
+    floquet_multipliers: NDArray[np.complex128] = field(repr=False)
+    stable: NDArray[np.bool_] = field(repr=False)
+    error: Array = field(repr=False)
+    special_points: tuple[SpecialPoint, ...]
+    ending: str
+    complete: bool
+    cycles_used: int
+
+    def special(self, kind: str) -> tuple[SpecialPoint, ...]:
+        """Special points of one kind.
+
+        Parameters
+        ----------
+        kind : str
+
+        Returns
+        -------
+        tuple of SpecialPoint
+        """
+        return tuple(point for point in self.special_points if point.kind == kind)
+
+    def start(self, index: int) -> tuple[Array, Array]:
+        """State of one point, from which a search or a march can start.
+
+        Parameters
+        ----------
+        index : int
+            Number of the point.
+
+        Returns
+        -------
+        tuple of two (n,) arrays
+            Position and velocity [m or rad, m/s or rad/s].
+        """
+        return self.position[index], self.velocity[index]
+
+    def __repr__(self) -> str:
+        """One line."""
+        low, high = self.parameter.min(), self.parameter.max()
+        marks = [point.kind for point in self.special_points]
+        told = [f"{marks.count(kind)} {kind}" for kind in dict.fromkeys(marks)]
+        cycles = f"{self.period} mesh cycle{'s' if self.period != 1 else ''}"
+        return (
+            f"Branch({self.parameter.size} orbits of {cycles}, {self.name} {low:.6g} to "
+            f"{high:.6g}, {int(self.stable.sum())} stable"
+            + (f", {', '.join(told)}" if told else "")
+            + ("" if self.complete else ", ended early")
+            + ")"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the branch as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``point``, ``coordinate``, ``signal``, ``contact``, ``multiplier`` and
+            ``special_point``.
+        """
+        import xarray
+
+        state, signal = ("point", "coordinate"), ("point", "signal")
+        contact, multiplier = ("point", "contact"), ("point", "multiplier")
+        special = self.special_points
+        data: dict[str, Any] = {
+            "position": (state, self.position, {"units": "m or rad"}),
+            "velocity": (state, self.velocity, {"units": "m/s or rad/s"}),
+            "mean": (signal, self.mean, {"units": "m or rad"}),
+            "rms": (signal, self.rms, {"units": "m or rad"}),
+            "peak_to_peak": (signal, self.peak_to_peak, {"units": "m or rad"}),
+            "peak_force": (contact, self.peak_force, {"units": "N"}),
+            "contact_loss": (contact, self.contact_loss, {"units": "1"}),
+            "clearance": (contact, self.clearance, {"units": "m"}),
+            "multiplier_real": (multiplier, self.floquet_multipliers.real, {"units": "1"}),
+            "multiplier_imaginary": (multiplier, self.floquet_multipliers.imag, {"units": "1"}),
+            "stable": ("point", self.stable),
+            "error": ("point", self.error, {"units": "1"}),
+            "special_parameter": ("special_point", [point.parameter for point in special]),
+        }
+        coords: dict[str, Any] = {
+            "parameter": ("point", self.parameter),
+            "mesh_frequency": ("point", self.mesh_frequency, {"units": "Hz"}),
+            "coordinate": list(self.names),
+            "signal": list(self.signals),
+            "special_kind": ("special_point", [point.kind for point in special]),
+        }
+        attributes = {"parameter": self.name, "period": self.period, "ending": self.ending}
+        return xarray.Dataset(data, coords, attributes)
+
+    def plot(self) -> Any:
+        """Draw rms and largest multiplier over the parameter.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        # The one step upward of the layers: a result draws itself.
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["continuation"](self)

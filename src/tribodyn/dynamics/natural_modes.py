@@ -1,0 +1,316 @@
+"""Natural frequencies, modes and where their energy sits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.dynamics.natural_modes_elements import structure_elements
+from tribodyn.dynamics.natural_modes_linear import LinearSystem, ModePhase, linear_system
+from tribodyn.dynamics.system import System
+from tribodyn.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["NaturalModes", "natural_modes"]
+
+Array = NDArray[np.float64]
+
+#: Squared frequencies below this share of the largest are rounding: the mode is rigid.
+_RIGID = 1e-12
+
+
+@dataclass(frozen=True)
+class NaturalModes:
+    """Undamped modes of a system about its static load, and the damped motion beside them.
+
+    Modes are sorted by frequency; rigid ones come first, with exactly 0 Hz.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the coordinates.
+    frequency : (n,) array
+        Natural frequencies [Hz].
+    shape : (n, n) array
+        One mode per row, with ``shape M shape^T = 1`` [1/sqrt(kg) or 1/sqrt(kg*m^2)].
+    damping_ratio : (n,) array
+        Part of the critical damping from the diagonal of the modal damping matrix; NaN for rigid
+        modes [1].
+    kinetic_share : (n, n) array
+        Share of each coordinate in the kinetic energy of each mode; rows sum to 1.
+    elements : tuple of str
+        Names of the springs, those of the contacts last.
+    strain_share : (n, elements) array
+        Share of each spring in the strain energy of each mode; rows sum to 1, those of rigid modes
+        are zero.
+    contacts : int
+        Number of contacts: as many elements at the end are contacts.
+    eigenvalues : (2 n,) complex array
+        Of the damped motion ``exp(eigenvalue*time)``, sorted by modulus [rad/s].
+    complex_shape : (2 n, n) complex array
+        Displacements that go with each eigenvalue, the largest of them 1.
+    linear : LinearSystem
+        The matrices.
+
+    Examples
+    --------
+    >>> natural_modes(System([[1.0]], [[0.0]], [[4.0]], [0.0]))
+    NaturalModes(1 coordinates, 0 rigid, first 0.31831 Hz)
+    """
+
+    names: tuple[str, ...]
+    frequency: Array
+    shape: Array
+    damping_ratio: Array
+    kinetic_share: Array
+    elements: tuple[str, ...]
+    strain_share: Array
+    contacts: int
+    eigenvalues: NDArray[np.complex128]
+    complex_shape: NDArray[np.complex128]
+    linear: LinearSystem = field(repr=False)
+
+    @property
+    def rigid(self) -> int:
+        """Number of modes without strain."""
+        return int(np.count_nonzero(self.frequency == 0.0))
+
+    @property
+    def contact_share(self) -> Array:
+        """Share of all contacts together in the strain energy of each mode, (n,)."""
+        first = len(self.elements) - self.contacts
+        return np.asarray(self.strain_share[:, first:].sum(axis=1))
+
+    @property
+    def damped_frequency(self) -> Array:
+        """Frequencies of the damped motion, one for each conjugate pair, rising [Hz]."""
+        swinging = self.eigenvalues.imag > 1e-9 * np.abs(self.eigenvalues)
+        return np.asarray(np.sort(self.eigenvalues.imag[swinging]) / (2.0 * np.pi))
+
+    @property
+    def stable(self) -> bool:
+        """Whether no damped motion grows; friction can make one grow."""
+        size = np.abs(self.eigenvalues).max(initial=0.0)
+        return bool(np.all(self.eigenvalues.real <= 1e-9 * size))
+
+    def body_share(self) -> dict[str, Array]:
+        """Share of each body in the kinetic energy: coordinates with one name before ``_``.
+
+        Returns
+        -------
+        dict
+            Name of the body and its share in each mode, (n,) [1].
+        """
+        bodies: dict[str, Array] = {}
+        for column, name in enumerate(self.names):
+            body = name.rpartition("_")[0] or name
+            bodies[body] = bodies.get(body, np.zeros(len(self.names)))
+            bodies[body] = bodies[body] + self.kinetic_share[:, column]
+        return bodies
+
+    def strain_by_kind(self) -> dict[str, Array]:
+        """Share of meshes, shafts and supports in the strain energy.
+
+        Returns
+        -------
+        dict
+            ``mesh`` (contacts), ``shaft`` (springs between coordinates) and ``support`` (springs to
+            the ground), (n,) each; elements with names of their own count as ``support`` [1].
+        """
+        last = len(self.elements) - self.contacts
+        between = np.array([" - " in name for name in self.elements[:last]], dtype=bool)
+        structure = self.strain_share[:, :last]
+        return {
+            "mesh": self.contact_share,
+            "shaft": np.asarray(structure[:, between].sum(axis=1)),
+            "support": np.asarray(structure[:, ~between].sum(axis=1)),
+        }
+
+    def __repr__(self) -> str:
+        """One line."""
+        elastic = self.frequency[self.rigid :]
+        first = f"first {elastic[0]:.6g} Hz" if elastic.size else "no elastic mode"
+        return f"NaturalModes({len(self.names)} coordinates, {self.rigid} rigid, {first})"
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return frequencies, shapes and shares with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``mode``, ``coordinate`` and ``element``.
+        """
+        import xarray
+
+        data: dict[str, Any] = {
+            "frequency": ("mode", self.frequency, {"units": "Hz"}),
+            "damping_ratio": ("mode", self.damping_ratio, {"units": "1"}),
+            "shape": (("mode", "coordinate"), self.shape, {"units": "kg^-1/2 or kg^-1/2/m"}),
+            "kinetic_share": (("mode", "coordinate"), self.kinetic_share, {"units": "1"}),
+            "strain_share": (("mode", "element"), self.strain_share, {"units": "1"}),
+        }
+        return xarray.Dataset(
+            data, {"coordinate": list(self.names), "element": list(self.elements)}
+        )
+
+    def plot(self) -> Any:
+        """Draw where the energy of each mode sits.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["mode_shapes"](self)
+
+
+def natural_modes(
+    system: System,
+    *,
+    phase: ModePhase = "mean",
+    elements: Mapping[str, ArrayLike] | None = None,
+    friction: bool = False,
+) -> NaturalModes:
+    """Find the natural frequencies of a system about its static load.
+
+    Parameters
+    ----------
+    system : System
+    phase : "mean" or float
+        Contact stiffness: mean over the mesh cycle, or that at one mesh phase in [0, 1).
+    elements : mapping of str to (n, n) array, optional
+        Stiffness matrices of the springs of the structure, which add up to its stiffness matrix
+        [N/m, N*m/rad, ...]; by default one spring to the ground per coordinate and one
+        between each pair of coupled coordinates.
+    friction : bool
+        Whether the damped motion feels friction, which can make it grow.
+
+    Returns
+    -------
+    NaturalModes
+
+    Raises
+    ------
+    InputError
+        If the phase lies outside [0, 1), mass or stiffness matrix are not symmetric, the system
+        is not stable at rest, or the elements do not add up.
+
+    Notes
+    -----
+    A contact with play is closed, as under load; of a force law the ramps that carry at the
+    static load count. ``frequency`` knows neither damping nor friction; ``eigenvalues`` belong to
+    ``M q'' + C q' + K q = 0`` with the damping of the contacts and, if asked for, friction.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> pair = Contact([0.03, -0.06], stiffness=2e8)
+    >>> gears = System(np.diag([1e-3, 8e-3]), np.zeros((2, 2)), np.zeros((2, 2)), [0, 0], [pair])
+    >>> natural_modes(gears).frequency.round(3)
+    array([   0.   , 2615.183])
+    """
+    linear = linear_system(system, phase)
+    springs = structure_elements(system, elements)
+    frequency, shape = _undamped(linear.mass, linear.stiffness)
+    names = (*springs, *(f"contact {j}" for j in range(len(linear.contact_stiffness))))
+    matrices = np.array([*springs.values(), *linear.contact_stiffness]).reshape(
+        -1, system.size, system.size
+    )
+    eigenvalues, complex_shape = _damped(linear, frequency, shape, friction)
+    return NaturalModes(
+        names=linear.names,
+        frequency=frequency,
+        shape=shape,
+        damping_ratio=_damping_ratio(linear.damping, frequency, shape),
+        kinetic_share=shape * (shape @ linear.mass),
+        elements=tuple(names),
+        strain_share=_shares(matrices, frequency, shape),
+        contacts=len(linear.contact_stiffness),
+        eigenvalues=eigenvalues,
+        complex_shape=complex_shape,
+        linear=linear,
+    )
+
+
+def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    inverse = np.linalg.inv(_factor(mass))
+    matrix = inverse @ stiffness @ inverse.T
+    squares, columns = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    rigid = np.abs(squares) <= _RIGID * np.abs(squares).max(initial=0.0)
+    if np.any(squares[~rigid] < 0.0):
+        raise InputError(
+            Problem(
+                what="the system falls over at rest: a stiffness is negative",
+                where="System.stiffness",
+                why="A motion runs away from the static load without any swing",
+                remedy="Look for a wrong sign in the stiffness matrix or of a contact",
+            )
+        )
+    frequency = np.sqrt(np.where(rigid, 0.0, squares)) / (2.0 * np.pi)
+    shape = (inverse.T @ columns).T
+    largest = np.take_along_axis(shape, np.abs(shape).argmax(axis=1)[:, None], axis=1)
+    return frequency, shape * np.sign(largest)
+
+
+def _factor(mass: Array) -> Array:
+    """Cholesky factor of a mass matrix, which must be that of a kinetic energy."""
+    even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
+    if not even or np.linalg.eigvalsh(mass)[0] <= 0.0:
+        raise InputError(
+            Problem(
+                what="the mass matrix is not symmetric and positive definite",
+                where="System.mass",
+                why="Every motion has a kinetic energy greater than zero",
+            )
+        )
+    return np.asarray(np.linalg.cholesky(mass), dtype=float)
+
+
+def _damping_ratio(damping: Array, frequency: Array, shape: Array) -> Array:
+    modal = np.einsum("mi,ik,mk->m", shape, damping, shape)
+    critical = 4.0 * np.pi * np.where(frequency > 0.0, frequency, np.nan)
+    return np.asarray(modal / critical)
+
+
+def _shares(matrices: Array, frequency: Array, shape: Array) -> Array:
+    energy = np.einsum("mi,eik,mk->me", shape, matrices, shape)
+    total = np.where(frequency > 0.0, energy.sum(axis=1), np.inf)
+    return np.asarray(energy / total[:, None])
+
+
+def _damped(
+    linear: LinearSystem, frequency: Array, shape: Array, friction: bool
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Eigenvalues and shapes in the undamped modes, without the place of the rigid ones.
+
+    Nothing depends on that place. Its eigenvalue zero, which is double without a damper, would
+    come out with half of the digits only; it is put in exactly.
+    """
+    spring = linear.stiffness + (linear.friction_stiffness if friction else 0.0)
+    damper = linear.damping + (linear.friction_damping if friction else 0.0)
+    size, rigid = len(frequency), int(np.count_nonzero(frequency == 0.0))
+    swinging = size - rigid
+    # Displacements times a typical rate keep the entries of like size.
+    rate = max(2.0 * np.pi * float(frequency.max(initial=0.0)), 1e-30)
+    state = np.zeros((swinging + size, swinging + size))
+    state[:swinging, swinging + rigid :] = rate * np.eye(swinging)
+    state[swinging:, :swinging] = -(shape @ spring @ shape[rigid:].T) / rate
+    state[swinging:, swinging:] = -(shape @ damper @ shape.T)
+    values, vectors = np.linalg.eig(state)
+    values = np.concatenate((np.zeros(rigid), values)).astype(complex)
+    # Displacement and velocity of a mode are proportional.
+    moved: NDArray[np.complex128] = np.vstack(
+        (shape[:rigid].astype(complex), vectors[swinging:].T @ shape)
+    ).astype(complex)
+    order = np.lexsort((values.imag, np.abs(values).round(6)))
+    moved = moved[order]
+    top = np.take_along_axis(moved, np.abs(moved).argmax(axis=1)[:, None], axis=1)
+    shapes = np.asarray(moved / np.where(top == 0.0, 1.0, top), dtype=complex)
+    return np.asarray(values[order], dtype=complex), shapes

@@ -1,0 +1,203 @@
+"""A system made linear about its static load: matrices with the contacts in touch.
+
+Only what carries at rest counts. Of a force law made of ramps the tangent at the static load
+remains: the sum of the ramps that the compression reaches.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.grid import system_events
+from tribodyn.dynamics.program import Nodes, compile_system
+from tribodyn.dynamics.system import System
+from tribodyn.errors import InputError, Problem, require_between
+
+__all__ = ["LinearSystem", "ModePhase", "linear_system"]
+
+Array = NDArray[np.float64]
+ModePhase = Literal["mean"] | float
+
+#: Steps over which the mean of a cycle is taken, and rounds in which ramps open and close.
+_STEPS, _ROUNDS = 256, 50
+
+
+@dataclass(frozen=True)
+class LinearSystem:
+    """Matrices of a system about its static load.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the coordinates.
+    mass, damping, stiffness : (n, n) array
+        With the contacts in touch, without friction [kg or kg*m^2, N*s/m, N/m, ...].
+    friction_damping, friction_stiffness : (n, n) array
+        What friction adds; not symmetric [N*s/m, N/m, ...].
+    contact_stiffness : (contacts, n, n) array
+        Share of each contact in ``stiffness`` [N/m, ...].
+    contact_damping : (contacts, n, n) array
+        Share of each contact in ``damping`` [N*s/m, ...].
+    direction, push : (contacts, n) array
+        Compression per displacement, and generalized force per contact force, mean over the
+        closed part of the cycle [1 or m].
+    spring : (contacts,) array
+        Stiffness of each contact, mean over the cycle [N/m].
+    damper : (contacts,) array
+        Damping of each contact, mean over the cycle [N*s/m].
+    bundle : (contacts,) int array
+        Number of the force law to which each contact belongs.
+    """
+
+    names: tuple[str, ...]
+    mass: Array
+    damping: Array
+    stiffness: Array
+    friction_damping: Array
+    friction_stiffness: Array
+    contact_stiffness: Array
+    contact_damping: Array
+    direction: Array
+    push: Array
+    spring: Array
+    damper: Array
+    bundle: NDArray[np.int64]
+
+
+def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
+    """Replace every contact by the spring and the damper that act at the static load.
+
+    Parameters
+    ----------
+    system : System
+    phase : "mean" or float
+        Mean over the mesh cycle, or one mesh phase in [0, 1); at an event the value after it.
+
+    Returns
+    -------
+    LinearSystem
+
+    Raises
+    ------
+    InputError
+        If the phase is neither "mean" nor lies in [0, 1).
+
+    Notes
+    -----
+    ``K + sum_j <k_j h_j h_j^T>`` over the contacts that carry; the equilibrium is sought at
+    every phase by itself. A contact that carries nothing at rest stays closed unless it is a
+    further ramp of a force law. Friction adds ``sum_j <k_j s_j h_j^T>``.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> pair = Contact([1.0], stiffness=lambda p: 2.0 + np.cos(2 * np.pi * p), gap=1.0)
+    >>> linear_system(System([[1.0]], [[0.1]], [[3.0]], [5.0], [pair])).stiffness.round(9)
+    array([[5.]])
+    """
+    nodes, weight = _rows(system, phase)
+    closed = _closed(system, nodes)
+    outer = np.einsum("rsji,rsjk->rsjik", nodes.direction, nodes.direction)
+    rub = nodes.force_direction - nodes.direction
+    cross = np.einsum("rsji,rsjk->rsjik", rub, nodes.direction)
+    spring = weight[:, :, None] * np.where(closed, nodes.stiffness, 0.0)
+    free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
+    damper = weight[:, :, None] * np.where(closed | free, nodes.damping, 0.0)
+    contact_stiffness = np.einsum("rsj,rsjik->jik", spring, outer)
+    contact_damping = np.einsum("rsj,rsjik->jik", damper, outer)
+    return LinearSystem(
+        names=tuple(system.names),
+        mass=np.asarray(system.mass),
+        damping=np.asarray(system.damping) + contact_damping.sum(axis=0),
+        stiffness=np.asarray(system.stiffness) + contact_stiffness.sum(axis=0),
+        friction_damping=np.einsum("rsj,rsjik->ik", damper, cross),
+        friction_stiffness=np.einsum("rsj,rsjik->ik", spring, cross),
+        contact_stiffness=contact_stiffness,
+        contact_damping=contact_damping,
+        direction=np.einsum("rs,rsji->ji", weight, nodes.direction),
+        push=np.einsum("rs,rsji->ji", weight, nodes.force_direction),
+        spring=spring.sum(axis=(0, 1)),
+        damper=damper.sum(axis=(0, 1)),
+        bundle=_bundles(nodes),
+    )
+
+
+def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
+    """Rows of the system with weights of sum 1: over the whole cycle, or at one phase."""
+    if phase == "mean":
+        nodes = compile_system(system, max(_STEPS, 4 * len(system_events(system))))[1]
+        return nodes, nodes.weight
+    if isinstance(phase, str):
+        raise InputError(
+            Problem(
+                what=f'phase = "{phase}"',
+                where="argument phase",
+                why='"mean" or a mesh phase in [0, 1)',
+            )
+        )
+    at = float(phase)
+    require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")
+    contacts = tuple(replace(contact, events=(*contact.events, at)) for contact in system.contacts)
+    marked = replace(system, contacts=contacts)
+    grid, nodes, _ = compile_system(marked, 4 * len(system_events(marked)))
+    row = int(np.argmin(np.abs(grid.left - at)))
+    single = Nodes(*(part[row : row + 1, :1] for part in nodes))
+    return single, np.ones((1, 1))
+
+
+def _closed(system: System, nodes: Nodes) -> NDArray[np.bool_]:
+    """Tell which contacts carry at rest, (rows, stages, contacts)."""
+    kept = np.broadcast_to(_lowest(nodes), nodes.stiffness.shape)
+    if kept.all():
+        return np.array(kept)
+    closed = np.ones(nodes.stiffness.shape, dtype=bool)
+    for _ in range(_ROUNDS):
+        position = _equilibrium(system, nodes, np.where(closed, nodes.stiffness, 0.0))
+        compression = np.einsum("rsji,rsi->rsj", nodes.direction, position) - nodes.error
+        found = kept | (compression > nodes.gap)
+        if np.array_equal(found, closed):
+            break
+        closed = found
+    return closed
+
+
+def _lowest(nodes: Nodes) -> NDArray[np.bool_]:
+    """Tell which contacts begin lowest in their force law; they stay closed."""
+    places, bundle = nodes.gap.mean(axis=(0, 1)), _bundles(nodes)
+    stiff: NDArray[np.bool_] = np.asarray(nodes.stiffness.any(axis=(0, 1)))
+    kept = np.zeros(places.size, dtype=bool)
+    for number in np.unique(bundle):
+        members = np.flatnonzero(bundle == number)
+        carrying = members[stiff[members]]
+        kept[members[~stiff[members]]] = True
+        if carrying.size:
+            kept[carrying[np.argmin(places[carrying])]] = True
+    return kept
+
+
+def _equilibrium(system: System, nodes: Nodes, carrying: Array) -> Array:
+    """Position at rest at every phase, (rows, stages, n); free motions get no displacement."""
+    outer = np.einsum("rsji,rsjk->rsjik", nodes.force_direction, nodes.direction)
+    stiffness = system.stiffness + np.einsum("rsj,rsjik->rsik", carrying, outer)
+    shift = carrying * (nodes.error + nodes.gap)
+    force = nodes.force + np.einsum("rsj,rsji->rsi", shift, nodes.force_direction)
+    scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
+    inverse = np.linalg.pinv(stiffness * np.outer(scale, scale), rcond=1e-12)
+    return np.asarray(scale * np.einsum("rsik,rsk->rsi", inverse, scale * force))
+
+
+def _bundles(nodes: Nodes) -> NDArray[np.int64]:
+    """Number the force laws: contacts with the same direction and error belong to one."""
+    count = nodes.stiffness.shape[2]
+    numbers = np.arange(count)
+    for j in range(count):
+        for i in range(j):
+            pairs = (nodes.direction[:, :, (i, j)], nodes.error[:, :, (i, j)])
+            if all(np.array_equal(both[:, :, 0], both[:, :, 1]) for both in pairs):
+                numbers[j] = numbers[i]
+                break
+    return numbers

@@ -1,0 +1,394 @@
+"""Shafts as chains of discs, and drives with several meshes put together from them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.dynamics.gear_pair import Driver
+from tribodyn.dynamics.system import Contact, Entry, System
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+
+__all__ = ["Body", "GearMesh", "assemble", "row_of", "shaft_chain", "torsional_stiffness"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A part of a drive without its meshes.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of its coordinates: ``<disc>_theta``, and ``<disc>_x``, ``<disc>_y`` if it can move.
+    mass, damping, stiffness : (n, n) array
+        Matrices of the part [kg or kg*m^2, N*s/m or N*m*s, N/m or N*m].
+    """
+
+    names: tuple[str, ...]
+    mass: Array
+    damping: Array
+    stiffness: Array
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"Body({', '.join(self.names)})"
+
+
+@dataclass(frozen=True)
+class GearMesh:
+    """A mesh between two discs of a drive.
+
+    Parameters
+    ----------
+    pinion, wheel : str
+        Names of the two discs.
+    base_radius : (2,) array
+        Base radii (pinion, wheel) [m].
+    stiffness : float or function
+        Mesh stiffness over the mesh phase [N/m].
+    damping : float or function
+        Damping along the line of action [N*s/m].
+    error : float or function
+        Displacement error taken off the compression [m].
+    backlash : float
+        Total play along the line of action [m]. Zero keeps the flanks together.
+    events : tuple of float
+        Mesh phases at which an entry jumps.
+    driver : "pinion" or "wheel"
+        Which gear drives the other.
+    line_angle : float
+        Direction of the line of action from the driving to the driven gear in the plane of x and
+        y, from x to y, for the pinion driving [rad].
+    friction : object, optional
+        With ``friction_sum``, ``friction_moment_pinion`` and ``friction_moment_wheel`` over the
+        mesh phase, such as ``mesh_table.functions()``.
+    cycles : int
+        Mesh cycles of this mesh in the common cycle of all meshes.
+    lag : float
+        Mesh phase of this mesh where the common cycle begins, in [0, 1) [1].
+    """
+
+    pinion: str
+    wheel: str
+    base_radius: ArrayLike
+    stiffness: Entry
+    damping: Entry = 0.0
+    error: Entry = 0.0
+    backlash: float = 0.0
+    events: tuple[float, ...] = (0.0,)
+    driver: Driver = "pinion"
+    line_angle: float = 0.5 * np.pi
+    friction: Any = None
+    cycles: int = 1
+    lag: float = 0.0
+
+
+def torsional_stiffness(
+    diameter: float, length: float, *, bore: float = 0.0, shear_modulus: float = 79.3e9
+) -> float:
+    """Torsional stiffness of a round shaft.
+
+    Parameters
+    ----------
+    diameter : float
+        Outer diameter [m].
+    length : float
+        Length [m].
+    bore : float
+        Diameter of the bore [m].
+    shear_modulus : float
+        Shear modulus [Pa].
+
+    Returns
+    -------
+    float
+        ``pi G (D^4 - d^4)/(32 L)`` [N*m/rad].
+
+    Raises
+    ------
+    InputError
+        If a size is not positive, or the bore is not smaller than the shaft.
+
+    Examples
+    --------
+    >>> round(torsional_stiffness(0.03, 0.1), 1)
+    63060.6
+    """
+    require_positive("diameter", diameter, "m")
+    require_positive("length", length, "m")
+    require_positive("shear_modulus", shear_modulus, "Pa")
+    require_between("bore", bore, 0.0, float(np.nextafter(diameter, 0.0)), "m")
+    return float(np.pi * shear_modulus * (diameter**4 - bore**4) / (32.0 * length))
+
+
+def shaft_chain(
+    names: Sequence[str],
+    moment_of_inertia: ArrayLike,
+    stiffness: ArrayLike = (),
+    *,
+    damping: ArrayLike = 0.0,
+    mass: ArrayLike | None = None,
+    bearing_stiffness: ArrayLike = 0.0,
+    bearing_damping: ArrayLike = 0.0,
+) -> Body:
+    """Build a shaft as discs with torsion springs between them.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the discs from one end to the other; one disc makes a rigid shaft.
+    moment_of_inertia : float or (discs,) array
+        Polar moments of inertia of the discs [kg*m^2].
+    stiffness : float or (discs - 1,) array
+        Torsional stiffness between neighbours [N*m/rad].
+    damping : float or (discs - 1,) array
+        Torsional damping between neighbours [N*m*s/rad].
+    mass : float or (discs,) array, optional
+        Masses of the discs [kg]; without them the discs only turn.
+    bearing_stiffness : float or (discs,) array
+        Radial stiffness of the support of each disc, the same in x and y [N/m].
+    bearing_damping : float or (discs,) array
+        Radial damping of the support of each disc [N*s/m].
+
+    Returns
+    -------
+    Body
+        Coordinates ``<disc>_theta``, with masses ``<disc>_x``, ``<disc>_y``, ``<disc>_theta``.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range or there are not as many as needed.
+
+    Examples
+    --------
+    >>> shaft_chain(["motor", "gear"], [2e-3, 1e-3], 5e4).stiffness
+    array([[ 50000., -50000.],
+           [-50000.,  50000.]])
+    """
+    count = len(names)
+    inertia = row_of("moment_of_inertia", moment_of_inertia, count, "kg*m^2")
+    springs = row_of("stiffness", stiffness, count - 1, "N*m/rad")
+    dampers = row_of("damping", damping, count - 1, "N*m*s/rad", positive=False)
+    turn_stiffness, turn_damping = _chain(springs), _chain(dampers)
+    if mass is None:
+        turning = tuple(f"{name}_theta" for name in names)
+        return Body(turning, np.diag(inertia), turn_damping, turn_stiffness)
+    masses = row_of("mass", mass, count, "kg")
+    support = row_of("bearing_stiffness", bearing_stiffness, count, "N/m", positive=False)
+    losses = row_of("bearing_damping", bearing_damping, count, "N*s/m", positive=False)
+
+    def whole(radial: Array, turn: Array) -> Array:
+        out = np.diag(np.stack((radial, radial, np.zeros(count)), axis=1).reshape(-1))
+        out[2::3, 2::3] = turn
+        return out
+
+    return Body(
+        tuple(f"{name}_{axis}" for name in names for axis in ("x", "y", "theta")),
+        whole(masses, np.diag(inertia)),
+        whole(losses, turn_damping),
+        whole(support, turn_stiffness),
+    )
+
+
+def row_of(name: str, value: ArrayLike, count: int, unit: str, *, positive: bool = True) -> Array:
+    """Read one value for all discs, or one for each.
+
+    Parameters
+    ----------
+    name : str
+        Argument name for messages.
+    value : float or (count,) array
+        Value in ``unit``.
+    count : int
+        Number of values.
+    unit : str
+        Unit for messages.
+    positive : bool
+        Whether zero is refused too.
+
+    Returns
+    -------
+    (count,) array
+
+    Raises
+    ------
+    InputError
+        If there are neither one nor ``count`` values, or one is out of range.
+    """
+    array = np.asarray(value, dtype=float)
+    if array.shape not in ((), (count,)):
+        raise InputError(
+            Problem(
+                what=f"{name} has the shape {array.shape}",
+                where=f"argument {name}",
+                why=f"Give one value, or {count} of them",
+            )
+        )
+    if positive:
+        require_positive(name, array, unit)
+    else:
+        require_between(name, array, 0.0, np.inf, unit)
+    return np.broadcast_to(array, (count,)).astype(float)
+
+
+def _chain(springs: Array) -> Array:
+    out = np.zeros((springs.size + 1, springs.size + 1))
+    for i, spring in enumerate(springs):
+        out[i : i + 2, i : i + 2] += spring * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return out
+
+
+def assemble(
+    bodies: Sequence[Body],
+    meshes: Sequence[GearMesh],
+    torque: Mapping[str, float],
+    *,
+    balance: str | None = None,
+) -> System:
+    """Put a drive together.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Shafts; no disc may occur twice.
+    meshes : sequence of GearMesh
+        One contact each.
+    torque : mapping of str to float
+        Torque on discs by name, positive in the running sense: positive where power enters
+        [N*m].
+    balance : str, optional
+        Disc whose torque is found so that the drive keeps its mean speed.
+
+    Returns
+    -------
+    System
+        All angles are positive in the running sense of their shaft. The mesh phase is that of the
+        common cycle: of a mesh with ``cycles = 3`` three mesh cycles pass in it.
+
+    Raises
+    ------
+    InputError
+        If a disc is named twice or is not there, or a value is out of range.
+
+    Examples
+    --------
+    >>> gears = [shaft_chain([name], 1e-3) for name in ("pinion", "idler", "wheel")]
+    >>> teeth = [GearMesh("pinion", "idler", (0.03, 0.04), 3e8),
+    ...          GearMesh("idler", "wheel", (0.04, 0.05), 3e8)]
+    >>> assemble(gears, teeth, {"pinion": 90.0, "wheel": -150.0})
+    System(3 coordinates, 2 contacts)
+    """
+    names = tuple(name for body in bodies for name in body.names)
+    doubled = sorted({name for name in names if names.count(name) > 1})
+    if doubled:
+        raise InputError(
+            Problem(
+                what=f'two bodies have a coordinate "{doubled[0]}"',
+                where="argument bodies",
+                why="Each disc needs a name of its own",
+            )
+        )
+    force = np.zeros(len(names))
+    for disc, value in torque.items():
+        force[_column(names, disc, "argument torque")] = value
+    direction = None
+    if balance is not None:
+        direction = np.zeros(len(names))
+        direction[_column(names, balance, "argument balance")] = 1.0
+    return System(
+        mass=_diagonal([body.mass for body in bodies]),
+        damping=_diagonal([body.damping for body in bodies]),
+        stiffness=_diagonal([body.stiffness for body in bodies]),
+        force=force,
+        contacts=[_contact(names, mesh) for mesh in meshes],
+        names=names,
+        balance=direction,
+    )
+
+
+def _diagonal(blocks: Sequence[Array]) -> Array:
+    size = sum(len(block) for block in blocks)
+    out, first = np.zeros((size, size)), 0
+    for block in blocks:
+        out[first : first + len(block), first : first + len(block)] = block
+        first += len(block)
+    return out
+
+
+def _column(names: tuple[str, ...], disc: str, where: str) -> int:
+    if f"{disc}_theta" not in names:
+        known = ", ".join(name.removesuffix("_theta") for name in names if name.endswith("_theta"))
+        raise InputError(
+            Problem(what=f'there is no disc "{disc}"', where=where, remedy=f"Known: {known}")
+        )
+    return names.index(f"{disc}_theta")
+
+
+def _along(names: tuple[str, ...], mesh: GearMesh, radial: Array, turns: Sequence[Any]) -> Any:
+    """Vector over the coordinates: ``radial`` on the pinion, less on the wheel, and both turns."""
+    columns = [np.zeros_like(np.asarray(turns[0], dtype=float)) for _ in names]
+    for disc, sign, turn in zip((mesh.pinion, mesh.wheel), (1.0, -1.0), turns, strict=True):
+        columns[_column(names, disc, "argument meshes")] = sign * np.asarray(turn)
+        for axis, part in zip(("x", "y"), radial, strict=True):
+            if f"{disc}_{axis}" in names:
+                columns[names.index(f"{disc}_{axis}")] = sign * part
+    return np.stack([np.broadcast_to(c, np.shape(turns[0])) for c in columns], axis=-1)
+
+
+def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
+    require_between("backlash", mesh.backlash, 0.0, np.inf, "m")
+    require_between("lag", mesh.lag, 0.0, 1.0, "")
+    if int(mesh.cycles) != mesh.cycles or mesh.cycles < 1:
+        raise InputError(
+            Problem(what=f"cycles = {mesh.cycles}", where="GearMesh.cycles", why="A whole number")
+        )
+    if mesh.driver not in ("pinion", "wheel"):
+        raise InputError(
+            Problem(
+                what=f'driver = "{mesh.driver}"',
+                where="GearMesh.driver",
+                why='"pinion" or "wheel"',
+            )
+        )
+    radii = row_of("base_radius", mesh.base_radius, 2, "m")
+    along = np.array([np.cos(mesh.line_angle), np.sin(mesh.line_angle)])
+    along[np.abs(along) < 1e-15] = 0.0
+    across = np.array([along[1], -along[0]])
+    sense = 1.0 if mesh.driver == "pinion" else -1.0
+    own = mesh.friction
+
+    def rub(phase: Array) -> Array:
+        part = np.multiply.outer(across, np.asarray(own.friction_sum(phase), dtype=float))
+        turns = (own.friction_moment_pinion(phase), own.friction_moment_wheel(phase))
+        return np.asarray(_along(names, mesh, part, turns))
+
+    return Contact(
+        direction=sense * _along(names, mesh, along, tuple(radii)),
+        stiffness=_shifted(mesh, mesh.stiffness),
+        damping=_shifted(mesh, mesh.damping),
+        error=_shifted(mesh, mesh.error),
+        gap=0.5 * mesh.backlash,
+        friction=None if own is None else _shifted(mesh, rub),
+        events=tuple(
+            sorted(
+                (event - mesh.lag + cycle) / mesh.cycles % 1.0 % 1.0
+                for event in {0.0, *mesh.events}
+                for cycle in range(mesh.cycles)
+            )
+        ),
+    )
+
+
+def _shifted(mesh: GearMesh, entry: Entry) -> Entry:
+    """Entry over the phase of the common cycle."""
+    if not callable(entry) or (mesh.cycles == 1 and mesh.lag == 0.0):
+        return entry
+    function: Callable[[Array], Any] = entry
+    return lambda phase: function((mesh.cycles * phase + mesh.lag) % 1.0)

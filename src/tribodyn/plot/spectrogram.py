@@ -1,0 +1,182 @@
+"""Amplitude over time and frequency as a map in colours."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.plot.labels import axis_label, readable, significant
+from tribodyn.plot.registry import drawing
+from tribodyn.plot.style import GRID, INK, MUTED, TOTAL, Panel, line, stack
+
+__all__ = ["MAP_HEIGHT", "amplitude_heatmap", "amplitude_label", "spectrogram", "with_unit"]
+
+Array = NDArray[np.float64]
+
+#: From silence to the largest amplitude, and the decades between them.
+_SCALE = [[0.0, "#ffffff"], [0.35, "#c6dbef"], [0.6, "#6baed6"], [0.8, "#2171b5"], [1.0, "#08306b"]]
+_DECADES = 3
+#: Height of the map relative to the curves below it.
+MAP_HEIGHT = 1.9
+#: Most cells along each side: more than the pixels of the panel show nothing more.
+_MOST = 480
+_BAR = {"len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
+
+
+def with_unit(value: float, unit: str) -> str:
+    """Write an amplitude with three digits and its unit.
+
+    Parameters
+    ----------
+    value : float
+        Amplitude in ``unit``.
+    unit : str
+        Unit in plain characters.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> with_unit(1.2345, "m/s^2")
+    '1.23 m/s²'
+    """
+    return f"{significant(value)} {readable(unit)}".rstrip()
+
+
+def amplitude_label(unit: str) -> str:
+    """Label an axis of amplitudes.
+
+    Parameters
+    ----------
+    unit : str
+        Unit in plain characters.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> amplitude_label("um")
+    'Amplitude [µm]'
+    """
+    return f"Amplitude [{readable(unit)}]" if unit else "Amplitude"
+
+
+def amplitude_heatmap(
+    x: Array, y: Array, amplitude: Array, unit: str, hover: str
+) -> dict[str, Any]:
+    """Describe a map of amplitudes on a logarithmic scale of colours.
+
+    Parameters
+    ----------
+    x : (m,) array
+        Places along the horizontal axis, in display units.
+    y : (k,) array
+        Places along the vertical axis, in display units.
+    amplitude : (k, m) array
+        Amplitudes in ``unit``.
+    unit : str
+        Unit in plain characters.
+    hover : str
+        Plotly template of the place under the pointer.
+
+    Returns
+    -------
+    dict
+        A plotly heatmap. Three decades below the largest amplitude are told apart; of more
+        cells than the panel has pixels, the largest of each group is kept.
+    """
+    rows, columns = (-(-size // _MOST) for size in amplitude.shape)
+    across, along = np.arange(0, x.size, columns), np.arange(0, y.size, rows)
+    most = np.maximum.reduceat(np.maximum.reduceat(amplitude, along, axis=0), across, axis=1)
+    largest = float(most.max()) or 1.0
+    decades = np.log10(np.maximum(most / largest, 10.0**-_DECADES))
+    ticks = np.arange(-_DECADES, 1)
+    return {
+        "type": "heatmap",
+        "x": np.add.reduceat(x, across) / np.diff(np.append(across, x.size)),
+        "y": np.add.reduceat(y, along) / np.diff(np.append(along, y.size)),
+        "z": np.round(decades, 3),
+        "zmin": -_DECADES,
+        "zmax": 0,
+        "customdata": most,
+        "colorscale": _SCALE,
+        "colorbar": {
+            **_BAR,
+            "title": {
+                "text": f"[{readable(unit)}]" if unit else "",
+                "side": "top",
+                "font": {"size": 13, "color": MUTED},
+            },
+            "tickvals": ticks.tolist(),
+            "ticktext": [significant(largest * 10.0**tick, 2) for tick in ticks.tolist()],
+            "outlinecolor": GRID,
+            "tickfont": {"color": INK},
+        },
+        "hovertemplate": f"{hover}: %{{customdata:.3g}} {readable(unit)}<extra></extra>",
+        "showlegend": False,
+    }
+
+
+def _missing(result: Any) -> str:
+    if hasattr(result, "block_duration"):
+        return ""
+    return (
+        "This figure shows amplitudes over time and frequency. Call tribodyn.analysis.spectrogram "
+        "on a signal and tribodyn.plot.spectrogram.spectrogram on what it returns."
+    )
+
+
+@drawing(
+    "spectrogram",
+    heading="Spectrogram",
+    caption="Which frequencies are there at what time. Lines that rise with the speed are orders "
+    "of a shaft; level ones are natural frequencies. Below, the rms over time.",
+    missing=_missing,
+)
+def spectrogram(result: Any) -> Any:
+    """Draw amplitudes over time and frequency, and the rms over time.
+
+    Parameters
+    ----------
+    result : Spectrogram
+        What :func:`tribodyn.analysis.spectrogram` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    number, block = result.strongest()
+    frequency, moment = float(result.frequency[number]), float(result.time[block])
+    panels = [
+        Panel(
+            axis_label("frequency"),
+            [
+                amplitude_heatmap(
+                    result.time,
+                    result.frequency[1:],
+                    result.amplitude[1:],
+                    result.unit,
+                    "%{y:.5g} Hz at %{x:.4g} s",
+                )
+            ],
+            height=MAP_HEIGHT,
+        ),
+        Panel(
+            f"Rms [{readable(result.unit)}]" if result.unit else "Rms",
+            [line(result.time, result.rms(), "rms", TOTAL, unit=readable(result.unit))],
+            {"rangemode": "tozero"},
+        ),
+    ]
+    made = stack(
+        f"Strongest at {significant(frequency)} Hz after {significant(moment)} s: "
+        f"{with_unit(float(result.amplitude[number, block]), result.unit)}",
+        "Time [s]",
+        panels,
+    )
+    return made.update_layout(hovermode="closest")

@@ -1,0 +1,132 @@
+"""The motion of a case over one of its values: jumps, doubled periods, chaos."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.assembly import system_of
+from tribodyn.study.collect import collected
+from tribodyn.study.damping import damping_of
+from tribodyn.study.pipeline import _mesh
+from tribodyn.study.places import placed
+from tribodyn.study.provenance import effective
+from tribodyn.study.steps import steps_of
+
+if TYPE_CHECKING:
+    from tribodyn.analysis.bifurcation_result import Bifurcation
+    from tribodyn.dynamics import System
+    from tribodyn.study.case import Case
+
+__all__ = ["bifurcation"]
+
+#: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
+_COARSER, _FEWEST = 4, 512
+
+
+def bifurcation(
+    case: Case,
+    over: str = "operation.speed",
+    between: tuple[Any, Any] | None = None,
+    points: int = 300,
+    *,
+    steps: int | None = None,
+    progress: Progress = SILENT,
+    **options: Any,
+) -> Bifurcation:
+    """Follow the motion of a case over one of its values.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    over : str
+        Dotted key of the value that varies.
+    between : tuple
+        Its two ends: floats in SI, or text with a unit.
+    points : int
+        Values, evenly spaced, the ends included.
+    steps : int, optional
+        Steps per mesh cycle; those of the case, else a quarter of what a single run takes and at
+        least 512. Every motion is judged by a repetition with half the step.
+    progress : Progress
+        Told how far the study has come; silent by default.
+    **options : object
+        ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict`` and ``exponents``
+        of :func:`tribodyn.analysis.bifurcation`.
+
+    Returns
+    -------
+    Bifurcation
+        Its parameter is in the unit of the key, SI.
+
+    Raises
+    ------
+    InputError
+        If the key is unknown or not a number, or a value is out of range.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness")
+    >>> found = bifurcation(case, between=("1800 rpm", "2000 rpm"), points=2, transient=20)
+    >>> found.parameter_name, found.parameter.round(1).tolist()
+    ('operation.speed', [188.5, 209.4])
+    """
+    from tribodyn.analysis import bifurcation as compute
+
+    values = _values(case, over, between, points)
+    systems: list[System] = []
+    frequency, counts = [], []
+    progress.start("tooth contact", len(values))
+    with placed(case), collected():
+        for value in values:
+            changed = case.replace({over: float(value)})
+            mesh = _mesh(changed)
+            systems.append(system_of(changed, mesh, damping_of(changed, mesh)))
+            frequency.append(mesh.mesh_frequency)
+            counts.append(steps or _steps(changed, systems[-1], mesh.mesh_frequency))
+            progress.advance()
+    progress.finish()
+    return compute(
+        systems,
+        frequency,
+        parameter=values,
+        parameter_name=over,
+        parameter_unit=_unit(case, over),
+        steps=counts,
+        progress=progress,
+        **options,
+    )
+
+
+def _steps(case: Case, system: System, mesh_frequency: float) -> int:
+    accurate = steps_of(case, system, mesh_frequency)
+    return case.solver.steps_per_mesh_cycle or max(_FEWEST, accurate // _COARSER)
+
+
+def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int) -> Any:
+    """Values of the key in SI; the two ends are checked like the key of the case."""
+    if between is None or len(between) != 2 or int(points) != points or points < 2:
+        raise InputError(
+            Problem(
+                f"between = {between}, points = {points}",
+                "argument between",
+                "A diagram goes from one value to another in at least two points",
+                'Write, for example, between=("400 rpm", "3500 rpm")',
+            )
+        )
+    ends = [effective(case.replace({over: end})).get(over) for end in between]
+    if not all(isinstance(end, float) for end in ends):
+        what = f"{over} is not a number that can vary"
+        raise InputError(Problem(what, "argument over", "", 'For example "operation.speed"'))
+    return np.linspace(cast("float", ends[0]), cast("float", ends[1]), int(points))
+
+
+def _unit(case: Case, over: str) -> str:
+    section, _, name = over.partition(".")
+    spec = type(getattr(case, section)).spec(name)
+    return str(spec.unit) if spec is not None and spec.unit else "-"

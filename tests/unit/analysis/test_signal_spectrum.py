@@ -1,0 +1,139 @@
+"""Spectra of recorded signals: gains of the windows, Parseval, peaks, zoom, spectrogram."""
+
+import numpy as np
+import pytest
+
+from tribodyn.analysis import spectrogram, spectrum, zoom_spectrum
+from tribodyn.errors import InputError
+
+RATE = 1000.0
+TIME = np.arange(1000) / RATE
+#: Largest loss of amplitude between two lines.
+LOSS = {"flattop": 0.0012, "hann": 0.152, "boxcar": 0.364}
+
+
+def wave(frequency, amplitude=3.0, phase=0.4):
+    return amplitude * np.cos(2 * np.pi * frequency * TIME + phase)
+
+
+@pytest.mark.parametrize("window", ["flattop", "hann", "boxcar", "blackman"])
+def test_sine_on_a_line_has_its_amplitude_and_phase(window):
+    made = spectrum(2.0 + wave(50.0), RATE, window=window)
+    line = int(np.argmin(np.abs(made.frequency - 50.0)))
+    assert made.amplitude[line] == pytest.approx(3.0, rel=1e-9)
+    assert made.phase[line] == pytest.approx(0.4, abs=1e-9)
+    assert made.amplitude[0] == pytest.approx(2.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("window", list(LOSS))
+def test_loss_between_lines_is_within_the_stated_bound(window):
+    away = np.linspace(-0.5, 0.5, 11)
+    found = [spectrum(wave(100.0 + d), RATE, window=window).amplitude.max() for d in away]
+    assert min(found) > 3.0 * (1.0 - LOSS[window])
+    assert min(found) < 3.0 * (1.0 - 0.8 * LOSS[window])
+    assert max(found) < 3.0 * 1.001
+
+
+@pytest.mark.parametrize(("window", "bound"), [("flattop", 1e-5), ("hann", 1e-5), ("boxcar", 0.01)])
+def test_peaks_between_lines(window, bound):
+    for away in (-0.48, -0.2, 0.0, 0.31):
+        peak = spectrum(wave(120.0 + away), RATE, window=window).peaks(1)[0]
+        assert peak.frequency == pytest.approx(120.0 + away, abs=2.0 * bound)
+        assert peak.amplitude == pytest.approx(3.0, rel=bound)
+        assert peak.phase == pytest.approx(0.4, abs=5.0 * bound)
+
+
+def test_peaks_come_from_the_largest_down():
+    made = spectrum(wave(50.3, 1.0) + wave(150.2, 4.0) + wave(333.0, 2.0), RATE, window="hann")
+    assert [round(peak.frequency, 2) for peak in made.peaks(3)] == [150.2, 333.0, 50.3]
+    assert len(made.peaks(2)) == 2
+
+
+@pytest.mark.parametrize("size", [999, 1000])
+def test_parseval(size):
+    noise = np.random.default_rng(3).standard_normal(size) + 0.5
+    density = spectrum(noise, RATE, window="boxcar", scaling="density")
+    spacing = density.frequency[1]
+    assert np.sum(density.amplitude) * spacing == pytest.approx(np.mean(noise**2), rel=1e-12)
+    power = spectrum(noise, RATE, window="boxcar", scaling="power")
+    assert np.sum(power.amplitude) == pytest.approx(np.mean(noise**2), rel=1e-12)
+
+
+@pytest.mark.parametrize("window", ["hann", "flattop"])
+def test_density_of_white_noise_is_its_variance_over_half_the_rate(window):
+    noise = 2.0 * np.random.default_rng(4).standard_normal(200_000)
+    made = spectrum(noise, RATE, window=window, scaling="density", block_length=500, unit="N")
+    assert np.median(made.amplitude[5:-5]) == pytest.approx(4.0 / 500.0, rel=0.02)
+    assert made.averages > 300
+    assert made.phase is None
+    assert made.value_unit == "(N)^2/Hz"
+
+
+def test_same_as_scipy_welch():
+    from scipy.signal import welch
+
+    noise = np.random.default_rng(5).standard_normal(5000)
+    made = spectrum(noise, RATE, window="hann", scaling="density", block_length=512)
+    _, other = welch(noise, RATE, "hann", 512, detrend=False)
+    np.testing.assert_allclose(made.amplitude, other, rtol=1e-10)
+
+
+def test_zoom_tells_two_close_lines_apart():
+    made = zoom_spectrum(wave(50.0, 2.0) + wave(56.3, 1.0), RATE, 45.0, 60.0, points=1501)
+    near, far = made.frequency < 53.0, made.frequency > 53.0
+    for part, frequency, amplitude in ((near, 50.0, 2.0), (far, 56.3, 1.0)):
+        top = np.argmax(made.amplitude[part])
+        assert made.frequency[part][top] == pytest.approx(frequency, abs=0.02)
+        assert made.amplitude[part][top] == pytest.approx(amplitude, rel=0.005)
+
+
+def test_spectrogram_follows_a_jump_and_keeps_the_mean_square():
+    signal = np.where(TIME < 0.5, wave(100.0, 1.0), wave(200.0, 3.0))
+    made = spectrogram(signal, RATE, block_length=100, unit="m/s^2")
+    early, late = made.time < 0.4, made.time > 0.6
+    assert made.frequency[made.amplitude[:, early].argmax(axis=0)] == pytest.approx(100.0)
+    assert made.frequency[made.amplitude[:, late].argmax(axis=0)] == pytest.approx(200.0)
+    assert made.amplitude[:, late].max(axis=0) == pytest.approx(3.0, rel=1e-6)
+    assert made.rms()[early] == pytest.approx(1.0 / np.sqrt(2.0), rel=1e-6)
+    assert made.rms()[late] == pytest.approx(3.0 / np.sqrt(2.0), rel=1e-6)
+    assert made.time[0] == pytest.approx(0.05)
+    assert made.to_xarray().sel(frequency=200.0).attrs["units"] == "m/s^2"
+
+
+@pytest.mark.parametrize("length", [99, 100])
+def test_rms_of_a_spectrogram_is_exact_for_any_signal(length):
+    noise = np.random.default_rng(6).standard_normal(length) + 1.0
+    made = spectrogram(noise, RATE, block_length=length, window="boxcar")
+    assert made.rms() == pytest.approx([np.sqrt(np.mean(noise**2))], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"signal": np.append(np.zeros(20), np.nan)}, "sample 20"),
+        ({"signal": np.zeros(5)}, "5 samples"),
+        ({"signal": np.zeros(20, dtype=complex)}, "complex128 values"),
+        ({"signal": ["1 mm"] * 20}, "real numbers"),
+        ({"signal": np.zeros((9, 2))}, "shape"),
+        ({"sampling_rate": 0.0}, "sampling_rate"),
+        ({"scaling": "decibel"}, "no scaling"),
+        ({"window": "door"}, "no window"),
+        ({"block_length": 2000}, "block_length"),
+        ({"overlap": 1.0}, "overlap"),
+    ],
+)
+def test_bad_input_is_refused(change, words):
+    given = {"signal": wave(50.0), "sampling_rate": RATE, **change}
+    with pytest.raises(InputError, match=words):
+        spectrum(given.pop("signal"), given.pop("sampling_rate"), **given)
+
+
+def test_refusals_of_zoom_and_peaks():
+    with pytest.raises(InputError, match="Nyquist"):
+        zoom_spectrum(wave(50.0), RATE, 400.0, 500.0)
+    with pytest.raises(InputError, match="band from 40 to 30"):
+        zoom_spectrum(wave(50.0), RATE, 40.0, 30.0)
+    with pytest.raises(InputError, match="scaling density"):
+        spectrum(wave(50.0), RATE, scaling="density").peaks()
+    assert "(m)^2" in repr(spectrum(wave(50.0), RATE, scaling="power", unit="m"))
+    assert spectrum(wave(50.0), RATE, unit="m").to_xarray().attrs["units"] == "m"

@@ -1,0 +1,71 @@
+"""Figures of natural modes, of the Campbell diagram and of the response to an error."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from known_systems import reference_system
+from tribodyn.dynamics import campbell, forced_response, fzg12, natural_modes
+from tribodyn.errors import InputError
+from tribodyn.plot import FIGURES
+
+
+def curve(figure: Any, name: str, axis: str = "y") -> Any:
+    (found,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
+    return found
+
+
+def test_bars_are_the_energy_shares() -> None:
+    modes = natural_modes(reference_system())
+    figure = modes.plot()
+    assert "77 % of the strain at 5276 Hz" in figure.layout.title.text
+    moving, mesh = curve(figure, "pinion"), curve(figure, "contact 0", "y2")
+    np.testing.assert_allclose(moving.y, 100.0 * modes.body_share()["pinion"][1:])
+    np.testing.assert_allclose(mesh.y, 100.0 * modes.strain_share[1:, -1])
+    assert len(set(mesh.x)) == 5
+    assert figure.layout.barmode == "stack"
+
+
+def test_modes_of_one_frequency_keep_a_bar_each() -> None:
+    modes = natural_modes(fzg12())
+    figure = FIGURES["mode_shapes"](modes)
+    assert len(set(curve(figure, "wheel").x)) == 11
+    looks = [
+        (trace.marker.color, trace.marker.pattern.shape)
+        for trace in figure.data
+        if trace.yaxis == "y2"
+    ]
+    assert len(set(looks)) == len(looks) == 11
+    strains = [np.asarray(trace.y) for trace in figure.data if trace.yaxis == "y2"]
+    np.testing.assert_allclose(sum(strains), 100.0, atol=0.5)
+
+
+def test_campbell_diagram_in_display_units() -> None:
+    diagram = campbell(reference_system(), np.linspace(50.0, 1500.0, 8), teeth=16, orders=(1, 4))
+    figure = diagram.plot()
+    rising = curve(figure, "harmonic 4")
+    assert np.asarray(rising.x)[-1] == pytest.approx(1500.0 * 30.0 / np.pi)
+    assert np.asarray(rising.y)[-1] == pytest.approx(4 * 16 * 1500.0 / (2.0 * np.pi))
+    met = curve(figure, "resonance")
+    assert len(met.x) == len(diagram.resonances)
+    np.testing.assert_allclose(met.y, [each.frequency for each in diagram.resonances])
+    assert "Harmonic 4 meets 5276 Hz, 77 % mesh, at 4947 rpm" in figure.layout.title.text
+    assert [word for word in rising.text if word] == ["4"]
+    none = campbell(reference_system(), [1.0, 2.0], teeth=16, orders=(1,)).plot()
+    assert none.layout.title.text == "None of 1 mesh harmonics meets a natural frequency"
+
+
+def test_response_shows_amplitudes_in_display_units() -> None:
+    response = forced_response(reference_system(), np.linspace(500.0, 9000.0, 18), error=2e-6)
+    figure = response.plot()
+    np.testing.assert_allclose(curve(figure, "mesh force").y, np.abs(response.mesh_force))
+    approach = 1e6 * np.abs(response.transmission_error[:, 0])
+    np.testing.assert_allclose(curve(figure, "approach", "y2").y, approach)
+    assert figure.layout.title.text.startswith("An error of 2.00 µm makes ")
+
+
+@pytest.mark.parametrize("name", ["campbell", "mode_shapes", "forced_response"])
+def test_results_of_other_kinds_are_refused(name: str) -> None:
+    with pytest.raises(InputError, match=r"Call tribodyn\.dynamics"):
+        FIGURES[name](object())
