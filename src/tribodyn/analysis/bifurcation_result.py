@@ -131,6 +131,6 @@ class Bifurcation:
         -------
         plotly.graph_objects.Figure
         """
-        from importlib import import_module
+        from tribodyn.plot import FIGURES
 
-        return import_module("tribodyn.plot").FIGURES["bifurcation"](self)
+        return FIGURES["bifurcation"](self)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -172,3 +172,25 @@ class OrderMap:
             name="amplitude",
             attrs={"units": self.unit or "1", "revolutions": self.revolutions},
         )
+
+    def plot(self) -> Any:
+        """Draw amplitude over order and speed.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["order_map"](self)
+
+    def plot_waterfall(self) -> Any:
+        """Draw the order spectra one behind the other.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["waterfall"](self)

@@ -104,6 +104,17 @@ class Spectrogram:
             attrs={"units": self.unit or "1", "block_duration": self.block_duration},
         )
 
+    def plot(self) -> Any:
+        """Draw amplitude over frequency and time.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["spectrogram"](self)
+
 
 def spectrogram(
     signal: Any,

@@ -32,13 +32,16 @@ from tribodyn.plot.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh_force import mesh_force
 from tribodyn.plot.mesh_stiffness import mesh_stiffness
 from tribodyn.plot.mode_shapes import mode_shapes
+from tribodyn.plot.order_map import order_map
 from tribodyn.plot.path_of_contact import path_of_contact
 from tribodyn.plot.registry import FIGURES, Drawing, drawing
+from tribodyn.plot.spectrogram import spectrogram
 from tribodyn.plot.spectrum import spectrum
 from tribodyn.plot.static_stiffness import static_stiffness
 from tribodyn.plot.static_transmission_error import static_transmission_error
 from tribodyn.plot.tip_relief_map import tip_relief_map
 from tribodyn.plot.transmission_error import transmission_error
+from tribodyn.plot.waterfall import waterfall
 
 __all__ = [
     "FIGURES",
@@ -73,10 +76,13 @@ __all__ = [
     "mesh_force",
     "mesh_stiffness",
     "mode_shapes",
+    "order_map",
     "path_of_contact",
+    "spectrogram",
     "spectrum",
     "static_stiffness",
     "static_transmission_error",
     "tip_relief_map",
     "transmission_error",
+    "waterfall",
 ]

@@ -54,7 +54,10 @@ OTHERS = {
     "loaded_sharing",
     "mesh_deformation",
     "mode_shapes",
+    "order_map",
+    "spectrogram",
     "tip_relief_map",
+    "waterfall",
 }
 
 
