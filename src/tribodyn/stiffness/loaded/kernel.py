@@ -262,7 +262,10 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                     return status
                 delta[t, p] = start
                 tangent[t, p] = sums[1]
-                force[t, p] = f
+                # One by one: the copy of arrays brings its error messages, slow to compile.
+                for s in range(slices):
+                    for i in range(n):
+                        force[t, p, s, i] = f[s, i]
         return 0
 
     @nb.njit(cache=True, **_JIT)
@@ -301,7 +304,8 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         for p in range(A.shape[0]):
             for i in range(n):
                 # The pair itself is kept apart; neighbours may pull its teeth together.
-                alone[:] = gaps[p, 0]
+                for j in range(n):
+                    alone[j] = gaps[p, 0, j]
                 alone[i] = _APART
                 low, high = gaps[p, 0].min(), most[p]
                 found[p, i] = min(low, high)
