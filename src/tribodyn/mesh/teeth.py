@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.contact import PathOfContact
-from tribodyn.errors import ComputationError, Problem
 from tribodyn.gear import Material
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
+from tribodyn.stiffness.model import usable_stiffness
 
-__all__ = ["LEAST_SHARE", "Carried", "Teeth", "teeth_of", "usable_stiffness"]
+__all__ = ["LEAST_SHARE", "Carried", "Teeth", "teeth_of"]
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -184,43 +184,6 @@ class Teeth:
         return float(alone[self.problem.places.on_path].max())
 
 
-def usable_stiffness(found: FloatArray, in_contact: BoolArray, model: str) -> FloatArray:
-    """Check what a stiffness model gave; models of third parties are checked here once for all.
-
-    Parameters
-    ----------
-    found : array
-        What the model returned [N/m].
-    in_contact : bool array (n, pairs)
-        Whether the pair is in contact.
-    model : str
-        Name of the model.
-
-    Returns
-    -------
-    array (n, pairs) [N/m]
-
-    Raises
-    ------
-    ComputationError
-        If a pair in contact has no stiffness.
-    """
-    stiffness = np.asarray(found)
-    sound = stiffness.shape == in_contact.shape and bool(
-        np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))
-    )
-    if not sound:
-        raise ComputationError(
-            Problem(
-                what=f'the stiffness model "{model}" gave no usable pair stiffness',
-                where="stiffness of the tooth pairs",
-                why="It must be finite and positive where a pair is in contact, zero elsewhere",
-                remedy="Check the options of the model, or choose another",
-            )
-        )
-    return stiffness
-
-
 def teeth_of(
     contact: PathOfContact,
     places: tuple[FloatArray, FloatArray, BoolArray],
@@ -272,6 +235,10 @@ def teeth_of(
     )
     stiffness = None
     if not chosen.coupled and not pair.has_modification:
-        found = chosen(pair, material, path, in_contact, phase, total_force, **options)
-        stiffness = usable_stiffness(found, in_contact, model)
+        if chosen.influence is None:
+            own = np.diagonal(problem.compliance.structure, axis1=1, axis2=2)
+            stiffness = np.where(in_contact, pair.common_face_width / own, 0.0)
+        else:
+            found = chosen(pair, material, path, in_contact, phase, total_force, **options)
+            stiffness = usable_stiffness(found, in_contact, model)
     return Teeth(in_contact, total_force, stiffness, problem)

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.registry import Registry
 from tribodyn.stiffness.influence import GearInfluence
 
-__all__ = ["MODELS", "StiffnessModel", "share_equally"]
+__all__ = ["MODELS", "StiffnessModel", "share_equally", "usable_stiffness"]
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -135,3 +135,40 @@ def share_equally(total: FloatArray, in_contact: BoolArray) -> FloatArray:
     array([[1.5e+08, 1.5e+08, 0.0e+00]])
     """
     return np.where(in_contact, (total / in_contact.sum(axis=1))[:, None], 0.0)
+
+
+def usable_stiffness(found: FloatArray, in_contact: BoolArray, model: str) -> FloatArray:
+    """Check what a stiffness model gave; models of third parties are checked here once for all.
+
+    Parameters
+    ----------
+    found : array
+        What the model returned [N/m].
+    in_contact : bool array (n, pairs)
+        Whether the pair is in contact.
+    model : str
+        Name of the model.
+
+    Returns
+    -------
+    array (n, pairs) [N/m]
+
+    Raises
+    ------
+    ComputationError
+        If a pair in contact has no stiffness.
+    """
+    stiffness = np.asarray(found)
+    sound = stiffness.shape == in_contact.shape and bool(
+        np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))
+    )
+    if not sound:
+        raise ComputationError(
+            Problem(
+                what=f'the stiffness model "{model}" gave no usable pair stiffness',
+                where="stiffness of the tooth pairs",
+                why="It must be finite and positive where a pair is in contact, zero elsewhere",
+                remedy="Check the options of the model, or choose another",
+            )
+        )
+    return stiffness

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.operating_points import operation_values
+from tribodyn.study.operating_points import pinion_speeds, pinion_torques
 from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
 
@@ -64,12 +64,11 @@ def film_over_operation(
         remedy = 'Choose one: case.replace({"film.model": "newton"})'
         raise InputError(Problem('film.model = "none"', "argument case", "No film", remedy))
     pair = case.gear_pair
-    turns = pair.ratio if case.operation.speed_of == "wheel" else 1.0
     with placed(case):
         return compute(
             pair,
-            pinion_torque=[value / turns for value in operation_values("torque", torque, case)],
-            pinion_speed=[value * turns for value in operation_values("speed", speed, case)],
+            pinion_torque=pinion_torques(case, torque),
+            pinion_speed=pinion_speeds(case, speed),
             progress=progress,
             **model_settings(case),
         )

@@ -14,7 +14,7 @@ from tribodyn.study.values import Plain, read_value
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["operation_values"]
+__all__ = ["operation_values", "pinion_speeds", "pinion_torques"]
 
 
 def operation_values(name: str, given: Any, case: Case) -> list[float]:
@@ -49,3 +49,42 @@ def operation_values(name: str, given: Any, case: Case) -> list[float]:
         told = error.context or {}
         problem = Problem(told["what"], f"argument {name}", told["why"], told["remedy"])
         raise InputError(problem) from None
+
+
+def pinion_torques(case: Case, given: Any) -> list[float]:
+    """Read torques on the gear named by ``operation.speed_of`` as those of the pinion.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    given : float, str, list or None
+        As for :func:`operation_values`.
+
+    Returns
+    -------
+    list of float [N*m]
+    """
+    return [value / _turns(case) for value in operation_values("torque", given, case)]
+
+
+def pinion_speeds(case: Case, given: Any) -> list[float]:
+    """Read speeds of the gear named by ``operation.speed_of`` as those of the pinion.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    given : float, str, list or None
+        As for :func:`operation_values`.
+
+    Returns
+    -------
+    list of float [rad/s]
+    """
+    return [value * _turns(case) for value in operation_values("speed", given, case)]
+
+
+def _turns(case: Case) -> float:
+    """Turns of the pinion for one of the gear that speed and torque refer to."""
+    return case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0

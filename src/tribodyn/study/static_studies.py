@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.modification import Modification
-from tribodyn.study.operating_points import operation_values
+from tribodyn.study.operating_points import pinion_speeds, pinion_torques
 from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
 from tribodyn.study.transmission_error import loaded_settings
@@ -26,12 +26,6 @@ __all__ = ["comprehensive_stiffness", "harris_map", "optimize_tip_relief"]
 #: Torques of a map over those of the case.
 _RANGE = (0.1, 2.0)
 _TORQUES = 20
-
-
-def _pinion_torques(case: Case, torque: Any) -> list[float]:
-    """Torques on the pinion from those of the case or of the user."""
-    turns = case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
-    return [value / turns for value in operation_values("torque", torque, case)]
 
 
 def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> HarrisMap:
@@ -70,7 +64,7 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     """
     from tribodyn.stiffness import transmission_error_over_torque
 
-    torques = _pinion_torques(case, torque)
+    torques = pinion_torques(case, torque)
     if torque is None:
         torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
     with placed(case):
@@ -119,7 +113,7 @@ def optimize_tip_relief(
     """
     from tribodyn.stiffness import optimize_tip_relief as compute
 
-    torques = _pinion_torques(case, torque)
+    torques = pinion_torques(case, torque)
     if torque is None:
         torques = [0.5 * torques[0], torques[0]]
     with placed(case):
@@ -196,15 +190,14 @@ def comprehensive_stiffness(
     """
     from tribodyn.mesh import comprehensive_stiffness as compute
 
-    turns = case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
     settings = model_settings(case)
     settings.pop("composite_roughness")
     asked = settings["film_options"].get("stiffness", "none")
     with placed(case):
         return compute(
             case.gear_pair,
-            pinion_torque=_pinion_torques(case, torque),
-            pinion_speed=[value * turns for value in operation_values("speed", speed, case)],
+            pinion_torque=pinion_torques(case, torque),
+            pinion_speed=pinion_speeds(case, speed),
             kind=kind or ("tangent" if asked == "none" else asked),
             steps=steps,
             progress=progress,

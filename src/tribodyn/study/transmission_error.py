@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.study.operating_points import operation_values
+from tribodyn.study.operating_points import pinion_torques
 from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
 
@@ -73,11 +73,9 @@ def loaded_contact(case: Case, *, torque: Any = None, phases: int = 64) -> Loade
     """
     from tribodyn.stiffness import loaded_contact as compute
 
-    pair = case.gear_pair
-    turns = pair.ratio if case.operation.speed_of == "wheel" else 1.0
-    values = [value / turns for value in operation_values("torque", torque, case)]
+    values = pinion_torques(case, torque)
     single = torque is None or isinstance(torque, int | float | str)
     with placed(case):
         return compute(
-            pair, values[0] if single else values, phases=phases, **loaded_settings(case)
+            case.gear_pair, values[0] if single else values, phases=phases, **loaded_settings(case)
         )

@@ -9,9 +9,9 @@ import pytest
 
 from known_pairs import pair_of, standard, type_c
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import InputError
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import FlankModification, Material
-from tribodyn.stiffness import MODELS, loaded_contact, single_pair_stiffness
+from tribodyn.stiffness import MODELS, StiffnessModel, loaded_contact, single_pair_stiffness
 
 PAIRS = {"A": pair_of(), "C": type_c(), "20/60": standard((20, 60), 20e-3)}
 
@@ -272,3 +272,15 @@ def test_what_is_wrong_is_named():
         ).transmission_error_harmonics(1)
     with pytest.raises(InputError, match="less than half"):
         loaded_contact(pair, 5.0, provider="analytic", phases=8).transmission_error_harmonics(4)
+
+
+@pytest.mark.parametrize("flaw", [np.nan, 0.0, -1e8])
+def test_a_model_without_a_usable_stiffness_is_refused(flaw, monkeypatch):
+    def poor(pair, material, path, in_contact, phase, normal_force, **options):
+        stiffness = np.where(in_contact, 2e8, 0.0)
+        stiffness[3, np.flatnonzero(in_contact[3])[0]] = flaw
+        return stiffness
+
+    monkeypatch.setitem(MODELS._items, "poor", StiffnessModel("poor", poor, {}))
+    with pytest.raises(ComputationError, match='"poor" gave no usable pair stiffness'):
+        loaded_contact(pair_of(), 90.0, provider="poor")

@@ -127,7 +127,8 @@ def test_values_are_replaced_and_taken_back() -> None:
     relieved = case.replace({f"{PINION}.tip_relief": "10 um", f"{WHEEL}.tip_relief": 12e-6})
     assert relieved.gear_pair.pinion.modification.tip_relief == pytest.approx(10e-6)
     assert relieved.gear_pair.wheel.modification.tip_relief == pytest.approx(12e-6)
-    assert relieved.gears.pinion.modification is not None
+    assert relieved.gears.pinion.modification.tip_relief == pytest.approx(10e-6)
+    assert case.gears.pinion.modification is None
     assert relieved != case
     assert relieved.replace({PINION: None, WHEEL: None}) == case
     one = relieved.replace({f"{WHEEL}.tip_relief": None})
@@ -227,7 +228,6 @@ def test_a_single_profile_over_diameters(saved: Saved) -> None:
     text = "diameter,deviation\nmm,um\n70,0\n90,8\n"
     pair = td.load_case(saved(text, 'profile_map_interpolation = "cubic"')).gear_pair
     chart = pair.pinion.modification.profile_map
-    assert chart is not None
     assert (chart.coordinate, chart.interpolation) == ("diameter", "cubic")
     radius = np.sqrt(40e-3**2 - pair.pinion.base_radius**2)
     assert float(chart.at(radius, 0.0, base_radius=pair.pinion.base_radius)) == pytest.approx(4e-6)
@@ -257,7 +257,6 @@ def test_in_python_a_path_begins_at_the_working_directory(
 ) -> None:
     monkeypatch.chdir(saved(MAP).parent)
     case: Case = td.load_case("fzg-roughness").replace({f"{PINION}.profile_map": "flank.csv"})
-    assert case.gears.pinion.modification is not None
     named = case.gears.pinion.modification.profile_map
     assert named == os.path.join(os.getcwd(), "flank.csv")
     assert case.gear_pair.has_profile_modification

@@ -26,7 +26,7 @@ from tribodyn.stiffness.loaded.structure import (
     coupled_compliance,
     independent_compliance,
 )
-from tribodyn.stiffness.model import MODELS, StiffnessModel
+from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
 
 __all__ = ["compliance_of", "contact_problem", "mesh_problem", "phases_of"]
 
@@ -67,6 +67,8 @@ def compliance_of(
     ------
     InputError
         If an option is out of range.
+    ComputationError
+        If a pair between A and E has no stiffness.
     """
     if model.influence is not None:
         reference = {**model.options, **options}["reference"]
@@ -79,7 +81,8 @@ def compliance_of(
     stiffness = model(
         pair, material, places.path, places.on_path, places.phase, total_force, **options
     )
-    structure = independent_compliance(np.asarray(stiffness), pair.common_face_width)
+    checked = usable_stiffness(stiffness, places.on_path, model.name)
+    structure = independent_compliance(checked, pair.common_face_width)
     return Compliance(structure, np.zeros(places.path.shape), 0.0)
 
 
