@@ -56,7 +56,7 @@ def transmission_error(result: Any) -> Any:
     ]
     if motion.periodic:
         mesh = result.mesh
-        static = mesh.total_normal_force / mesh.mesh_stiffness + result.static_error(mesh.phase)
+        static = mesh.static_transmission_error + result.static_error(mesh.phase)
         phase, shown = cycles(mesh.phase, displayed("transmission_error", static), motion.shown)
         traces.append(line(phase, shown, "quasi-static", MUTED, unit=unit, dash="dash"))
     swing = rounded("dynamic_transmission_error", float(np.ptp(motion.measured(moving))))

@@ -148,6 +148,21 @@ def test_transmission_error_counts_from_first_contact(
     assert error.y[0] == pytest.approx(1e6 * (deflection - result.half_backlash))
 
 
+def test_quasi_static_error_counts_what_relieved_flanks_leave_open(drawable: Any) -> None:
+    relief = {
+        f"gears.{gear}.modification.{key}": value
+        for gear in ("pinion", "wheel")
+        for key, value in (("tip_relief", "20 um"), ("tip_relief_length", "7 mm"))
+    }
+    result = drawable(changes=relief)
+    mesh = result.mesh
+    deflection = mesh.total_normal_force / mesh.mesh_stiffness
+    drawn = np.asarray(curve(FIGURES["transmission_error"](result), "quasi-static").y, dtype=float)
+    assert np.nanmax(drawn) == pytest.approx(1e6 * mesh.static_transmission_error.max(), rel=1e-6)
+    # The rigid mesh already has an error of its own: force over stiffness alone is too little.
+    assert mesh.static_transmission_error.max() > deflection.max() + 3e-6
+
+
 def test_quasi_static_error_is_force_over_stiffness(
     drawn: dict[str, go.Figure], result: Any
 ) -> None:
