@@ -27,6 +27,8 @@ if TYPE_CHECKING:
         harris_map,
         loaded_contact,
         optimize_tip_relief,
+        run_up,
+        sweep,
     )
 
 __version__ = "0.1.0"
@@ -47,6 +49,8 @@ __all__ = [
     "loaded_contact",
     "optimize_tip_relief",
     "run",
+    "run_up",
+    "sweep",
 ]
 
 _HOMES = {
@@ -63,6 +67,8 @@ _HOMES = {
     "loaded_contact": "study",
     "optimize_tip_relief": "study",
     "run": "cases",
+    "run_up": "study",
+    "sweep": "study",
 }
 
 _ROOMS = (

@@ -119,6 +119,8 @@ mesh_damping | c_m | N*s/m | N*s/m | damping of the tooth contact along the line
 mesh_damping_ratio | zeta | | | mesh damping over its critical value
 bearing_stiffness | k_b | N/m | N/um | radial stiffness of each gear's support
 bearing_damping | c_b | N*s/m | N*s/m | radial damping of each gear's support
+shaft_stiffness | k_s | N*m/rad | N*m/rad | torsional stiffness of a shaft
+shaft_damping | c_s | N*m*s/rad | N*m*s/rad | torsional damping of a shaft
 bearing_force | F_b | N | N | force of a gear on its support
 backlash | j_bt | m | mm | total play along the line of action
 static_transmission_error | STE | m | um | approach of the gears along the line of action under load at rest

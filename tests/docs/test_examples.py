@@ -150,6 +150,63 @@ def comprehensive_stiffness(text: str) -> None:
     assert "comprehensive-secant-speed.html" in text
 
 
+def stiffness_bifurcation(text: str) -> None:
+    long, short = text.split("800 steps:", maxsplit=1)
+    assert "step-limited" in long.splitlines()[0]
+    # the printed diagram has one period up to 1.731e7 N/mm and another motion from 1.741e7 on
+    assert figure(long, "not period 1 from") == pytest.approx(1.73e7, rel=0.02)
+    assert figure(long, "not period 1 from", 1) == pytest.approx(2.83, abs=0.1)
+    assert "period 1 with 800 steps" in long
+    assert figure(short, "motions not period 1") == 0.0
+    rows = [line.split() for line in short.splitlines() if line.endswith("stable")]
+    assert len(rows) == 8
+    assert all(row[2] == "stable" and float(row[1]) < 0.36 for row in rows)
+    assert "stiffness-bifurcation.html" in text
+
+
+def fifth_harmonic(text: str) -> None:
+    usual, light = text.split("fzg-12dof-light:", maxsplit=1)
+    # printed: +1.6, -26.9, +16.2, +27.4 and +61.6 %
+    changes = [figure(light, "0.035, change [%]", k) for k in range(5)]
+    assert [change > 0.0 for change in changes] == [True, False, True, True, True]
+    assert changes[4] == pytest.approx(61.6, abs=2.0)
+    assert abs(figure(usual, "0.035, change [%]", 4)) < 1.5
+    assert figure(usual, "fzg-12dof: first mode") == pytest.approx(492.0, abs=0.1)
+    assert "fifth-fzg-12dof-none.html" in text
+
+
+def run_up(text: str) -> None:
+    # 16 teeth at 400 and 3000 rpm
+    assert "from 106.667 over 800 to 106.667 Hz" in text
+    order, speed, frequency, mode = (figure(text, "7 ", column - 1) if column else 7.0
+                                     for column in range(4))  # fmt: skip
+    # the strongest peak lies where order 7 meets the mesh mode
+    assert frequency == pytest.approx(order * speed * 16 / 60, rel=1e-3)
+    assert frequency == pytest.approx(mode, rel=0.02)
+    for rpm in (1000, 2000, 2800):
+        up, down = (figure(text, f"{way} {rpm} rpm  rms acceleration of the pinion")
+                    for way in ("up  ", "down"))  # fmt: skip
+        assert up == pytest.approx(down, rel=0.05)
+    assert figure(text, "order 1.5 of the shaft at 2017 rpm is") == pytest.approx(50.4, abs=0.05)
+    assert figure(text, "its largest amplitude here") < 1.0
+    assert "run-up-map.html run-up.html" in text
+
+
+def jump(text: str) -> None:
+    folds = [figure(text, "two motions between", k) for k in range(2)]
+    swept = [figure(text, "the sweeps differ between", k) for k in range(2)]
+    # the sweeps, which step 20 Hz, jump at the folds
+    assert folds[0] <= swept[0] <= folds[0] + 40.0
+    assert folds[1] - 20.0 <= swept[1] <= folds[1]
+    # sqrt(3.8e8 / 1.15) / (2 pi)
+    assert figure(text, "resonance of small vibrations") == pytest.approx(2893.1, abs=0.1)
+    assert figure(text, "backbone") == pytest.approx(figure(text, "loudest motion"), rel=2e-3)
+    rows = [line.split() for line in text.splitlines() if line.strip().startswith("rms")]
+    assert sum(float(row[4]) for row in rows) == pytest.approx(100.0, abs=0.2)
+    assert [row[6] for row in rows] == ["physical", "physical"]
+    assert "jump-basins.html jump-phase.html" in text
+
+
 EXPECTED: dict[str, Callable[[str], None]] = {
     "01_first_light.py": first_light,
     "02_roughness_study.py": roughness_study,
@@ -163,6 +220,10 @@ EXPECTED: dict[str, Callable[[str], None]] = {
     "10_transmission_error.py": transmission_error,
     "11_tip_relief.py": tip_relief,
     "12_comprehensive_stiffness.py": comprehensive_stiffness,
+    "13_stiffness_bifurcation.py": stiffness_bifurcation,
+    "14_fifth_harmonic.py": fifth_harmonic,
+    "15_run_up.py": run_up,
+    "16_jump.py": jump,
 }
 
 

@@ -128,7 +128,14 @@ def test_goals_are_judged(
 
 @pytest.mark.parametrize(
     ("script", "expected"),
-    [("steady_state_speed", "multiplier"), ("cold_start", "import tribodyn")],
+    [
+        ("steady_state_speed", "multiplier"),
+        ("steady_state_cycles", "flanks in touch"),
+        ("speed_sweep", "contact lost"),
+        ("bifurcation_speed", "6 degrees of freedom"),
+        ("parameter_map", "6 x 6 points"),
+        ("cold_start", "import tribodyn"),
+    ],
 )
 def test_quick_run_prints_its_table(
     bench: Any, capsys: pytest.CaptureFixture[str], script: str, expected: str

@@ -1,5 +1,8 @@
 """Figures read off a motion: rms, peaks, mesh harmonics, spectra, direction indicator."""
 
+from tribodyn.analysis.basins import basins
+from tribodyn.analysis.basins_attractors import Attractor
+from tribodyn.analysis.basins_result import Basins
 from tribodyn.analysis.bifurcation import bifurcation
 from tribodyn.analysis.bifurcation_result import Bifurcation
 from tribodyn.analysis.dynamic_factor import direction_shares, dynamic_factor
@@ -18,7 +21,17 @@ from tribodyn.analysis.lyapunov import LyapunovExponents, lyapunov_exponents
 from tribodyn.analysis.order_map import order_map
 from tribodyn.analysis.order_map_resampling import AngularSignal, angular_resampling
 from tribodyn.analysis.order_map_result import OrderCut, OrderMap
+from tribodyn.analysis.parameter_map import parameter_map
+from tribodyn.analysis.parameter_map_result import ParameterMap
+from tribodyn.analysis.phase_portrait import PhasePortrait, phase_portrait
 from tribodyn.analysis.poincare import PoincareSection, poincare
+from tribodyn.analysis.run_up_orders import (
+    OverallLevel,
+    order_cut,
+    overall_level,
+    run_up_order_map,
+)
+from tribodyn.analysis.run_up_resonances import RunUpResonance, resonances
 from tribodyn.analysis.sidebands import Sidebands, sidebands
 from tribodyn.analysis.spectrogram import Spectrogram, spectrogram
 from tribodyn.analysis.spectrum import spectrum
@@ -34,13 +47,19 @@ from tribodyn.analysis.synchronous_average_condition import (
 
 __all__ = [
     "AngularSignal",
+    "Attractor",
+    "Basins",
     "Bifurcation",
     "ConditionIndicators",
     "LyapunovExponents",
     "OrderCut",
     "OrderMap",
+    "OverallLevel",
+    "ParameterMap",
     "Peak",
+    "PhasePortrait",
     "PoincareSection",
+    "RunUpResonance",
     "Sidebands",
     "SignalSpectrum",
     "Spectrogram",
@@ -49,6 +68,7 @@ __all__ = [
     "alternating_rms",
     "amplitude_spectrum",
     "angular_resampling",
+    "basins",
     "bifurcation",
     "condition_indicators",
     "crest_factor",
@@ -62,10 +82,16 @@ __all__ = [
     "lyapunov_exponents",
     "mean",
     "mesh_harmonics",
+    "order_cut",
     "order_map",
+    "overall_level",
+    "parameter_map",
     "peak_to_peak",
+    "phase_portrait",
     "poincare",
+    "resonances",
     "rms",
+    "run_up_order_map",
     "sidebands",
     "spectrogram",
     "spectrum",

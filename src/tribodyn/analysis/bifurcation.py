@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.analysis.bifurcation_march import (
-    Plan,
-    Point,
-    Values,
-    march_points,
-    march_sweep,
-)
+from tribodyn.analysis.bifurcation_march import march_points, march_sweeps
 from tribodyn.analysis.bifurcation_result import Bifurcation
+from tribodyn.analysis.bifurcation_values import Plan, Row, Values
 from tribodyn.analysis.lyapunov import lyapunov_exponents
 from tribodyn.analysis.verdict import step_verdict
 from tribodyn.dynamics.simulate import read_start
@@ -26,10 +20,9 @@ from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
 
-__all__ = ["bifurcation"]
+__all__ = ["bifurcation", "signal_name"]
 
 Array = NDArray[np.float64]
-_Rows = list[list[Point] | None]
 Sweep = Literal["up", "down", "both", "independent"]
 
 _BRANCHES: dict[str, tuple[str, ...]] = {
@@ -60,6 +53,7 @@ def bifurcation(
     signal: int | str = 0,
     verdict: bool = True,
     exponents: int = 0,
+    keep_partial: bool = False,
     progress: Progress = SILENT,
 ) -> Bifurcation:
     """Follow the motion of a system over a parameter.
@@ -80,7 +74,8 @@ def bifurcation(
     cycles : int
         Mesh cycles of the statistics at each value.
     transient : int
-        Mesh cycles before, fewer where the motion repeats every cycle to 1e-9.
+        Mesh cycles before, fewer where the motion repeats after 1 to 8 of them; the distance to
+        the motion that repeats exactly is then certified to be less than 1e-7 of its size.
     keep : int
         The last mesh cycles, of which the points are kept.
     steps : int or (points,) array
@@ -94,6 +89,8 @@ def bifurcation(
         Repeat every motion with half the step or less, and judge.
     exponents : int
         Mesh cycles for the largest Lyapunov exponent of each motion; 0 to leave it out.
+    keep_partial : bool
+        Return what is finished when interrupted (Ctrl-C): the rest is NaN, see ``finished``.
     progress : Progress
         Told about the motions.
 
@@ -107,9 +104,16 @@ def bifurcation(
     ------
     InputError
         If an argument is out of range or shapes disagree.
+    KeyboardInterrupt
+        As it came, unless ``keep_partial``.
 
     Notes
     -----
+    A sweep over the mesh frequency of one system is marched in stretches side by side. Every
+    stretch is then entered from the end of the one before until it meets the motions that are
+    there, so that jumps lie where marching one value after the other puts them. Motions that do
+    not repeat count as the same. The repetition with shorter steps begins on the motion itself.
+
     The exponent is that of the motion with ``refined_steps`` where the step is beyond the limit.
 
     Examples
@@ -125,19 +129,21 @@ def bifurcation(
         raise InputError(Problem(f'sweep = "{sweep}"', "argument sweep", f"One of {[*_BRANCHES]}"))
     values = _read_values(systems, mesh_frequency, steps)
     given = _read_parameter(parameter, values)
-    name = _signal_name(values.systems[0], signal)
-    plan = _read_plan(Plan(transient, cycles, keep, signal if values.systems[0].contacts else name))
+    name = signal_name(values.systems[0], signal)
+    plan = _read_plan(
+        Plan(transient, cycles, keep, signal if values.systems[0].contacts else name, keep_partial)
+    )
     first = None if start is None else read_start(values.systems[0], start)
     branches = _BRANCHES[sweep]
     work = values.count * len(branches) * (1 + bool(verdict))
     progress.start("Marching over the parameter", work)
     rows = _rows(values, branches, first, plan, progress)
     finer = Values(values.systems, values.mesh_frequency, _refined_steps(values))
-    fine: _Rows = [None] * len(rows)
-    if verdict:
-        fine = [march_points(finer, [p.first for p in row], plan, progress) for row in rows]
+    fine = [Row(values.count, keep, values.size) for _ in rows]
+    if verdict and not plan.stop.is_set():
+        fine = [march_points(finer, _begin(values, r), plan, progress, r.finished) for r in rows]
     largest = np.full((len(rows), values.count), np.nan)
-    if exponents:
+    if exponents and not plan.stop.is_set():
         largest = _largest_exponents(values, finer, rows, fine, exponents)
     progress.finish()
     return _diagram(
@@ -146,31 +152,37 @@ def bifurcation(
     )  # fmt: skip
 
 
+def _begin(values: Values, row: Row) -> Array:
+    """Starts of the repetition: the motion itself, unless the step has made it."""
+    sound = (values.step_number <= LIMIT) & np.all(np.isfinite(row.last), axis=1)
+    return np.where(sound[:, None], row.last, row.first)
+
+
 def _diagram(
-    values: Values, finer: Values, rows: list[list[Point]], fine: _Rows, **facts: Any
+    values: Values, finer: Values, rows: list[Row], fine: list[Row], **facts: Any
 ) -> Bifurcation:
     """Judge every motion and put all of them together."""
-    number = values.step_number
-    rms = np.array([[p.rms for p in row] for row in rows])
-    judged = np.full(rms.shape, "", dtype="<U12")
-    refined_period, refined_rms = np.zeros(rms.shape, dtype=np.int64), np.full(rms.shape, np.nan)
-    for branch, (row, new) in enumerate(zip(rows, fine, strict=True)):
-        if new is not None:
-            refined_period[branch] = [point.period for point in new]
-            refined_rms[branch] = [point.rms for point in new]
-            judged[branch] = [_judge(*three) for three in zip(number, row, new, strict=True)]
+
+    def both(name: str, of: list[Row]) -> Any:
+        return np.array([getattr(row, name) for row in of])
+
+    verdicts = [
+        [_judge(values.step_number[i], i, row, new) for i in range(values.count)]
+        for row, new in zip(rows, fine, strict=True)
+    ]
     return Bifurcation(
         mesh_frequency=values.mesh_frequency,
-        section=np.array([[p.points for p in row] for row in rows]),
-        period=np.array([[p.period for p in row] for row in rows]),
-        rms=rms,
-        contact_loss_share=np.array([[p.contact_loss_share for p in row] for row in rows]),
-        step_number=number,
+        section=both("section", rows),
+        period=both("period", rows),
+        rms=both("rms", rows),
+        contact_loss_share=both("contact_loss_share", rows),
+        step_number=values.step_number,
         steps=values.steps,
-        verdict=judged,
-        refined_period=refined_period,
-        refined_rms=refined_rms,
+        verdict=np.array(verdicts, dtype="<U12"),
+        refined_period=both("period", fine),
+        refined_rms=both("rms", fine),
         refined_steps=finer.steps,
+        finished=both("finished", rows),
         **facts,
     )
 
@@ -220,7 +232,30 @@ def _read_plan(plan: Plan) -> Plan:
     return plan
 
 
-def _signal_name(system: System, signal: int | str) -> str:
+def signal_name(system: System, signal: int | str) -> str:
+    """Name of what is looked at: a contact or a coordinate.
+
+    Parameters
+    ----------
+    system : System
+        The structure and its contacts.
+    signal : int or str
+        Number of a contact, or name of a coordinate; 0 is the first coordinate without contacts.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        If there is no such contact or coordinate.
+
+    Examples
+    --------
+    >>> signal_name(System([[1.0]], [[0.0]], [[1.0]], [0.0]), 0)
+    'q0'
+    """
     names = tuple(system.names)
     if isinstance(signal, str) and signal in names:
         return signal
@@ -239,18 +274,12 @@ def _signal_name(system: System, signal: int | str) -> str:
 
 def _rows(
     values: Values, branches: tuple[str, ...], first: Array | None, plan: Plan, progress: Progress
-) -> list[list[Point]]:
-    """Points of every branch; two sweeps run at a time."""
+) -> list[Row]:
+    """Motions of every branch."""
     if branches == ("independent",):
-        starts = None if first is None else [first] * values.count
+        starts = None if first is None else np.tile(first, (values.count, 1))
         return [march_points(values, starts, plan, progress)]
-    with ThreadPoolExecutor(len(branches)) as pool:
-        return list(
-            pool.map(
-                lambda branch: march_sweep(values, first, plan, progress, down=branch == "down"),
-                branches,
-            )
-        )
+    return march_sweeps(values, first, plan, branches, progress)
 
 
 def _refined_steps(values: Values) -> NDArray[np.int64]:
@@ -260,45 +289,51 @@ def _refined_steps(values: Values) -> NDArray[np.int64]:
     return np.asarray(values.steps * 2 ** halvings.astype(np.int64))
 
 
-def _judge(number: float, point: Point, finer: Point) -> str:
-    return step_verdict(float(number), point.period, point.rms, finer.period, finer.rms)
-
-
-def _settled(row: list[Point], fine: list[Point] | None, number: Array) -> list[Point]:
-    """Motions whose exponent is looked at: refined ones where the step is beyond the limit."""
-    if fine is None:
-        return row
-    return [new if n > LIMIT else old for old, new, n in zip(row, fine, number, strict=True)]
+def _judge(number: float, i: int, row: Row, fine: Row) -> str:
+    if not (row.finished[i] and fine.finished[i]):
+        return ""
+    return step_verdict(
+        float(number),
+        int(row.period[i]),
+        float(row.rms[i]),
+        int(fine.period[i]),
+        float(fine.rms[i]),
+    )
 
 
 def _largest_exponents(
-    values: Values, finer: Values, rows: list[list[Point]], fine: _Rows, cycles: int
+    values: Values, finer: Values, rows: list[Row], fine: list[Row], cycles: int
 ) -> Array:
     """Largest exponents of all motions; of the refined ones where the step is beyond the limit."""
-    number = values.step_number
-    chosen = [_settled(row, new, number) for row, new in zip(rows, fine, strict=True)]
-    used = np.where(number > LIMIT, finer.steps, values.steps)
-    return np.array([_exponents(values, used, row, cycles) for row in chosen])
+    limited = values.step_number > LIMIT
+    used = np.where(limited, finer.steps, values.steps)
+    found = []
+    for row, new in zip(rows, fine, strict=True):
+        refined = limited & new.finished
+        last = np.where(refined[:, None], new.last, row.last)
+        force = np.where(refined[:, None], new.force, row.force)
+        found.append(_exponents(values, used, last, force, cycles))
+    return np.array(found)
 
 
 def _exponents(
-    values: Values, steps: NDArray[np.int64], row: list[Point], cycles: int
+    values: Values, steps: NDArray[np.int64], last: Array, force: Array, cycles: int
 ) -> list[float]:
     """Largest exponents; NaN for a motion that grew beyond all bounds or a step too long."""
     found = []
-    for number, point in enumerate(row):
+    for number, state in enumerate(last):
         largest = float("nan")
-        if np.all(np.isfinite(point.last)):
-            system, half = values.systems[number], point.last.size // 2
+        if np.all(np.isfinite(state)):
+            half = state.size // 2
             with suppress(InputError):
                 largest = lyapunov_exponents(
-                    system,
+                    values.systems[number],
                     float(values.mesh_frequency[number]),
-                    start=(point.last[:half], point.last[half:]),
+                    start=(state[:half], state[half:]),
                     cycles=cycles,
                     transient=_TURN_IN,
                     steps=int(steps[number]),
-                    extra_force=point.extra_force,
+                    extra_force=force[number],
                 ).vibrating[0]
         found.append(float(largest))
     return found

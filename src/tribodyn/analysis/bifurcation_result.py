@@ -54,6 +54,9 @@ class Bifurcation:
         Twice the steps, or more where that is not yet stable.
     largest_exponent : (branches, points) array
         Largest Lyapunov exponent [1/s]; NaN if not asked for.
+    finished : (branches, points) bool array
+        Which motions are there; all of them unless the work was interrupted. The others have NaN,
+        period 0 and an empty verdict.
     """
 
     parameter: Array
@@ -73,6 +76,12 @@ class Bifurcation:
     refined_rms: Array = field(repr=False)
     refined_steps: NDArray[np.int64] = field(repr=False)
     largest_exponent: Array = field(repr=False)
+    finished: NDArray[np.bool_] = field(repr=False)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every motion is there."""
+        return bool(self.finished.all())
 
     def __repr__(self) -> str:
         """One line."""
@@ -81,7 +90,7 @@ class Bifurcation:
         return (
             f"Bifurcation({self.parameter.size} values of {self.parameter_name} from {low:.6g} to "
             f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}"
-            f"{': ' if words else ''}{', '.join(words)})"
+            f"{': ' if words else ''}{', '.join(words)}{'' if self.complete else ', interrupted'})"
         )
 
     def verdicts(self) -> dict[str, int]:
@@ -112,6 +121,7 @@ class Bifurcation:
             "rms": (both, self.rms, {"units": "m or rad"}),
             "contact_loss_share": (both, self.contact_loss_share, {"units": "1"}),
             "verdict": (both, self.verdict),
+            "finished": (both, self.finished),
             "refined_period": (both, self.refined_period, {"units": "1"}),
             "refined_rms": (both, self.refined_rms, {"units": "m or rad"}),
             "largest_exponent": (both, self.largest_exponent, {"units": "1/s"}),

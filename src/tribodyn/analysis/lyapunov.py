@@ -133,6 +133,17 @@ class LyapunovExponents:
         }
         return xarray.Dataset(data, {"exponent": np.arange(self.exponents.size)}, attributes)
 
+    def plot(self) -> Any:
+        """Draw the running means of the largest exponents.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["lyapunov"](self)
+
 
 def lyapunov_exponents(
     system: System,

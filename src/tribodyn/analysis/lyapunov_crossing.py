@@ -46,7 +46,7 @@ class _Engine:
     def __init__(self, tables: TangentTables, extra_force: Array) -> None:
         self.tables = tables
         system = tables.compiled.system
-        self.nodes = tables.compiled.nodes
+        self.nodes = tables.nodes
         self.inverse = np.linalg.inv(np.asarray(system.mass))
         self.spring, self.damper = np.asarray(system.stiffness), np.asarray(system.damping)
         self.extra = extra_force

@@ -15,7 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.dynamics.coordinates import orbit_coordinates
+from tribodyn.dynamics.load_friction import push_with_friction
 from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.program import Nodes
+from tribodyn.errors import InputError, Problem
 
 __all__ = ["TangentTables", "contact_sides", "within"]
 
@@ -60,11 +63,17 @@ class TangentTables:
         The system on its grid.
     mesh_frequency : float
         Mesh frequency [Hz].
+
+    Raises
+    ------
+    InputError
+        If a friction bends with the load, so that no matrix holds for all motions.
     """
 
     def __init__(self, compiled: Compiled, mesh_frequency: float) -> None:
-        system, nodes = compiled.system, compiled.nodes
+        system, nodes = compiled.system, _with_friction(compiled)
         self.compiled = compiled
+        self.nodes = nodes
         self.mesh_frequency = mesh_frequency
         self.coordinates = orbit_coordinates(compiled, mesh_frequency)
         self.width = compiled.grid.width / mesh_frequency
@@ -157,6 +166,27 @@ class TangentTables:
         return _propagate(
             self.rate_matrix(push, spring, damp, wide), self.width[steps] * (end - begin)
         )
+
+
+def _with_friction(compiled: Compiled) -> Nodes:
+    """Rows in which the frictions that are proportional to the load belong to the contacts."""
+    system, nodes = compiled.system, compiled.nodes
+    coefficients = nodes.friction_coefficients
+    if not system.frictions:
+        return nodes
+    if np.any(coefficients[..., 1:]):
+        bent = int(np.flatnonzero(np.any(coefficients[..., 1:], axis=(0, 1, 3)))[0])
+        raise InputError(
+            Problem(
+                what=f"frictions[{bent}] has {coefficients.shape[-1]} coefficients",
+                where=f"System.frictions[{bent}].coefficients",
+                why="The tangent method carries disturbances with matrices that know only which "
+                "contacts carry, and a coefficient that follows the load changes with the motion",
+                remedy="Use a single coefficient, for example its value at the mean load, or look "
+                "at the Floquet multipliers of steady_state, which include the whole friction",
+            )
+        )
+    return nodes._replace(force_direction=push_with_friction(system, nodes, coefficients[..., 0]))
 
 
 def within(values: Array, steps: Places, taus: Array) -> Array:

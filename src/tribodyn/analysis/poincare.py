@@ -84,6 +84,23 @@ class PoincareSection:
         attributes = {"mesh_frequency": self.mesh_frequency, "period": self.period}
         return xarray.Dataset(data, {"coordinate": list(self.names)}, attributes)
 
+    def plot(self, coordinate: int | str = 0) -> Any:
+        """Draw the points of one coordinate in its phase plane.
+
+        Parameters
+        ----------
+        coordinate : int or str
+            Number or name of the coordinate.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        draw: Any = FIGURES["poincare"]
+        return draw(self, coordinate=coordinate)
+
 
 def repeat_period(points: Array) -> int:
     """Tell after how many points a sequence repeats.

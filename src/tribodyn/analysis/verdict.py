@@ -39,7 +39,8 @@ def step_verdict(
     -------
     "physical", "step-limited" or "undecided"
         Step-limited beyond ``omega_max * dt`` = 2.7, or if the period changes; physical if period
-        and rms agree; undecided if only the rms differs, as beside a jump between two motions.
+        and rms agree; undecided if only the rms differs, as beside a jump between two motions, or
+        if one of the two has not come to repeat yet but has the same rms.
 
     Notes
     -----
@@ -53,8 +54,11 @@ def step_verdict(
     >>> step_verdict(3.1, 0, 0.9, 1, 0.31)
     'step-limited'
     """
-    if step_number > LIMIT or period != refined_period:
+    if step_number > LIMIT:
         return "step-limited"
-    tolerance = _PERIODIC if period else _IRREGULAR
+    unsettled = period == 0 or refined_period == 0
+    tolerance = _IRREGULAR if unsettled else _PERIODIC
     agrees = abs(rms - refined_rms) <= tolerance * max(abs(rms), abs(refined_rms))
+    if period != refined_period:
+        return "undecided" if unsettled and agrees else "step-limited"
     return "physical" if agrees else "undecided"

@@ -27,11 +27,15 @@ def case_files() -> dict[str, Path]:
     'fzg-roughness.toml'
     """
     folder = Path(str(files("tribodyn.cases")))
-    found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    found = {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
     for entry in entry_points(group="tribodyn.cases"):
         if entry.name not in found:
             found[entry.name] = Path(str(entry.load()))
     return found
+
+
+def _name(path: Path) -> str:
+    return path.stem
 
 
 def cases() -> dict[str, str]:

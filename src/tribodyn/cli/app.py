@@ -23,6 +23,12 @@ tribodyn --help shows all commands."""
 COMMANDS = (
     ("cases", "tribodyn.cli.cases_command:cases", "List the built-in cases."),
     ("run", "tribodyn.cli.run_command:run", "Compute a case and write its report."),
+    ("sweep", "tribodyn.cli.sweep_command:sweep", "Compute a case at many values of its keys."),
+    (
+        "bifurcation",
+        "tribodyn.cli.bifurcation_command:bifurcation",
+        "Follow the motion of a case over one value.",
+    ),
     ("check", "tribodyn.cli.check_command:check", "Check a case and show its geometry."),
     ("new", "tribodyn.cli.new_command:new", "Write a commented case file to start from."),
     ("explain", "tribodyn.cli.explain_command:explain", "Explain a symbol, key, model or warning."),

@@ -11,7 +11,7 @@ from tribodyn.errors import InputError, Problem
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["changed_case", "read_changes"]
+__all__ = ["changed_case", "read_changes", "read_value"]
 
 
 def read_changes(settings: Sequence[str]) -> dict[str, Any]:
@@ -48,17 +48,27 @@ def read_changes(settings: Sequence[str]) -> dict[str, Any]:
             remedy = 'Write --set "operation.torque=120 N*m"'
             problems.append(Problem(f'"{setting}" is not KEY=VALUE', "--set", "", remedy))
         elif key in changes:
-            what = f"{key} is set to {written(changes[key])} and to {written(_value(value))}"
+            what = f"{key} is set to {written(changes[key])} and to {written(read_value(value))}"
             problems.append(Problem(what, "--set", "", "Keep one of them"))
         else:
-            changes[key] = _value(value) if value else None
+            changes[key] = read_value(value) if value else None
     if problems:
         raise InputError(problems)
     return changes
 
 
-def _value(text: str) -> Any:
-    """Read a TOML value; what is none is text."""
+def read_value(text: str) -> Any:
+    """Read a TOML value; what is none is text.
+
+    Parameters
+    ----------
+    text : str
+        As in a case file, where quotes may be left out.
+
+    Returns
+    -------
+    object
+    """
     try:
         value = tomllib.loads(f"value = {text}\n")
     except tomllib.TOMLDecodeError:

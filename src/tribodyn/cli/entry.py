@@ -29,6 +29,8 @@ _PLACE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM)
 _EXAMPLES = {
     "run": "fzg-roughness",
     "check": "fzg-roughness",
+    "sweep": 'fzg-roughness "operation.speed=400..3500 rpm:60"',
+    "bifurcation": 'fzg-roughness "operation.speed=400..3500 rpm:300"',
     "new": "my.toml --from fzg-roughness",
     "explain": "epsilon_alpha",
     "cite": "fzg-roughness",

@@ -3,15 +3,24 @@
 from tribodyn.dynamics.branch import Branch, SpecialPoint
 from tribodyn.dynamics.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.continuation import continuation
+from tribodyn.dynamics.dormand_prince_solution import AdaptiveSolution, solve_adaptive
 from tribodyn.dynamics.energy import EnergyAudit, energy_audit
 from tribodyn.dynamics.ensemble import Ensemble, LaneStatistics, simulate_ensemble
+from tribodyn.dynamics.follow_load import follow_load
 from tribodyn.dynamics.force_law import MeshForce, law_contacts
 from tribodyn.dynamics.forced_response import ForcedResponse, forced_response
 from tribodyn.dynamics.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12
+from tribodyn.dynamics.lane_parameters import LaneParameters
+from tribodyn.dynamics.load_friction import LoadFriction
 from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.response import FineSamples, Response
+from tribodyn.dynamics.run_up import run_up
+from tribodyn.dynamics.run_up_profile import SpeedProfile, speed_ramp
+from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.dynamics.shafts import Body, GearMesh, assemble, shaft_chain, torsional_stiffness
 from tribodyn.dynamics.simulate import simulate
+from tribodyn.dynamics.speed_sweep import speed_sweep
+from tribodyn.dynamics.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.spur6 import SPUR6_NAMES, spur6
 from tribodyn.dynamics.steady_state import steady_state
 from tribodyn.dynamics.step_limit import recommended_steps
@@ -24,6 +33,7 @@ __all__ = [
     "FZG12_NAMES",
     "SPUR6_NAMES",
     "TORSIONAL_NAMES",
+    "AdaptiveSolution",
     "Body",
     "Branch",
     "Campbell",
@@ -34,25 +44,36 @@ __all__ = [
     "FineSamples",
     "ForcedResponse",
     "GearMesh",
+    "Jump",
+    "LaneParameters",
     "LaneStatistics",
+    "LoadFriction",
     "MeshForce",
     "NaturalModes",
     "Resonance",
     "Response",
+    "RunUp",
     "SpecialPoint",
+    "SpeedProfile",
+    "SpeedSweep",
     "System",
     "assemble",
     "campbell",
     "continuation",
     "energy_audit",
+    "follow_load",
     "forced_response",
     "fzg12",
     "law_contacts",
     "natural_modes",
     "recommended_steps",
+    "run_up",
     "shaft_chain",
     "simulate",
     "simulate_ensemble",
+    "solve_adaptive",
+    "speed_ramp",
+    "speed_sweep",
     "spur6",
     "steady_state",
     "torsional",

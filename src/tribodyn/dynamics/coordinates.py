@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.dynamics.march import Compiled
+from tribodyn.errors import InputError, Problem
 
-__all__ = ["OrbitCoordinates", "orbit_coordinates"]
+__all__ = ["OrbitCoordinates", "orbit_coordinates", "refuse_disconnected"]
 
 Array = NDArray[np.float64]
 
@@ -116,6 +117,44 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
     moving = _row_space([spring, used, damper])
     free = _complement(moving)
     return OrbitCoordinates(lower, elastic, moving, free, 2.0 * np.pi * mesh_frequency)
+
+
+def refuse_disconnected(compiled: Compiled) -> None:
+    """Refuse a coordinate that no spring, damper or contact joins to anything.
+
+    Parameters
+    ----------
+    compiled : Compiled
+
+    Raises
+    ------
+    InputError
+        If there is one beside others that vibrate; the message names it.
+    """
+    system, nodes = compiled.system, compiled.nodes
+    held = np.zeros(system.size, dtype=bool)
+    for name in ("stiffness", "damping"):
+        matrix = np.asarray(getattr(system, name))
+        held |= np.any(matrix != 0.0, axis=0) | np.any(matrix != 0.0, axis=1)
+    coupled = np.asarray(system.mass) - np.diag(np.diag(np.asarray(system.mass)))
+    held |= np.any(coupled != 0.0, axis=0)
+    for part in (nodes.direction, nodes.direction_slope, nodes.force_direction):
+        held |= np.any(part != 0.0, axis=(0, 1, 2))
+    held |= np.any(nodes.friction_direction != 0.0, axis=(0, 1, 2))
+    if held.all() or not held.any():
+        return
+    names = [system.names[int(i)] for i in np.flatnonzero(~held)]
+    many = len(names) > 1
+    raise InputError(
+        Problem(
+            what=f"the coordinate{'s' if many else ''} {', '.join(names)} "
+            f"{'are' if many else 'is'} connected to nothing",
+            where="System.stiffness",
+            why="No spring, damper or contact reaches it, so that it moves freely and has no "
+            "periodic orbit",
+            remedy="Add the missing shaft, bearing or contact, or remove the coordinate",
+        )
+    )
 
 
 def _used_directions(*parts: Array) -> Array:

@@ -13,10 +13,10 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.kernel import I64, INNER, compression, step
-from tribodyn.dynamics.lanes import first_lane
+from tribodyn.dynamics.kernel import I64, INNER, compression, dead_zone, step
+from tribodyn.dynamics.lanes import above, first_lane, store
 
-__all__ = ["MAX_SPLITS", "find_sides", "split_step"]
+__all__ = ["MAX_SPLITS", "find_sides", "set_sides", "split_step"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -24,23 +24,31 @@ Index = NDArray[np.int64]
 #: A step is split at most this often. More means a grazing contact, whose excursions within one
 #: step are then too small to matter; the step is taken as it stands.
 MAX_SPLITS = 16
+#: A crossing is found within a dozen tries, or never.
+_MAX_TRIES = 200
+
+
+@nb.njit(**INNER)
+def set_sides(
+    lanes: Any, code: Index, reads: Index, rows: Array, base: int, buffer: int, w: Array
+) -> None:
+    """Set the side of every dead zone from the compression of its contact."""
+    side = 8 * code[0] + code[1]
+    at, read, row = I64(4), buffer * code[3], base
+    for j in range(code[1]):
+        if code[at + 2] != 0:
+            d = compression(lanes, code, reads, rows, at, read, row, w)
+            gap = dead_zone(lanes, code, rows, row, w)
+            store(w, side + j, above(d, gap) - above(0.0 - d, gap))
+        row += 5 + code[at] + code[at + 1]
+        read += code[at] + code[at + 1]
+        at += 4
 
 
 @nb.njit(**INNER)
 def find_sides(code: Index, reads: Index, rows: Array, base: int, buffer: int, w: Array) -> None:
-    """Set the side of every contact of one lane from its compression."""
-    one = (0.0,)
-    side = 8 * code[0] + code[1]
-    at, read, row = I64(4), buffer * code[3], base
-    for j in range(code[1]):
-        w[side + j] = 1.0
-        if code[at + 2] != 0:
-            d = first_lane(compression(one, code, reads, rows, at, read, row, w))
-            gap = rows[row + 4]
-            w[side + j] = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
-        row += 5 + code[at] + code[at + 1]
-        read += code[at] + code[at + 1]
-        at += 4
+    """Set the side of every dead zone of one lane."""
+    set_sides((0.0,), code, reads, rows, base, buffer, w)
 
 
 @nb.njit(**INNER)
@@ -54,7 +62,7 @@ def _place(
         read += code[at] + code[at + 1]
         at += 4
     d = first_lane(compression((0.0,), code, reads, rows, at, read, row, w))
-    return d, rows[row + 4]
+    return d, first_lane(dead_zone((0.0,), code, rows, row, w))
 
 
 @nb.njit(**INNER)
@@ -115,7 +123,7 @@ def split_step(
     itself, so that they are as accurate as the step.
     """
     n, right, sides = code[0], 2 * code[2], 8 * code[0] + code[1]
-    start, target, contact, splits, probe = 0.0, 1.0, I64(-1), 0, 0
+    start, target, contact, splits, probe, tries = 0.0, 1.0, I64(-1), 0, 0, 0
     low = high = g_low = g_high = leaving = scale = 0.0
     while True:
         for node in range(3):
@@ -126,6 +134,9 @@ def split_step(
             d, gap = _place(code, reads, part, right, I64(2), w, contact)
             g = _clearance(d, gap, w[sides + contact], leaving)
             done = target == start or abs(g) <= 1e-14 * scale or abs(high - low) < 1e-15
+            # A motion beyond all bounds has no crossing to be found; the caller reports it.
+            tries += 1
+            done = done or tries > _MAX_TRIES or not np.isfinite(g)
             if probe > 0 and not done:
                 # A contact just made starts on its boundary, to rounding: look for a point inside.
                 if g > 0.0:
@@ -149,7 +160,7 @@ def split_step(
         other, direction, before, after = _first_beyond(code, reads, part, w, contact)
         if other >= 0 and splits < MAX_SPLITS and not (contact >= 0 and target == start):
             # Another contact crossed, earlier than the one just found if there was one.
-            contact, leaving, scale = other, direction, abs(before - after)
+            contact, leaving, scale, tries = other, direction, abs(before - after), 0
             low, g_low, high, g_high = start, before, target, after
             if before > 0.0:
                 probe = 0

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.dynamics.grid import Grid, RowEvaluator
+from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.response import Response
 from tribodyn.dynamics.system import System
@@ -101,6 +102,10 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
     parametric = parametric + nodes.stiffness * g * (moved - side * gap_slope)
     elastic = 0.5 * nodes.stiffness * g**2
     sliding = np.einsum("rsji,crsi->crsj", nodes.force_direction - nodes.direction, v)
+    rubbed = (n * sliding).sum(axis=-1)
+    if system.frictions:
+        rub = friction_force(system, nodes.friction_coefficients, n)
+        rubbed = rubbed + np.einsum("rsfi,crsi,crsf->crs", nodes.friction_direction, v, rub)
     lost = _form(system.damping, v)
     # The contact damper loses its force times the whole rate, the moving error included; what
     # the error puts in is then the force, not the spring force alone, times its speed.
@@ -119,7 +124,7 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
         external=work(np.einsum("crsi,rsi->crs", v, nodes.force + response.extra_force)),
         parametric=work(beat * parametric.sum(axis=-1)) + _jumps(elastic.sum(axis=-1)),
         dissipated=work(lost),
-        friction=work((n * sliding).sum(axis=-1)),
+        friction=work(rubbed),
         stored=float(total[-1, -1, 2] - total[0, 0, 0]),
     )
 

@@ -1,14 +1,17 @@
-"""Many trajectories at once: lanes that differ in mesh frequency, load and start."""
+"""Many trajectories at once: lanes that differ in mesh frequency, load, start and parts."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.dynamics.march import Compiled, compile_for, march
+from tribodyn.dynamics.lane_parameters import LaneParameters
+from tribodyn.dynamics.lane_tables import compile_lanes
+from tribodyn.dynamics.march import Compiled, march
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
@@ -92,13 +95,14 @@ def _fresh_moments(contacts: int, others: int, harmonics: int, lanes: int) -> Ar
 
 
 def simulate_ensemble(
-    system: System,
+    system: System | Sequence[System],
     mesh_frequency: ArrayLike,
     cycles: int,
     start: tuple[ArrayLike, ArrayLike],
     *,
     steps: int = 512,
     extra_force: ArrayLike | None = None,
+    parameters: LaneParameters | None = None,
     averaged: int = 1,
     harmonics: int = 5,
     outputs: ArrayLike | None = None,
@@ -109,9 +113,12 @@ def simulate_ensemble(
 
     Parameters
     ----------
-    system : System
+    system : System or sequence of System
+        One for all lanes, or one for each, all with the same number of coordinates, contacts and
+        frictions.
     mesh_frequency : float or (lanes,) array
-        Mesh frequency of each lane [Hz].
+        Mesh frequency of each lane [Hz]. A single number holds for as many lanes as the systems
+        or the parameters have.
     cycles : int
         Whole mesh cycles of each lane.
     start : (position, velocity)
@@ -120,6 +127,8 @@ def simulate_ensemble(
         Steps per mesh cycle.
     extra_force : (lanes, n) array, optional
         Constant generalized force on top of the system's [N or N*m].
+    parameters : LaneParameters, optional
+        Factors by which each lane scales its system.
     averaged : int
         The last mesh cycles, over which statistics are gathered.
     harmonics : int
@@ -148,7 +157,7 @@ def simulate_ensemble(
     >>> simulate_ensemble(free, [1.0, 2.0], 2, ([1.0], [0.0]), steps=64)
     Ensemble(2 trajectories, mesh frequency 1 to 2 Hz, statistics over 1 mesh cycles)
     """
-    frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    frequency = _frequencies(system, mesh_frequency, parameters)
     if not 0 <= averaged <= cycles:
         raise InputError(
             Problem(
@@ -157,8 +166,8 @@ def simulate_ensemble(
                 why="Statistics cover some of the last mesh cycles",
             )
         )
-    compiled = compile_for(system, frequency, steps)
-    lanes, size = frequency.size, system.size
+    compiled = compile_lanes(system, frequency, steps, parameters)
+    lanes, size = frequency.size, compiled.system.size
     state = _states(start, lanes, size)
     extra = np.zeros((lanes, size)) if extra_force is None else np.asarray(extra_force, float)
     extra = np.ascontiguousarray(np.broadcast_to(extra, (lanes, size)))
@@ -167,19 +176,46 @@ def simulate_ensemble(
     period = 1.0 / frequency
     if cycles > averaged:
         state = march(
-            compiled, period, state, cycles - averaged, extra_force=extra, threads=threads
-        )
+            compiled, period, state, cycles - averaged, extra_force=extra,
+            parameters=parameters, threads=threads,
+        )  # fmt: skip
         progress.advance(cycles - averaged)
-    contacts = len(system.contacts)
+    contacts = len(compiled.system.contacts)
     moments = _fresh_moments(contacts, size + len(linear), harmonics, lanes)
     if averaged:
         state = march(
-            compiled, period, state, averaged, extra_force=extra, outputs=linear,
-            waves=_waves(compiled, harmonics), moments=moments, threads=threads,
+            compiled, period, state, averaged, extra_force=extra, parameters=parameters,
+            outputs=linear, waves=_waves(compiled, harmonics), moments=moments, threads=threads,
         )  # fmt: skip
         progress.advance(averaged)
     progress.finish()
     return _collect(frequency, state, moments, contacts, size, harmonics, averaged)
+
+
+def _frequencies(
+    system: System | Sequence[System],
+    mesh_frequency: ArrayLike,
+    parameters: LaneParameters | None,
+) -> Array:
+    """Mesh frequency of every lane."""
+    frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    counts = {
+        "mesh_frequency": frequency.size,
+        "parameters": 1 if parameters is None else parameters.count,
+        "system": 1 if isinstance(system, System) else len(system),
+    }
+    lanes = max(counts.values())
+    odd = [name for name, count in counts.items() if count not in (1, lanes)]
+    if frequency.ndim != 1 or odd:
+        name = odd[0] if odd else "mesh_frequency"
+        raise InputError(
+            Problem(
+                what=f"{name} is for {counts[name]} lanes, others are for {lanes}",
+                where=f"argument {name}",
+                why="One for each lane, or one for all",
+            )
+        )
+    return np.array(np.broadcast_to(frequency, (lanes,)))
 
 
 def _states(start: tuple[ArrayLike, ArrayLike], lanes: int, size: int) -> Array:

@@ -22,7 +22,7 @@ from tribodyn.errors import InputError, Problem
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshForceLaw, MeshFunctions
 
-__all__ = ["MeshForce", "gear_contacts", "law_contacts"]
+__all__ = ["MeshForce", "carried", "gear_contacts", "law_contacts"]
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -55,15 +55,38 @@ def gear_contacts(
         If ``mesh_force`` is none of the three, the mesh does not have what it needs, or a pair
         touches before the play is used up.
     """
-    one = gear_contact(mesh, **options)
+    return carried(gear_contact(mesh, **options), mesh, mesh_force)
+
+
+def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ...]:
+    """Turn the plain contact of a gear pair into those of the law by which its teeth carry.
+
+    Parameters
+    ----------
+    one : Contact
+        With the mesh stiffness.
+    mesh : MeshFunctions
+        Functions of the mesh phase.
+    mesh_force : "stiffness", "tangent" or "force-law"
+        As for :func:`gear_contacts`.
+
+    Returns
+    -------
+    tuple of Contact
+
+    Raises
+    ------
+    InputError
+        As for :func:`gear_contacts`.
+    """
     if mesh_force == "stiffness":
         return (one,)
     if mesh_force == "tangent":
-        tangent = _needed(mesh.tangent_stiffness, "tangent stiffness")
+        tangent = _needed(getattr(mesh, "tangent_stiffness", None), "tangent stiffness")
         spring = replace(one, stiffness=tangent, error=_sum_of(one.error, mesh.tangent_error))
         return (replace(one, stiffness=0.0), replace(spring, damping=0.0))
     if mesh_force == "force-law":
-        return law_contacts(one, _needed(mesh.force_law, "force law"))
+        return law_contacts(one, _needed(getattr(mesh, "force_law", None), "force law"))
     raise InputError(
         Problem(
             what=f'mesh_force = "{mesh_force}"',

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.dynamics.force_law import MeshForce, carried
 from tribodyn.dynamics.fzg12_mesh import BASE_RADIUS, RectangularMesh
 from tribodyn.dynamics.gear_pair import Driver, TorqueBalance, balance_direction, torques
 from tribodyn.dynamics.shafts import Body, GearMesh, assemble, row_of, shaft_chain
@@ -62,6 +63,8 @@ def fzg12(
     error: Entry = 0.0,
     driver: Driver = "wheel",
     torque_balance: TorqueBalance = "drive",
+    damping_in_gap: bool = False,
+    mesh_force: MeshForce = "stiffness",
 ) -> System:
     """Build the rig of two shafts and one gear pair; by default the benchmark rig.
 
@@ -102,6 +105,10 @@ def fzg12(
         Which gear drives; shaft 1 with the wheel carries the motor.
     torque_balance : "drive", "load" or "both"
         Which torque is held when friction acts; the other one is found by the steady state.
+    damping_in_gap : bool
+        Keep the mesh damping in free flight.
+    mesh_force : "stiffness", "tangent" or "force-law"
+        How the teeth of a mesh carry, as in :func:`spur6`.
 
     Returns
     -------
@@ -112,7 +119,7 @@ def fzg12(
     Raises
     ------
     InputError
-        If a value is out of range.
+        If a value is out of range, or the mesh does not have what ``mesh_force`` needs.
 
     Notes
     -----
@@ -159,7 +166,9 @@ def fzg12(
     turning = torques(float(torque) * np.array([1.0, radii[1] / radii[0]]), driver)
     system = assemble(shafts, [gears], {"shaft2": turning[0], "shaft1": turning[1]})
     balance = _at_the_ends(balance_direction(torque_balance, driver))
-    return replace(system, names=FZG12_NAMES, balance=balance)
+    (one,) = system.contacts
+    contacts = carried(replace(one, damping_in_gap=damping_in_gap), teeth, mesh_force)
+    return replace(system, names=FZG12_NAMES, balance=balance, contacts=contacts)
 
 
 def _at_the_ends(pair: Array | None) -> Array | None:

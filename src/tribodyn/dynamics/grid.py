@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.system import Entry, System
+from tribodyn.dynamics.entry import Entry
+from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 
 __all__ = ["Grid", "RowEvaluator", "build_grid", "system_events"]
@@ -55,12 +56,12 @@ class Grid:
         return int(self.left.size)
 
 
-def system_events(system: System) -> tuple[float, ...]:
-    """Events of all contacts, sorted and merged.
+def system_events(*systems: System) -> tuple[float, ...]:
+    """Events of all contacts and frictions, sorted and merged.
 
     Parameters
     ----------
-    system : System
+    *systems : System
 
     Returns
     -------
@@ -74,7 +75,9 @@ def system_events(system: System) -> tuple[float, ...]:
     >>> system_events(System([[1.0]], [[0.0]], [[1.0]], [0.0], [contact]))
     (0.0, 0.3)
     """
-    events = sorted({0.0, *(event for contact in system.contacts for event in contact.events)})
+    given = [part.events for system in systems for part in system.contacts]
+    given += [part.events for system in systems for part in system.frictions]
+    events = sorted({0.0, *(event for part in given for event in part)})
     kept: list[float] = []
     for event in events:
         if (not kept or event - kept[-1] > _MERGE) and event < 1.0 - _MERGE:

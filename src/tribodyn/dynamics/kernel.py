@@ -7,7 +7,8 @@ slots of one work buffer. Replaces, and is tested against, the readable
 :mod:`tribodyn.dynamics.plain`.
 
 ``code``, ``reads`` and ``rows`` are those of the program, ``w`` is the work buffer, ``base`` the
-address of a row in ``rows`` and ``buffer`` (0, 1, 2) the state buffer that is read.
+address of a row in ``rows`` and ``buffer`` (0, 1, 2) the state buffer that is read. Lanes share
+the rows or have their own: the type of ``rows`` tells, see :func:`~tribodyn.dynamics.lanes.entry`.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.lanes import any_negative, load, store
+from tribodyn.dynamics.lanes import entry, greatest, least, load, negative_lanes, store
 
 __all__ = [
     "I64",
@@ -27,6 +28,8 @@ __all__ = [
     "acceleration",
     "compression",
     "contact_forces",
+    "dead_zone",
+    "friction_forces",
     "left_side",
     "step",
 ]
@@ -55,7 +58,7 @@ def _sum_terms(
     """``first`` plus the sum of factor times slot."""
     total = first
     for item in range(count):
-        total = total + rows[row + item] * load(lanes, w, reads[read + item])
+        total = total + entry(lanes, rows, row + item) * load(lanes, w, reads[read + item])
     return total
 
 
@@ -64,43 +67,103 @@ def compression(
     lanes: Any, code: Index, reads: Index, rows: Array, at: int, read: int, row: int, w: Array
 ) -> Any:
     """Compression of the contact whose description begins at ``at``, ``read`` and ``row``."""
-    zero = load(lanes, w, 9 * code[0] + 2 * code[1] + 3)
-    return _sum_terms(lanes, zero - rows[row + 2], code[at], reads, read, rows, row + 5, w)
+    error = load(lanes, w, 9 * code[0] + 2 * code[1] + 3) - 1.0
+    first = entry(lanes, rows, row + 2) * error
+    return _sum_terms(lanes, first, code[at], reads, read, rows, row + 5, w)
 
 
 @nb.njit(**INNER)
+def dead_zone(lanes: Any, code: Index, rows: Array, row: int, w: Array) -> Any:
+    """Half of the dead zone of the contact whose rows begin at ``row``."""
+    return entry(lanes, rows, row + 4) * (1.0 + load(lanes, w, 9 * code[0] + 2 * code[1] + 5))
+
+
+@nb.njit(**INNER)
+def _scaled_force(
+    lanes: Any, code: Index, rows: Array, at: int, row: int, j: int, d: Any, rate: Any, w: Array
+) -> Any:
+    """Force of a contact whose stiffness, damping and dead zone differ between lanes."""
+    n, contacts = code[0], code[1]
+    one = 9 * n + 2 * contacts
+    k = entry(lanes, rows, row) * (1.0 + load(lanes, w, one + 6))
+    damper = entry(lanes, rows, row + 1) * (1.0 + load(lanes, w, one + 7)) * rate
+    if code[at + 2] == 0:
+        return k * d + damper
+    sign = load(lanes, w, 8 * n + contacts + j)
+    spring = sign * sign * (k * (d - dead_zone(lanes, code, rows, row, w) * sign))
+    if code[at + 3] == 2:
+        damper = sign * sign * damper
+    return spring + damper
+
+
+@nb.njit(forceinline=True, **INNER)
 def contact_forces(
     lanes: Any, code: Index, reads: Index, rows: Array, base: int, buffer: int, w: Array
 ) -> tuple[Any, Any, Any]:
-    """Force of every contact; returns where the coordinates' terms begin in code, reads, rows."""
+    """Force of every contact; returns where the frictions begin in code, reads, rows."""
     n, contacts = code[0], code[1]
     one = 9 * n + 2 * contacts
-    beat, zero = load(lanes, w, one + 2), load(lanes, w, one + 3)
+    beat, error = load(lanes, w, one + 2), load(lanes, w, one + 3) - 1.0
     at, read, row = I64(4), buffer * code[3], base
     for j in range(contacts):
         # The compression as in `compression`, in one loop with its rate.
-        d, rate = zero - rows[row + 2], zero - rows[row + 3] * beat
+        d = entry(lanes, rows, row + 2) * error
+        rate = entry(lanes, rows, row + 3) * (error * beat)
+        first = row
+        row += 5
         for item in range(code[at]):
-            factor, slot = rows[row + 5 + item], reads[read + item]
+            factor, slot = entry(lanes, rows, row + item), reads[read + item]
             d = d + factor * load(lanes, w, slot)
             rate = rate + factor * load(lanes, w, slot + n)
-        k, c, gap = rows[row], rows[row + 1], rows[row + 4]
-        row += 5 + code[at]
+        row += code[at]
         read += code[at]
         for item in range(code[at + 1]):
-            rate = rate + rows[row + item] * load(lanes, w, reads[read + item]) * beat
+            factor = entry(lanes, rows, row + item)
+            rate = rate + factor * load(lanes, w, reads[read + item]) * beat
         row += code[at + 1]
         read += code[at + 1]
-        if code[at + 2] == 0:
-            store(w, 8 * n + j, k * d + c * rate)
+        if code[at + 3] >= 2:
+            store(w, 8 * n + j, _scaled_force(lanes, code, rows, at, first, j, d, rate, w))
         else:
-            sign = load(lanes, w, 8 * n + contacts + j)
-            spring = sign * sign * (k * (d - gap * sign))
-            if code[at + 3] == 0:
-                store(w, 8 * n + j, spring + sign * sign * (c * rate))
+            k, c = entry(lanes, rows, first), entry(lanes, rows, first + 1)
+            if code[at + 2] == 0:
+                store(w, 8 * n + j, k * d + c * rate)
             else:
-                store(w, 8 * n + j, spring + c * rate)
+                sign = load(lanes, w, 8 * n + contacts + j)
+                spring = sign * sign * (k * (d - entry(lanes, rows, first + 4) * sign))
+                if code[at + 3] == 0:
+                    store(w, 8 * n + j, spring + sign * sign * (c * rate))
+                else:
+                    store(w, 8 * n + j, spring + c * rate)
         at += 4
+    return at, read, row
+
+
+@nb.njit(**INNER)
+def friction_forces(
+    lanes: Any, code: Index, reads: Index, rows: Array, at: int, read: int, row: int, w: Array
+) -> tuple[Any, Any, Any]:
+    """Every friction that follows the load; returns where the coordinates' terms begin."""
+    one = 9 * code[0] + 2 * code[1]
+    count = code[at]
+    at += 1
+    for f in range(count):
+        contacts, terms = code[at], code[at + 1]
+        at += 2
+        force = load(lanes, w, reads[read])
+        for item in range(1, contacts):
+            force = force + load(lanes, w, reads[read + item])
+        read += contacts
+        last = row + 1 + terms
+        total = entry(lanes, rows, last) + 0.0 * force
+        if terms > 1:
+            # The load over the nominal one, no more than the limit.
+            x = entry(lanes, rows, row) * greatest(force, 0.0 - force)
+            x = least(x, entry(lanes, rows, row + 1) + 0.0 * force)
+            for item in range(1, terms):
+                total = total * x + entry(lanes, rows, last - item)
+        store(w, one + 9 + f, (1.0 + load(lanes, w, one + 8)) * force * total)
+        row = last + 1
     return at, read, row
 
 
@@ -108,10 +171,14 @@ def contact_forces(
 def acceleration(
     lanes: Any, code: Index, reads: Index, rows: Array, base: int, buffer: int, out: int, w: Array
 ) -> None:
-    """Contact forces, and the acceleration of every coordinate into the slots from ``out``."""
+    """All forces, and the acceleration of every coordinate into the slots from ``out``."""
     n = code[0]
     steady = 8 * n + 2 * code[1]
     at, read, row = contact_forces(lanes, code, reads, rows, base, buffer, w)
+    if code[at] > 0:
+        at, read, row = friction_forces(lanes, code, reads, rows, at, read, row, w)
+    else:
+        at += 1
     for i in range(n):
         start = load(lanes, w, steady + i)
         store(w, out + i, _sum_terms(lanes, start, code[at], reads, read, rows, row, w))
@@ -138,6 +205,10 @@ def step(lanes: Any, code: Index, reads: Index, rows: Array, base: int, w: Array
         at, read, row = contact_forces(
             lanes, code, reads, rows, base + ((s + 1) // 2) * columns, buffer, w
         )
+        if code[at] > 0:
+            at, read, row = friction_forces(lanes, code, reads, rows, at, read, row, w)
+        else:
+            at += 1
         for i in range(n):
             start = load(lanes, w, steady + i)
             a = _sum_terms(lanes, start, code[at], reads, read, rows, row, w)
@@ -159,20 +230,21 @@ def step(lanes: Any, code: Index, reads: Index, rows: Array, base: int, w: Array
 
 
 @nb.njit(**INNER)
-def left_side(lanes: Any, code: Index, reads: Index, rows: Array, base: int, w: Array) -> bool:
-    """Tell whether a lane's new state (buffer 2) is off the side of a dead zone that it was on."""
+def left_side(lanes: Any, code: Index, reads: Index, rows: Array, base: int, w: Array) -> Any:
+    """Bits of the lanes whose new state (buffer 2) is off the side of a dead zone they were on."""
     n, contacts = code[0], code[1]
     at, read, row = I64(4), 2 * code[3], base
+    gone = I64(0)
     for j in range(contacts):
         if code[at + 2] != 0:
             d = compression(lanes, code, reads, rows, at, read, row, w)
-            gap = rows[row + 4]
+            gap = dead_zone(lanes, code, rows, row, w)
             sign = load(lanes, w, 8 * n + contacts + j)
             touch = sign * sign
             inside, free = touch * (sign * d - gap), 1.0 - touch
-            if any_negative(inside + free * (gap - d)) or any_negative(inside + free * (gap + d)):
-                return True
+            gone |= negative_lanes(inside + free * (gap - d))
+            gone |= negative_lanes(inside + free * (gap + d))
         row += 5 + code[at] + code[at + 1]
         read += code[at] + code[at + 1]
         at += 4
-    return False
+    return gone

@@ -19,12 +19,16 @@ from numba.extending import intrinsic, models, overload, register_model
 
 __all__ = [
     "LaneType",
+    "above",
     "address",
     "any_negative",
+    "entry",
     "first_lane",
     "greatest",
     "least",
     "load",
+    "negative_lanes",
+    "open_rows",
     "store",
 ]
 
@@ -117,12 +121,75 @@ def any_negative(typing: Any, value: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         width = signature.args[0].width
-        zero = ir.Constant(ir.VectorType(ir.DoubleType(), width), [0.0] * width)
-        below = builder.fcmp_ordered("<", arguments[0], zero)
+        below = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
         bits = builder.bitcast(below, ir.IntType(width))
         return cgutils.is_not_null(builder, bits)
 
     return types.boolean(value), generate
+
+
+def _uniform(width: int, number: float) -> Any:
+    return ir.Constant(ir.VectorType(ir.DoubleType(), width), [number] * width)
+
+
+@intrinsic
+def negative_lanes(typing: Any, value: Any) -> Any:
+    """Bits of the lanes, at most 64, whose number is below zero."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        width = signature.args[0].width
+        below = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
+        bits = builder.bitcast(below, ir.IntType(width))
+        return bits if width == 64 else builder.zext(bits, ir.IntType(64))
+
+    return types.int64(value), generate
+
+
+@intrinsic
+def above(typing: Any, left: Any, right: Any) -> Any:
+    """1 for every lane whose left number is above the right one, else 0."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        width = signature.args[0].width
+        higher = builder.fcmp_ordered(">", arguments[0], arguments[1])
+        return builder.select(higher, _uniform(width, 1.0), _uniform(width, 0.0))
+
+    return left(left, right), generate
+
+
+@intrinsic
+def open_rows(typing: Any, rows: Any) -> Any:
+    """Tell where a row table begins, so that its type tells whether lanes have their own rows.
+
+    A table (items,) that all lanes share becomes an address; a table (items, lanes) becomes a
+    tuple of one address.
+    """
+    place = types.CPointer(rows.dtype)
+    kind = place if rows.ndim == 1 else types.UniTuple(place, 1)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = _data(context, builder, signature.args[0], arguments[0])
+        if isinstance(signature.return_type, types.CPointer):
+            return data
+        return context.make_tuple(builder, signature.return_type, [data])
+
+    return kind(rows), generate
+
+
+@intrinsic
+def entry(typing: Any, lanes: Any, rows: Any, item: Any) -> Any:
+    """Read one item of a row table: a number, or one per lane where lanes have their own rows."""
+    own = isinstance(rows, types.BaseTuple)
+    kind = LaneType(len(lanes)) if own else types.float64
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        if not own:
+            return builder.load(builder.gep(arguments[1], [arguments[2]]))
+        data = builder.extract_value(arguments[1], 0)
+        pointer = _pointer(context, builder, rows[0], data, arguments[2], kind.width)
+        return builder.load(pointer, align=8)
+
+    return kind(lanes, rows, types.intp), generate
 
 
 def _operation(name: str) -> Any:

@@ -4,23 +4,44 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.dynamics.divergence import report_divergence
 from tribodyn.dynamics.grid import Grid
-from tribodyn.dynamics.program import Nodes, Program, compile_system, lane_load
-from tribodyn.dynamics.step_limit import refuse_unstable_step
+from tribodyn.dynamics.lane_parameters import LaneParameters
+from tribodyn.dynamics.program import Nodes, Program, build_program, compile_system, lane_load
+from tribodyn.dynamics.step_limit import refuse_unstable_lanes, refuse_unstable_step
 from tribodyn.dynamics.system import System
-from tribodyn.errors import ComputationError, InputError, Problem, require_positive
+from tribodyn.errors import InputError, Problem, require_positive
 
-__all__ = ["Compiled", "compile_for", "march"]
+__all__ = ["Compiled", "Member", "compile_for", "march"]
 
 Array = NDArray[np.float64]
 
 #: Lanes of one block. A single lane keeps everything in scalar registers.
 _WIDTHS = (1, 16, 64)
+#: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
+_OWN_ROWS = 4
+
+
+@dataclass(frozen=True)
+class Member:
+    """One of several systems on a common grid, with the lanes that march it.
+
+    Parameters
+    ----------
+    system : System
+    nodes : Nodes
+    lanes : (m,) int array
+        Numbers of its lanes.
+    """
+
+    system: System
+    nodes: Nodes
+    lanes: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -35,6 +56,10 @@ class Compiled:
     program : Program
     step_number : float
         ``omega_max * dt`` of the slowest mesh frequency [-].
+    members : tuple of Member
+        Systems of the lanes where these differ; empty where all lanes march ``system``.
+    parameters : LaneParameters, optional
+        Factors of the lanes for which the step was checked.
     """
 
     system: System
@@ -42,9 +67,52 @@ class Compiled:
     nodes: Nodes
     program: Program
     step_number: float
+    members: tuple[Member, ...] = ()
+    parameters: LaneParameters | None = None
+    _programs: dict[tuple[bool, bool], tuple[Program, ...]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+
+    def programs(self, parameters: LaneParameters | None = None) -> tuple[Program, ...]:
+        """Programs of all members, or of the one system, all with the same terms.
+
+        Parameters
+        ----------
+        parameters : LaneParameters, optional
+            What the lanes scale.
+
+        Returns
+        -------
+        tuple of Program
+        """
+        scaled = parameters is not None and parameters.scales_contacts
+        split = parameters is not None and parameters.scales_friction
+        if not (scaled or split or self.members):
+            return (self.program,)
+        if (scaled, split) not in self._programs:
+            pairs = [(one.system, one.nodes) for one in self.members]
+            pairs = pairs or [(self.system, self.nodes)]
+
+            def build(pattern: NDArray[np.bool_] | None) -> tuple[Program, ...]:
+                return tuple(
+                    build_program(pair[0], self.grid, pair[1], scaled=scaled, split=split,
+                                  pattern=pattern)
+                    for pair in pairs
+                )  # fmt: skip
+
+            made = build(None)
+            if len(made) > 1:
+                made = build(np.any([one.pattern for one in made], axis=0))
+            self._programs[scaled, split] = made
+        return self._programs[scaled, split]
 
 
-def compile_for(system: System, mesh_frequency: ArrayLike, steps: int) -> Compiled:
+def compile_for(
+    system: System,
+    mesh_frequency: ArrayLike,
+    steps: int,
+    parameters: LaneParameters | None = None,
+) -> Compiled:
     """Compile a system and refuse a step that the integrator cannot follow.
 
     Parameters
@@ -54,6 +122,8 @@ def compile_for(system: System, mesh_frequency: ArrayLike, steps: int) -> Compil
         Mesh frequency [Hz].
     steps : int
         Steps per mesh cycle.
+    parameters : LaneParameters, optional
+        Factors by which each lane scales the system.
 
     Returns
     -------
@@ -76,9 +146,12 @@ def compile_for(system: System, mesh_frequency: ArrayLike, steps: int) -> Compil
             Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
         )
     grid, nodes, program = compile_system(system, int(steps))
-    slowest = float(np.min(np.asarray(mesh_frequency, dtype=float)))
-    number = refuse_unstable_step(system, nodes, grid, slowest)
-    return Compiled(system, grid, nodes, program, number)
+    beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    if parameters is None:
+        number = refuse_unstable_step(system, nodes, grid, float(beat.min()))
+    else:
+        number = refuse_unstable_lanes(system, nodes, grid, beat, parameters)
+    return Compiled(system, grid, nodes, program, number, parameters=parameters)
 
 
 def march(
@@ -88,6 +161,7 @@ def march(
     cycles: int,
     *,
     extra_force: Array | None = None,
+    parameters: LaneParameters | None = None,
     record: Array | None = None,
     outputs: Array | None = None,
     waves: Array | None = None,
@@ -108,6 +182,8 @@ def march(
         Mesh cycles.
     extra_force : (lanes, n) array, optional
         Constant generalized force on top of the system's [N or N*m].
+    parameters : LaneParameters, optional
+        Factors by which each lane scales its system.
     record : (steps * cycles + 1, 2 n, lanes) array, optional
         Receives every state; single block only.
     outputs : (m, 2 n) array, optional
@@ -130,10 +206,11 @@ def march(
     ComputationError
         If a state grows beyond all bounds.
     """
-    lanes, double = state.shape
-    width = width or _choose_width(lanes)
-    extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
-    load = lane_load(compiled.program, compiled.system, extra)
+    lanes = state.shape[0]
+    if parameters is not None and parameters is not compiled.parameters:
+        _check_parameters(compiled, 1.0 / period, parameters)
+    run = _Run(compiled, parameters, period, state, extra_force)
+    width = width or _choose_width(lanes, bool(compiled.members))
     new = np.empty_like(state)
     fresh = None if moments is None else moments[:, 0].copy()
 
@@ -142,9 +219,7 @@ def march(
         index = np.minimum(np.arange(first, first + width), lanes - 1)
         part = np.ascontiguousarray(state[index])
         own = None if fresh is None else np.repeat(fresh, width)
-        failed = _march_block(
-            compiled, period[index], load[index], part, cycles, record, outputs, waves, own
-        )
+        failed = run.block(index, part, cycles, record, outputs, waves, own)
         count = min(width, lanes - first)
         new[first : first + count] = part[:count]
         if own is not None and moments is not None:
@@ -158,52 +233,111 @@ def march(
     else:
         with ThreadPoolExecutor(threads) as pool:
             failures = list(pool.map(block, starts))
-    worst = max(failures)
-    if worst >= 0:
-        _report_divergence(compiled, worst)
+    if max(failures) >= 0:
+        first = starts[int(np.argmax(failures))]
+        _report(run, np.arange(first, min(first + width, lanes)), max(failures))
     return new
 
 
-def _choose_width(lanes: int) -> int:
-    return _WIDTHS[0] if lanes < 4 else _WIDTHS[1] if lanes <= 32 else _WIDTHS[2]
+def _choose_width(lanes: int, own_rows: bool) -> int:
+    if lanes < _OWN_ROWS:
+        return _WIDTHS[0]
+    return _OWN_ROWS if own_rows else _WIDTHS[1] if lanes <= 32 else _WIDTHS[2]
 
 
-def _march_block(
-    compiled: Compiled,
-    period: Array,
-    load: Array,
-    state: Array,
-    cycles: int,
-    record: Array | None,
-    outputs: Array | None,
-    waves: Array | None,
-    moments: Array | None,
-) -> int:
-    from tribodyn.dynamics.marching import march_block
-
-    program = compiled.program
-    width, double = state.shape
-    keep = np.zeros((0, double, width)) if record is None else record
-    table = np.zeros(0) if waves is None else np.ascontiguousarray(waves).reshape(-1)
-    linear = np.zeros((0, double)) if outputs is None else outputs
-    harmonics = 0 if waves is None else waves.shape[2]
-    work = np.zeros(program.slots.count * (width + 1) + 3 * int(program.code[2]))
-    return int(
-        march_block(
-            (0.0,) * width, program.code, program.reads, program.rows, program.width,
-            program.restart, work, np.ascontiguousarray(period), np.ascontiguousarray(load), state,
-            cycles, keep, linear, table, harmonics, moments,
+def _check_parameters(compiled: Compiled, beat: Array, parameters: LaneParameters) -> None:
+    for one in compiled.members or (Member(compiled.system, compiled.nodes, np.arange(beat.size)),):
+        refuse_unstable_lanes(
+            one.system, one.nodes, compiled.grid, beat, parameters, lanes=one.lanes
         )
+
+
+class _Run:
+    """Lanes with everything that the kernel wants to know about each of them."""
+
+    def __init__(
+        self,
+        compiled: Compiled,
+        parameters: LaneParameters | None,
+        period: Array,
+        state: Array,
+        extra_force: Array | None,
+    ) -> None:
+        lanes, double = state.shape
+        self.compiled, self.period, self.state = compiled, period, state
+        self.extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
+        self.programs = compiled.programs(parameters)
+        self.member = np.zeros(lanes, dtype=np.int64)
+        for number, one in enumerate(compiled.members):
+            self.member[one.lanes] = number
+        self.scales = np.ones((lanes, 6)) if parameters is None else parameters.table(lanes)
+        systems = [one.system for one in compiled.members] or [compiled.system]
+        self.load = np.empty((lanes, double // 2))
+        for number, (program, system) in enumerate(zip(self.programs, systems, strict=True)):
+            own = self.member == number
+            self.load[own] = lane_load(program, system, self.extra[own], self.scales[own, 5])
+        if parameters is not None:
+            self.load = np.hstack((self.load, self.scales))
+
+    def block(
+        self,
+        index: NDArray[np.int64],
+        state: Array,
+        cycles: int,
+        record: Array | None,
+        outputs: Array | None,
+        waves: Array | None,
+        moments: Array | None,
+    ) -> int:
+        """March the lanes ``index`` in one block; returns what :func:`march_block` does."""
+        from tribodyn.dynamics.marching import march_block
+
+        program = self.programs[self.member[index[0]]]
+        rows = program.rows
+        width, double = state.shape
+        if self.compiled.members and width > 1:
+            rows = np.stack([self.programs[number].rows for number in self.member[index]], axis=-1)
+        keep = np.zeros((0, double, width)) if record is None else record
+        table = np.zeros(0) if waves is None else np.ascontiguousarray(waves).reshape(-1)
+        linear = np.zeros((0, double)) if outputs is None else outputs
+        harmonics = 0 if waves is None else waves.shape[2]
+        work = np.zeros(program.slots.count * (width + 1) + 6 * int(program.code[2]))
+        return int(
+            march_block(
+                (0.0,) * width, program.code, program.reads, rows, program.width, program.restart,
+                work, self.period[index], self.load[index], state, cycles, keep, linear, table,
+                harmonics, moments,
+            )
+        )  # fmt: skip
+
+
+def _report(run: _Run, lanes: NDArray[np.int64], step: int) -> None:
+    """Find the lane that ran away, march it once more and tell how it did."""
+    compiled, steps = run.compiled, run.compiled.grid.steps
+    # The step counted from the start is at the end of a mesh cycle. A lane marched by itself is
+    # rounded differently, so that it may take a cycle more or less.
+    before, last, lane = max(step // steps - 1, 0), -1, int(lanes[0])
+    record = np.zeros((steps + 1, run.state.shape[1], 1))
+    for lane in lanes:
+        index = np.array([lane])
+        state = run.state[index].copy()
+        early = run.block(index, state, before, None, None, None, None) if before else -1
+        if early >= 0:
+            before = early // steps - 1
+            state = run.state[index].copy()
+            if before:
+                run.block(index, state, before, None, None, None, None)
+        for _ in range(2):
+            last = run.block(index, state, 1, record, None, None, None)
+            if last >= 0:
+                break
+            before += 1
+        if last >= 0:
+            break
+        before = max(step // steps - 1, 0)
+    member = compiled.members[run.member[lane]] if compiled.members else compiled
+    report_divergence(
+        member.system, member.nodes, compiled.grid, compiled.step_number, record[:, :, 0],
+        1.0 / float(run.period[lane]), before, int(lane) if run.period.size > 1 else None,
+        run.scales[lane],
     )  # fmt: skip
-
-
-def _report_divergence(compiled: Compiled, step: int) -> None:
-    steps = compiled.grid.steps
-    raise ComputationError(
-        Problem(
-            what=f"the motion grew beyond all bounds within {step / steps:.1f} mesh cycles",
-            why=f"omega_max*dt = {compiled.step_number:.3g} is within the stability limit of the "
-            "integrator, so the system itself is unstable",
-            remedy="Look for negative stiffness or damping, or friction that feeds energy in",
-        )
-    )

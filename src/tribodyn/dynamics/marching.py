@@ -7,12 +7,14 @@ from typing import Any
 
 import numba as nb
 import numpy as np
+from numba import types
+from numba.extending import overload
 from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
-from tribodyn.dynamics.crossing import find_sides, split_step
+from tribodyn.dynamics.crossing import set_sides, split_step
 from tribodyn.dynamics.kernel import I64, INNER, JIT, left_side, step
-from tribodyn.dynamics.lanes import address
+from tribodyn.dynamics.lanes import address, open_rows
 from tribodyn.dynamics.moments import gather
 
 __all__ = ["march_block"]
@@ -36,20 +38,32 @@ def _put(lane: int, width: int, first: int, last: int, w: Array, single: Array) 
         w[slot * width + lane] = single[slot]
 
 
-@nb.njit(**INNER)
-def _start_sides(
-    width: int, code: Index, reads: Index, rows: Array, base: int, w: Array, single: Array
-) -> None:
-    side, slots = 8 * code[0] + code[1], 9 * code[0] + 2 * code[1] + 5
-    for lane in range(width):
-        _take(lane, width, slots, w, single)
-        find_sides(code, reads, rows, base, I64(0), single)
-        _put(lane, width, side, side + code[1], w, single)
+def _own_rows(
+    rows: Any, base: int, columns: int, width: int, lane: int, room: Any
+) -> tuple[Any, int]:
+    """Three rows of one lane, as an address and a base; gathered in ``room`` if need be."""
+    return rows, base
+
+
+@overload(_own_rows)
+def _choose_rows(rows, base, columns, width, lane, room):  # type: ignore[no-untyped-def]
+    if not isinstance(rows, types.BaseTuple):
+        return lambda rows, base, columns, width, lane, room: (rows, base)
+
+    def gathered(rows, base, columns, width, lane, room):  # type: ignore[no-untyped-def]
+        table = rows[0]
+        for item in range(3 * columns):
+            room[item] = table[(base + item) * width + lane]
+        return room, 0
+
+    return gathered
 
 
 @nb.njit(**INNER)
 def _repair(
-    width: int,
+    gone: int,
+    slots: int,
+    lanes: Any,
     code: Index,
     reads: Index,
     rows: Array,
@@ -57,14 +71,16 @@ def _repair(
     w: Array,
     single: Array,
     part: Array,
+    room: Array,
 ) -> None:
     """Repeat the step in parts for every lane that crossed a boundary."""
-    n, side = code[0], 8 * code[0] + code[1]
+    n, side, width = code[0], 8 * code[0] + code[1], len(lanes)
     h = 9 * n + 2 * code[1] + 1
     for lane in range(width):
-        _take(lane, width, h + 4, w, single)
-        if left_side((0.0,), code, reads, rows, base + 2 * code[2], single):
-            split_step(code, reads, rows, base, w[h * width + lane], part, single)
+        if (gone >> lane) & 1:
+            _take(lane, width, slots, w, single)
+            own, start = _own_rows(rows, base, code[2], width, lane, room)
+            split_step(code, reads, own, start, w[h * width + lane], part, single)
             _put(lane, width, 4 * n, 6 * n, w, single)
             _put(lane, width, side, side + code[1], w, single)
 
@@ -73,6 +89,7 @@ def _repair(
 def _set_up(lanes: Any, code: Index, period: Array, load: Array, state: Array, w: Array) -> None:
     n, contacts, width = code[0], code[1], len(lanes)
     steady = 8 * n + 2 * contacts
+    one = steady + n
     for lane in range(width):
         for i in range(2 * n):
             w[i * width + lane] = state[lane, i]
@@ -80,8 +97,14 @@ def _set_up(lanes: Any, code: Index, period: Array, load: Array, state: Array, w
             w[(steady + i) * width + lane] = load[lane, i]
         for j in range(contacts):
             w[(8 * n + contacts + j) * width + lane] = 1.0
-        w[(steady + n) * width + lane] = 1.0
-        w[(steady + n + 2) * width + lane] = 1.0 / period[lane]
+        w[one * width + lane] = 1.0
+        w[(one + 2) * width + lane] = 1.0 / period[lane]
+        if load.shape[1] > n:
+            # Factors of stiffness, damping, friction, error, gap and load: see `Slots`.
+            for slot, item in ((6, 0), (7, 1), (8, 2), (5, 4)):
+                w[(one + slot) * width + lane] = load[lane, n + item] - 1.0
+            w[(one + 3) * width + lane] = 1.0 - load[lane, n + 3]
+            w[one * width + lane] = load[lane, n + 5]
 
 
 def _build(digest: str) -> Any:
@@ -90,7 +113,7 @@ def _build(digest: str) -> Any:
         lanes: Any,
         code: Index,
         reads: Index,
-        rows: Array,
+        rows: Any,
         share: Array,
         restart: Any,
         work: Array,
@@ -111,14 +134,16 @@ def _build(digest: str) -> Any:
         lanes : tuple of float
             As long as there are lanes.
         code, reads, rows, share, restart
-            The program; ``share`` is its ``width``.
+            The program; ``share`` is its ``width``. Rows of shape (items, lanes) belong to one
+            lane each.
         work : array of zeros
-            Room for the slots of all lanes, the slots of one lane and three rows. It comes from
+            Room for the slots of all lanes, the slots of one lane and six rows. It comes from
             outside because its owner has to outlive the addresses.
         period : (lanes,) array
             Mesh period [s].
-        load : (lanes, n) array
-            Constant acceleration.
+        load : (lanes, n) or (lanes, n + 6) array
+            Constant acceleration, and what the lane scales: factors of contact stiffness, contact
+            damping, friction, error, dead zone and load.
         state : (lanes, 2 n) array
             Position and velocity; overwritten.
         cycles : int
@@ -142,10 +167,11 @@ def _build(digest: str) -> Any:
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, columns, width = code[0], code[2], len(lanes)
-        slots = 9 * n + 2 * code[1] + 5
         h = 9 * n + 2 * code[1] + 1
+        slots = h + 8 + code[4 + 4 * code[1]]
         single, part = address(work[slots * width :]), address(work[slots * (width + 1) :])
-        w, code, reads, rows = address(work), address(code), address(reads), address(rows)
+        room = address(work[slots * (width + 1) + 3 * columns :])
+        w, code, reads, table = address(work), address(code), address(reads), open_rows(rows)
         _set_up(lanes, code, period, load, state, w)
         switching = False
         for j in range(code[1]):
@@ -158,14 +184,16 @@ def _build(digest: str) -> Any:
                 for lane in range(width):
                     w[h * width + lane] = period[lane] * share[r]
                 if switching and restart[r]:
-                    _start_sides(width, code, reads, rows, base, w, single)
+                    set_sides(lanes, code, reads, table, base, I64(0), w)
                 if keep:
                     for i in range(2 * n):
                         for lane in range(width):
                             record[point, i, lane] = w[i * width + lane]
-                step(lanes, code, reads, rows, base, w)
-                if switching and left_side(lanes, code, reads, rows, base + 2 * columns, w):
-                    _repair(width, code, reads, rows, base, w, single, part)
+                step(lanes, code, reads, table, base, w)
+                if switching:
+                    gone = left_side(lanes, code, reads, table, base + 2 * columns, w)
+                    if gone != 0:
+                        _repair(gone, slots, lanes, code, reads, table, base, w, single, part, room)
                 if moments is not None:
                     for lane in range(width):
                         w[(h + 3) * width + lane] = 1.0 / w[h * width + lane]
@@ -173,11 +201,10 @@ def _build(digest: str) -> Any:
                         lanes,
                         code,
                         reads,
-                        rows,
+                        table,
                         base,
                         switching,
                         w,
-                        single,
                         outputs,
                         share[r] / cycles,
                         waves,

@@ -13,7 +13,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.crossing import find_sides
+from tribodyn.dynamics.crossing import set_sides
 from tribodyn.dynamics.kernel import I64, INNER, acceleration, compression
 from tribodyn.dynamics.lanes import greatest, least, load, store
 
@@ -38,27 +38,6 @@ def _middle(lanes: Any, code: Index, w: Array) -> None:
         q1, v1 = load(lanes, w, 4 * n + i), load(lanes, w, 5 * n + i)
         store(w, 2 * n + i, 0.5 * (q0 + q1) + 0.125 * h * (v0 - v1))
         store(w, 3 * n + i, 1.5 * inverse * (q1 - q0) - 0.25 * (v0 + v1))
-
-
-@nb.njit(**INNER)
-def _lane_sides(
-    width: int,
-    code: Index,
-    reads: Index,
-    rows: Array,
-    base: int,
-    buffer: int,
-    w: Array,
-    single: Array,
-) -> None:
-    n, side = code[0], 8 * code[0] + code[1]
-    for lane in range(width):
-        for i in range(2 * n):
-            slot = 2 * n * buffer + i
-            single[slot] = w[slot * width + lane]
-        find_sides(code, reads, rows, base, buffer, single)
-        for j in range(code[1]):
-            w[(side + j) * width + lane] = single[side + j]
 
 
 @nb.njit(**INNER)
@@ -91,7 +70,6 @@ def gather(
     base: int,
     switching: bool,
     w: Array,
-    single: Array,
     outputs: Array,
     share: float,
     waves: Array,
@@ -104,7 +82,7 @@ def gather(
     ``share`` is the part of the averaging time that the step takes, ``waves`` holds cosine and
     sine of every harmonic at the three nodes of the step from ``wave``.
     """
-    n, contacts, columns, width = code[0], code[1], code[2], len(lanes)
+    n, contacts, columns = code[0], code[1], code[2]
     long = PLAIN_MOMENTS + 2 * harmonics
     _middle(lanes, code, w)
     for node in range(3):
@@ -112,7 +90,7 @@ def gather(
         weight = (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)[node] * share
         phase = wave + node * 2 * harmonics
         if switching:
-            _lane_sides(width, code, reads, rows, row, buffer, w, single)
+            set_sides(lanes, code, reads, rows, row, buffer, w)
         acceleration(lanes, code, reads, rows, row, buffer, 6 * n, w)
         at, read, here = I64(4), buffer * code[3], row
         for j in range(contacts):

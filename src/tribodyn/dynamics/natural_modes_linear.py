@@ -13,6 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import system_events
+from tribodyn.dynamics.load_friction import (
+    carried_load,
+    friction_secant,
+    friction_tangent,
+    push_with_friction,
+)
 from tribodyn.dynamics.program import Nodes, compile_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_between
@@ -90,7 +96,8 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
     -----
     ``K + sum_j <k_j h_j h_j^T>`` over the contacts that carry; the equilibrium is sought at
     every phase by itself. A contact that carries nothing at rest stays closed unless it is a
-    further ramp of a force law. Friction adds ``sum_j <k_j s_j h_j^T>``.
+    further ramp of a force law. Friction adds ``sum_j <k_j s_j h_j^T>``; one that follows the
+    load counts with its tangent at the static load.
 
     Examples
     --------
@@ -100,9 +107,9 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
     array([[5.]])
     """
     nodes, weight = _rows(system, phase)
-    closed = _closed(system, nodes)
+    closed, push = _at_rest(system, nodes)
     outer = np.einsum("rsji,rsjk->rsjik", nodes.direction, nodes.direction)
-    rub = nodes.force_direction - nodes.direction
+    rub = push - nodes.direction
     cross = np.einsum("rsji,rsjk->rsjik", rub, nodes.direction)
     spring = weight[:, :, None] * np.where(closed, nodes.stiffness, 0.0)
     free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
@@ -119,7 +126,7 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
         contact_stiffness=contact_stiffness,
         contact_damping=contact_damping,
         direction=np.einsum("rs,rsji->ji", weight, nodes.direction),
-        push=np.einsum("rs,rsji->ji", weight, nodes.force_direction),
+        push=np.einsum("rs,rsji->ji", weight, push),
         spring=spring.sum(axis=(0, 1)),
         damper=damper.sum(axis=(0, 1)),
         bundle=_bundles(nodes),
@@ -149,20 +156,34 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
     return single, np.ones((1, 1))
 
 
-def _closed(system: System, nodes: Nodes) -> NDArray[np.bool_]:
-    """Tell which contacts carry at rest, (rows, stages, contacts)."""
+def _at_rest(system: System, nodes: Nodes) -> tuple[NDArray[np.bool_], Array]:
+    """Contacts that carry at rest, and what a further newton of each pushes, friction included.
+
+    Shapes (rows, stages, contacts) and (rows, stages, contacts, n).
+    """
     kept = np.broadcast_to(_lowest(nodes), nodes.stiffness.shape)
-    if kept.all():
-        return np.array(kept)
+    push = nodes.force_direction
+    if kept.all() and not system.frictions:
+        return np.array(kept), push
     closed = np.ones(nodes.stiffness.shape, dtype=bool)
+    position = np.zeros(nodes.force.shape)
+    load = np.zeros((*nodes.stiffness.shape[:2], len(system.frictions)))
     for _ in range(_ROUNDS):
-        position = _equilibrium(system, nodes, np.where(closed, nodes.stiffness, 0.0))
+        carrying = np.where(closed, nodes.stiffness, 0.0)
+        last, position = position, _equilibrium(system, nodes, carrying, push)
         compression = np.einsum("rsji,rsi->rsj", nodes.direction, position) - nodes.error
         found = kept | (compression > nodes.gap)
-        if np.array_equal(found, closed):
+        done = np.array_equal(found, closed)
+        if system.frictions:
+            load = carried_load(system, carrying * (compression - nodes.gap))
+            ratio = friction_secant(system, nodes.friction_coefficients, load)
+            push = push_with_friction(system, nodes, ratio)
+            done &= bool(np.abs(position - last).max() <= 1e-12 * np.abs(position).max())
+        if done:
             break
         closed = found
-    return closed
+    tangent = friction_tangent(system, nodes.friction_coefficients, load)
+    return closed, push_with_friction(system, nodes, tangent)
 
 
 def _lowest(nodes: Nodes) -> NDArray[np.bool_]:
@@ -179,12 +200,12 @@ def _lowest(nodes: Nodes) -> NDArray[np.bool_]:
     return kept
 
 
-def _equilibrium(system: System, nodes: Nodes, carrying: Array) -> Array:
+def _equilibrium(system: System, nodes: Nodes, carrying: Array, push: Array) -> Array:
     """Position at rest at every phase, (rows, stages, n); free motions get no displacement."""
-    outer = np.einsum("rsji,rsjk->rsjik", nodes.force_direction, nodes.direction)
+    outer = np.einsum("rsji,rsjk->rsjik", push, nodes.direction)
     stiffness = system.stiffness + np.einsum("rsj,rsjik->rsik", carrying, outer)
     shift = carrying * (nodes.error + nodes.gap)
-    force = nodes.force + np.einsum("rsj,rsji->rsi", shift, nodes.force_direction)
+    force = nodes.force + np.einsum("rsj,rsji->rsi", shift, push)
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
     inverse = np.linalg.pinv(stiffness * np.outer(scale, scale), rcond=1e-12)
     return np.asarray(scale * np.einsum("rsik,rsk->rsi", inverse, scale * force))

@@ -9,7 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.coordinates import OrbitCoordinates, orbit_coordinates
+from tribodyn.dynamics.coordinates import (
+    OrbitCoordinates,
+    orbit_coordinates,
+    refuse_disconnected,
+)
 from tribodyn.dynamics.march import Compiled, march
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
@@ -38,7 +42,8 @@ class OrbitMap:
     Raises
     ------
     InputError
-        If a balancing torque is asked for that drives no free motion.
+        If a balancing torque is asked for that drives no free motion, or a coordinate is
+        connected to nothing.
     """
 
     def __init__(
@@ -51,6 +56,7 @@ class OrbitMap:
     ) -> None:
         self.width, self.threads = width, None if width else 1
         self.compiled = compiled
+        refuse_disconnected(compiled)
         self.coordinates = coordinates or orbit_coordinates(compiled, mesh_frequency)
         self.period = 1.0 / mesh_frequency
         self.periods = periods
@@ -90,18 +96,46 @@ class OrbitMap:
             width=self.width if state.shape[0] < 32 else None, threads=self.threads,
         )  # fmt: skip
         self.cycles += self.periods
-        reduced = self.coordinates.reduce(new)
-        if self.balance is not None:
-            direction, _, _ = self.balance
-            # What the free motion gained over the period is what the torque has to take away.
-            gained = self.coordinates.free_velocity(new) @ direction
-            reduced = np.column_stack((reduced, np.atleast_2d(y)[:, -1] - gained))
+        reduced = self._image(np.atleast_2d(y), new)
         return reduced[0] if y.ndim == 1 else reduced
+
+    def _image(self, y: Array, new: Array) -> Array:
+        reduced = self.coordinates.reduce(new)
+        if self.balance is None:
+            return reduced
+        direction, _, _ = self.balance
+        # What the free motion gained over the period is what the torque has to take away.
+        gained = self.coordinates.free_velocity(new) @ direction
+        return np.column_stack((reduced, y[:, -1] - gained))
+
+    def follow(self, y: Array) -> tuple[Array, Array]:
+        """Map one vector and keep every state on the way.
+
+        Parameters
+        ----------
+        y : (k,) array
+            Reduced vector [m/s].
+
+        Returns
+        -------
+        tuple of (k,) array and (points, 2 n) array
+            Image, and states as they come.
+        """
+        state, extra = self.split(y)
+        record = np.empty((self.periods * self.compiled.grid.steps + 1, state.shape[1], 1))
+        new = march(
+            self.compiled, np.array([self.period]), state, self.periods, extra_force=extra,
+            record=record, threads=1,
+        )  # fmt: skip
+        self.cycles += self.periods
+        return self._image(y[None], new)[0], record[:, :, 0]
 
     @property
     def affine(self) -> bool:
-        """Whether no contact has a dead zone, so that the map is linear but for a constant."""
+        """Whether the map is linear but for a constant: no dead zone, no friction that bends."""
         code = self.compiled.program.code
+        if self.compiled.nodes.friction_coefficients.shape[-1] > 1:
+            return False
         return not any(code[4 + 4 * j + 2] for j in range(self.contacts))
 
     def multipliers(self, matrix: Array) -> NDArray[np.complex128]:
@@ -141,10 +175,20 @@ class OrbitMap:
             self.compiled, np.array([self.period]), state, self.periods, extra_force=extra,
             record=record,
         )  # fmt: skip
-        return self._without_drift(record[:, :, 0]), extra[0]
+        return self.without_drift(record[:, :, 0]), extra[0]
 
-    def _without_drift(self, states: Array) -> Array:
-        """Take the mean speed and mean acceleration out of the free motions."""
+    def without_drift(self, states: Array) -> Array:
+        """Take the mean speed and mean acceleration out of the free motions, in place.
+
+        Parameters
+        ----------
+        states : (points, 2 n) array
+            States over one period.
+
+        Returns
+        -------
+        (points, 2 n) array
+        """
         c, size = self.coordinates, self.compiled.system.size
         phase = np.concatenate(
             [cycle + self.compiled.nodes.phase[:, 0] for cycle in range(self.periods)]

@@ -1,7 +1,8 @@
-"""The search for a fixed point: settle, accelerate, finish with Newton's method."""
+"""The search for a fixed point: settle, finish with Newton's method, accelerate where needed."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,20 +10,32 @@ from numpy.typing import NDArray
 
 from tribodyn.dynamics.anderson import anderson
 from tribodyn.dynamics.orbit_map import OrbitMap
+from tribodyn.dynamics.orbit_touch import FlankWatch
 
-__all__ = ["OrbitPoint", "find_orbit"]
+__all__ = [
+    "PATIENCE",
+    "OrbitPoint",
+    "approach_orbit",
+    "find_orbit",
+    "finish_orbit",
+    "motion_size",
+]
 
 Array = NDArray[np.float64]
 
-#: Plain periods before acceleration: a linear system, and at most with dead zones, where they
-#: keep a start in its own basin of attraction.
-_SETTLE, _SETTLE_DEAD_ZONE = 3, 24
+#: Plain periods with dead zones at most, if the flanks part: they keep a start in its own basin
+#: of attraction. A linear system has one orbit and needs none.
+_SETTLE = 24
+#: Plain periods after which Newton's method is tried while the flanks are in touch.
+_TRIES = (2, 8)
 #: A disturbance this small relative to the orbit no longer changes the basin.
 _SETTLED = 1e-3
+#: A motion this far from an unstable orbit, relative to it, has left it.
+_AWAY = 0.1
 _ANDERSON_LIMIT = 40
 _NEWTON_LIMIT = 8
-#: Plain periods of each further attempt, and attempts.
-_PATIENCE = (150, 400)
+#: Plain periods of each further attempt.
+PATIENCE = (150, 400)
 #: Size of the disturbances of the monodromy matrix relative to the orbit.
 _DISTURBANCE = 1e-6
 
@@ -41,6 +54,12 @@ class OrbitPoint:
         Size of the motion [m/s].
     multipliers : (m,) complex array
         Floquet multipliers, the largest first.
+    states : (points, 2 n) array
+        The motion over one period.
+    slopes : (k, points, 2 n) array
+        Its derivative by the reduced vector; empty for a linear map.
+    search : int
+        Mesh cycles marched one after the other before Newton's method found this point.
     """
 
     point: Array
@@ -48,6 +67,9 @@ class OrbitPoint:
     matrix: Array
     scale: float
     multipliers: NDArray[np.complex128]
+    states: Array
+    slopes: Array
+    search: int = 0
 
     @property
     def correction(self) -> Array:
@@ -61,44 +83,163 @@ class OrbitPoint:
         """Distance to the orbit over its size; at least the rounding of the map."""
         return float(np.linalg.norm(self.correction)) / self.scale
 
-
-def _examine(mapping: OrbitMap, y: Array, scale: float) -> OrbitPoint:
-    """Evaluate the map and its matrix at a point."""
-    image = mapping(y)
-    # Of a linear map any difference is exact, and a large one loses no digits.
-    step = scale if mapping.affine else _DISTURBANCE * scale
-    matrix = (mapping(y + step * np.eye(y.size)) - image).T / step
-    return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix))
+    @property
+    def attracts(self) -> bool:
+        """Whether motions beside the orbit approach it, or keep their distance."""
+        return bool(np.abs(self.multipliers[:1]).max(initial=0.0) <= 1.0 + 1e-6)
 
 
-def _newton(mapping: OrbitMap, y: Array, scale: float, tolerance: float) -> OrbitPoint:
-    best = _examine(mapping, y, scale)
+def motion_size(mapping: OrbitMap, states: Array) -> float:
+    """Size of a motion, free of drift.
+
+    Parameters
+    ----------
+    mapping : OrbitMap
+    states : (points, 2 n) array
+        States over one period.
+
+    Returns
+    -------
+    float
+        Largest reduced vector [m/s].
+    """
+    reduced = mapping.coordinates.reduce(mapping.without_drift(states.copy()))
+    return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
+
+
+def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> OrbitPoint:
+    """Evaluate the map and its matrix at a point; that of a linear map is the same everywhere."""
+    image, states = mapping.follow(y)
+    scale = motion_size(mapping, states)
+    if known is not None and mapping.affine:
+        matrix, slopes = known.matrix, known.slopes
+    elif mapping.affine:
+        # Of a linear map any difference is exact, and a large one loses no digits.
+        matrix = (mapping(y + scale * np.eye(y.size)) - image).T / scale
+        slopes = np.zeros((0, *states.shape))
+    else:
+        step, before = _DISTURBANCE * scale, mapping.cycles
+        beside = [mapping.follow(y + step * row) for row in np.eye(y.size)]
+        # The disturbed motions are lanes of one march; they count once.
+        mapping.cycles = before + mapping.periods
+        matrix = np.array([each - image for each, _ in beside]).T / step
+        slopes = np.array([motion - states for _, motion in beside]) / step
+    return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix), states, slopes)
+
+
+def finish_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
+    """Newton's method from a point near the orbit.
+
+    Parameters
+    ----------
+    mapping : OrbitMap
+    y : (k,) array
+        Reduced vector [m/s].
+    tolerance : float
+        Certified error that is good enough [-].
+
+    Returns
+    -------
+    OrbitPoint
+        The best point, whether or not it meets the tolerance.
+    """
+    search = mapping.cycles
+    best = _examine(mapping, y)
     for _ in range(_NEWTON_LIMIT):
         if best.error <= 0.01 * tolerance:
             break
-        trial = _examine(mapping, best.point + best.correction, scale)
+        trial = _examine(mapping, best.point + best.correction, best)
         if not trial.error < 0.5 * best.error:
             break
         best = trial
+    best.search = search
     return best
 
 
-def _settle(mapping: OrbitMap, y: Array, periods: int) -> tuple[Array, float]:
-    """March plain periods until little changes; returns the point and the size of the motion."""
-    scale = 0.0
-    for count in range(periods):
-        new = mapping(y)
-        if count % 8 == 0:
-            record = mapping.coordinates.reduce(mapping.record(new)[0])
-            scale = float(np.linalg.norm(record, axis=1).max()) or 1.0
+def _good(orbit: OrbitPoint, tolerance: float) -> bool:
+    return orbit.error <= tolerance and orbit.attracts
+
+
+def _settle(
+    mapping: OrbitMap, y: Array, periods: int, tolerance: float, unstable: OrbitPoint | None
+) -> tuple[Array, bool, OrbitPoint | None]:
+    """March plain periods until little changes, or the orbit is known to be reached in touch.
+
+    Beside an unstable orbit little changes at first. Returns the point, whether little changes,
+    and the orbit if it is known.
+    """
+    watch, candidate, spent = FlankWatch(mapping), None, 0
+    for count in range(1, periods + 1):
+        new, states = mapping.follow(y)
         change = float(np.linalg.norm(new - y))
         y = new
-        if count >= _SETTLE - 1 and change < _SETTLED * scale:
-            break
-    return y, scale
+        touching = watch.in_touch(states)
+        if candidate is None and touching and count in _TRIES:
+            before = mapping.cycles
+            candidate = finish_orbit(mapping, y, tolerance)
+            if not (_good(candidate, tolerance) and watch.in_touch(candidate.states)):
+                candidate = None
+            else:
+                spent = mapping.cycles - before
+        if candidate is not None and watch.stays(
+            candidate.states, candidate.slopes, candidate.matrix, y - candidate.point
+        ):
+            candidate.search = mapping.cycles - spent
+            return candidate.point, True, candidate
+        if unstable is not None and np.linalg.norm(y - unstable.point) < _AWAY * unstable.scale:
+            continue
+        if count >= 3 and change < _SETTLED * motion_size(mapping, states):
+            return y, True, None
+    return y, False, None
 
 
-def find_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
+def approach_orbit(
+    mapping: OrbitMap,
+    y: Array,
+    tolerance: float,
+    periods: int = _SETTLE,
+    unstable: OrbitPoint | None = None,
+) -> tuple[OrbitPoint | None, Array]:
+    """Follow a motion until it is known which stable orbit it approaches.
+
+    Parameters
+    ----------
+    mapping : OrbitMap
+    y : (k,) array
+        Reduced vector to start from [m/s].
+    tolerance : float
+        Certified error that is good enough [-].
+    periods : int
+        Plain periods at most.
+    unstable : OrbitPoint, optional
+        Orbit that the motion leaves.
+
+    Returns
+    -------
+    tuple of OrbitPoint or None and (k,) array
+        The orbit, if it is known, and where the motion has come.
+    """
+    y, settled, known = _settle(mapping, y, periods, tolerance, unstable)
+    if known is None and settled:
+        orbit = finish_orbit(mapping, y, tolerance)
+        known = orbit if _good(orbit, tolerance) else None
+    return known, y
+
+
+def _attempt(
+    mapping: OrbitMap, y: Array, periods: int, tolerance: float, unstable: OrbitPoint | None
+) -> OrbitPoint:
+    """Settle and finish, with acceleration in between if it has to be."""
+    known, y = approach_orbit(mapping, y, tolerance, periods, unstable)
+    if known is not None:
+        return known
+    near, _, _ = anderson(mapping, y, tolerance=1e-3 * tolerance, limit=_ANDERSON_LIMIT)
+    return finish_orbit(mapping, near, tolerance)
+
+
+def find_orbit(
+    mapping: OrbitMap, y: Array, tolerance: float, patience: Sequence[int] = PATIENCE
+) -> OrbitPoint:
     """Settle, accelerate, finish; with more and more plain marching if that is not enough.
 
     Parameters
@@ -108,22 +249,30 @@ def find_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
         Reduced vector to start from [m/s].
     tolerance : float
         Certified error that is good enough [-].
+    patience : sequence of int
+        Plain periods of each further attempt with dead zones.
 
     Returns
     -------
     OrbitPoint
         The last attempt, whether or not it meets the tolerance.
+
+    Notes
+    -----
+    A linear map needs one step of Newton's method. With dead zones a start belongs to the orbit
+    that its motion approaches. While the flanks are in touch that is known after a few periods;
+    otherwise the motion is followed for up to 24 periods.
     """
-    periods = _SETTLE if mapping.affine else _SETTLE_DEAD_ZONE
-    for patience in (0, *_PATIENCE):
-        y, scale = _settle(mapping, y, max(periods, patience))
-        near, _, _ = anderson(mapping, y, tolerance=1e-3 * tolerance, limit=_ANDERSON_LIMIT)
-        orbit = _newton(mapping, near, scale, tolerance)
-        settled = np.abs(orbit.multipliers[:1]).max(initial=0.0) <= 1.0 + 1e-6
-        if orbit.error <= tolerance and settled:
+    if mapping.affine:
+        return finish_orbit(mapping, y, tolerance)
+    orbit = _attempt(mapping, y, _SETTLE, tolerance, None)
+    generator = np.random.default_rng(0)
+    for periods in patience:
+        if _good(orbit, tolerance):
             break
-        if orbit.error <= tolerance:
-            # Accurate but unstable: a motion would leave it, so the search goes on beside it.
-            generator = np.random.default_rng(0)
-            y = orbit.point + _SETTLED * scale * generator.standard_normal(y.size)
+        unstable = orbit if orbit.error <= tolerance else None
+        # A motion leaves an unstable orbit, so the search goes on beside it.
+        beside = _SETTLED * orbit.scale * generator.standard_normal(y.size)
+        start = orbit.point if unstable is None else orbit.point + beside
+        orbit = _attempt(mapping, start, periods, tolerance, unstable)
     return orbit

@@ -32,6 +32,8 @@ class _Row(NamedTuple):
     direction_slope: Array
     force_direction: Array
     force: Array
+    friction_direction: Array
+    friction_coefficients: Array
 
 
 def _rows_of_step(nodes: Nodes, step: int) -> list[_Row]:
@@ -58,7 +60,13 @@ class _Lane:
         rate = row.direction @ v + self.beat * (row.direction_slope @ q - row.error_slope)
         spring = np.abs(side) * row.stiffness * (compression - side * row.gap)
         damper = np.where((side != 0.0) | self.free, row.damping * rate, 0.0)
-        contact = row.force_direction.T @ (spring + damper)
+        load = spring + damper
+        contact = row.force_direction.T @ load
+        for f, friction in enumerate(self.system.frictions):
+            force = sum(load[j] for j in friction.contacts)
+            x = min(abs(force) / friction.load, friction.limit)
+            ratio = sum(c * x**k for k, c in enumerate(row.friction_coefficients[f]))
+            contact = contact + row.friction_direction[f] * (force * ratio)
         inner = np.asarray(self.system.stiffness) @ q + np.asarray(self.system.damping) @ v
         return np.asarray(self.inverse @ (row.force - inner - contact))
 

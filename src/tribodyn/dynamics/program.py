@@ -3,6 +3,7 @@
 The equations are divided by the mass matrix once, so that the loop works on accelerations:
 ``a = f - K q - C v - sum_j g_j N_j`` with ``K = M^-1 K``, ``g_j = M^-1 (h_j + s_j)``. Only the
 entries that are not zero are kept; those that change over the mesh cycle live in the row table.
+Lanes that scale their contacts have the same rows: the factors are numbers of the lane.
 """
 
 from __future__ import annotations
@@ -13,11 +14,25 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.dynamics.falling_force import refuse_falling_force
 from tribodyn.dynamics.grid import Grid, RowEvaluator, build_grid, system_events
+from tribodyn.dynamics.load_friction import (
+    coefficient_count,
+    friction_coefficients,
+    friction_directions,
+)
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["Nodes", "Program", "Slots", "compile_system", "lane_load"]
+__all__ = [
+    "Nodes",
+    "Program",
+    "Slots",
+    "build_program",
+    "compile_on",
+    "compile_system",
+    "lane_load",
+]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -31,18 +46,23 @@ class Program(NamedTuple):
     code : (m,) int array
         Coordinates, contacts, columns of the row table, reads per buffer; then four numbers per
         contact (terms of its direction, terms of its slope, has a dead zone, damping acts in the
-        gap); then the number of terms of each coordinate's acceleration.
+        gap, plus 2 if lanes scale it); the number of frictions that follow the load, and two
+        numbers for each (contacts that it follows, coefficients); then the number of terms of
+        each coordinate's acceleration.
     reads : (3 * stride,) int array
         Slot that each term reads, for each of the three state buffers.
     rows : (steps * 3 * columns,) array
         Factor of each term at the left end, middle and right end of each step; every contact
-        begins with stiffness, damping, error, its slope and the gap.
+        begins with stiffness, damping, error, its slope and the gap, every friction is one over
+        its load, its limit and its coefficients.
     width : (steps,) array
         Phase width of each step [-].
     restart : (steps,) bool array
         Whether a step begins at an event.
     constant_load : (n,) array
         Part of the load that does not vary, as an acceleration.
+    pattern : (...,) bool array
+        Which of all possible terms are there.
     """
 
     code: Index
@@ -51,36 +71,34 @@ class Program(NamedTuple):
     width: Array
     restart: NDArray[np.bool_]
     constant_load: Array
+    pattern: NDArray[np.bool_]
 
     @property
     def slots(self) -> Slots:
         """Where a lane keeps what in the work buffer."""
-        return Slots(int(self.code[0]), int(self.code[1]))
+        contacts = int(self.code[1])
+        return Slots(int(self.code[0]), contacts, int(self.code[4 + 4 * contacts]))
 
 
 class Slots:
     """Slots of the work buffer: one number per lane in each.
 
     Three state buffers (q, v) at 0, 2n and 4n, two sums, contact forces, sides of the dead
-    zones, constant accelerations, then single slots.
+    zones, constant accelerations; then, from ``one``: factor of the load, step, mesh frequency, one
+    minus the factor of the error, one over the step, and the factors of gap, stiffness, damping and
+    friction less one; then the friction forces. Zeros belong to a lane that scales nothing.
 
     Parameters
     ----------
-    n, contacts : int
-        Coordinates and contacts.
+    n, contacts, frictions : int
+        Coordinates, contacts and frictions that follow the load.
     """
 
-    def __init__(self, n: int, contacts: int) -> None:
-        self.new = 4 * n
+    def __init__(self, n: int, contacts: int, frictions: int) -> None:
         self.force = 8 * n
-        self.side = self.force + contacts
-        self.load = self.side + contacts
-        self.one = self.load + n
-        self.step = self.one + 1
-        self.beat = self.one + 2
-        self.zero = self.one + 3
-        self.inverse_step = self.one + 4
-        self.count = self.one + 5
+        self.one = self.force + 2 * contacts + n
+        self.friction = self.one + 9
+        self.count = self.friction + frictions
 
 
 class Nodes(NamedTuple):
@@ -97,9 +115,13 @@ class Nodes(NamedTuple):
     force_direction: Array
     force: Array
     weight: Array
+    friction_direction: Array
+    friction_coefficients: Array
 
 
-def compile_system(system: System, steps: int) -> tuple[Grid, Nodes, Program]:
+def compile_system(
+    system: System, steps: int, events: tuple[float, ...] | None = None
+) -> tuple[Grid, Nodes, Program]:
     """Evaluate a system on its event-aligned grid.
 
     Parameters
@@ -107,6 +129,8 @@ def compile_system(system: System, steps: int) -> tuple[Grid, Nodes, Program]:
     system : System
     steps : int
         Steps per mesh cycle.
+    events : tuple of float, optional
+        Mesh phases that become grid points; those of the system by default.
 
     Returns
     -------
@@ -115,7 +139,7 @@ def compile_system(system: System, steps: int) -> tuple[Grid, Nodes, Program]:
     Raises
     ------
     InputError
-        If an entry has the wrong shape or is not finite, or a gap is negative.
+        If an entry has the wrong shape or is not finite, a gap is negative, or a force law falls.
 
     Examples
     --------
@@ -125,9 +149,30 @@ def compile_system(system: System, steps: int) -> tuple[Grid, Nodes, Program]:
     >>> int(compile_system(system, 16)[2].code[0])
     1
     """
-    grid = build_grid(system_events(system), steps)
+    grid = build_grid(events or system_events(system), steps)
+    return grid, *compile_on(system, grid)
+
+
+def compile_on(system: System, grid: Grid) -> tuple[Nodes, Program]:
+    """Evaluate a system on any grid.
+
+    Parameters
+    ----------
+    system : System
+    grid : Grid
+        Steps of any width in any order; terms that are zero on all of them are left out.
+
+    Returns
+    -------
+    tuple of Nodes, Program
+
+    Raises
+    ------
+    InputError
+        If an entry has the wrong shape or is not finite, a gap is negative, or a force law falls.
+    """
     nodes = _evaluate(system, grid)
-    return grid, nodes, _flatten(system, grid, nodes)
+    return nodes, build_program(system, grid, nodes)
 
 
 def _evaluate(system: System, grid: Grid) -> Nodes:
@@ -161,7 +206,7 @@ def _evaluate(system: System, grid: Grid) -> Nodes:
                 remedy="Use `error` for an interference",
             )
         )
-    return Nodes(
+    nodes = Nodes(
         phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
         stiffness=scalar("stiffness", rows.values),
         damping=scalar("damping", rows.values),
@@ -173,31 +218,43 @@ def _evaluate(system: System, grid: Grid) -> Nodes:
         force_direction=direction + vector("friction", rows.values),
         force=rows.values("force", system.force, size),
         weight=grid.width[:, None] * np.array([1.0, 4.0, 1.0]) / 6.0,
+        friction_direction=friction_directions(system, rows),
+        friction_coefficients=friction_coefficients(system, rows),
     )
+    refuse_falling_force(nodes.phase, nodes.stiffness, nodes.gap, nodes.direction, nodes.error)
+    return nodes
 
 
 class _Terms:
     """Collects factors and the slots that they multiply, in reading order."""
 
-    def __init__(self, steps: int) -> None:
+    def __init__(self, steps: int, pattern: NDArray[np.bool_] | None) -> None:
         self.shape = (steps, 3)
         self.factors: list[Array] = []
         self.slots: list[int] = []
+        self.pattern = pattern
+        self.kept: list[bool] = []
 
-    def factor(self, values: Array) -> None:
+    def factor(self, values: Array | float) -> None:
         """Append a factor without a slot."""
         self.factors.append(np.broadcast_to(values, self.shape))
 
+    def keeps(self, wanted: Any) -> bool:
+        """Whether a possible term is there: as wanted, or as in the pattern that was given."""
+        given = bool(wanted) if self.pattern is None else bool(self.pattern[len(self.kept)])
+        self.kept.append(given)
+        return given
+
     def term(self, values: Array | float, slot: int) -> int:
         """Append a term unless it is zero throughout; returns how many were appended."""
-        if not np.any(values):
+        if not self.keeps(np.any(values)):
             return 0
         self.factor(np.asarray(values))
         self.slots.append(slot)
         return 1
 
 
-def _contact_terms(system: System, nodes: Nodes, terms: _Terms) -> list[int]:
+def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:
     code: list[int] = []
     for j, contact in enumerate(system.contacts):
         scalars = (nodes.stiffness, nodes.damping, nodes.error, nodes.error_slope, nodes.gap)
@@ -205,55 +262,112 @@ def _contact_terms(system: System, nodes: Nodes, terms: _Terms) -> list[int]:
             terms.factor(item[:, :, j])
         for part in (nodes.direction, nodes.direction_slope):
             code.append(sum(terms.term(part[:, :, j, i], i) for i in range(system.size)))
-        code += [int(np.any(nodes.gap[:, :, j])), int(contact.damping_in_gap)]
+        code += [int(np.any(nodes.gap[:, :, j])), int(contact.damping_in_gap) + scaled]
     return code
 
 
-def _coordinate_terms(system: System, nodes: Nodes, terms: _Terms, slots: Slots) -> list[int]:
+def _friction_terms(
+    system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
+) -> list[int]:
+    code = [slots.count - slots.friction]
+    for f, one in enumerate(system.frictions):
+        count = coefficient_count(f"frictions[{f}].coefficients", one)
+        code += [len(one.contacts), count]
+        terms.slots += [slots.force + j for j in one.contacts]
+        terms.factor(1.0 / one.load)
+        terms.factor(one.limit)
+        for item in range(count):
+            terms.factor(nodes.friction_coefficients[:, :, f, item])
+    for j in range(len(system.contacts) if split else 0):
+        # The friction of a contact as one with the coefficient 1, to be scaled by itself.
+        code += [1, 1]
+        terms.slots.append(slots.force + j)
+        for value in (1.0, 1.0, 1.0):
+            terms.factor(value)
+    return code
+
+
+def _coordinate_terms(
+    system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
+) -> tuple[list[int], NDArray[np.bool_]]:
+    """Number of terms of every coordinate, and whether its load varies."""
     inverse = np.linalg.inv(np.asarray(system.mass))
-    reaction = -np.einsum("ik,rsjk->rsji", inverse, nodes.force_direction)
+    along = nodes.direction if split else nodes.force_direction
+    rub = nodes.friction_direction
+    if split:
+        rub = np.concatenate((rub, nodes.force_direction - nodes.direction), axis=2)
+    reaction, drag = (-np.einsum("ik,rsjk->rsji", inverse, part) for part in (along, rub))
     load = np.einsum("ik,rsk->rsi", inverse, nodes.force)
     state = -np.hstack([inverse @ np.asarray(part) for part in (system.stiffness, system.damping)])
     state[np.abs(state) <= 1e-15 * np.abs(state).max(axis=1, keepdims=True)] = 0.0
     code: list[int] = []
+    varies = np.zeros(system.size, dtype=bool)
     for i in range(system.size):
         count = sum(terms.term(state[i, k], k) for k in range(2 * system.size))
         count += sum(
-            terms.term(reaction[:, :, j, i], slots.force + j) for j in range(len(system.contacts))
+            terms.term(reaction[:, :, j, i], slots.force + j) for j in range(reaction.shape[2])
         )
-        if np.ptp(load[:, :, i]) > 0.0:
-            count += terms.term(load[:, :, i], slots.one)
+        count += sum(terms.term(drag[:, :, f, i], slots.friction + f) for f in range(drag.shape[2]))
+        varies[i] = terms.keeps(np.ptp(load[:, :, i]) > 0.0)
+        if varies[i]:
+            terms.factor(load[:, :, i])
+            terms.slots.append(slots.one)
+            count += 1
         code.append(count)
-    return code
+    return code, varies
 
 
-def _flatten(system: System, grid: Grid, nodes: Nodes) -> Program:
+def build_program(
+    system: System,
+    grid: Grid,
+    nodes: Nodes,
+    *,
+    scaled: bool = False,
+    split: bool = False,
+    pattern: NDArray[np.bool_] | None = None,
+) -> Program:
+    """Flatten a system on its grid.
+
+    Parameters
+    ----------
+    system : System
+    grid : Grid
+    nodes : Nodes
+    scaled : bool
+        Whether lanes scale stiffness, damping or dead zone of the contacts.
+    split : bool
+        Whether lanes scale the friction of the contacts.
+    pattern : (...,) bool array, optional
+        Which of all possible terms to keep; those that are not zero by default.
+
+    Returns
+    -------
+    Program
+    """
     size, contacts = system.size, len(system.contacts)
-    slots = Slots(size, contacts)
-    terms = _Terms(grid.steps)
-    lists = _contact_terms(system, nodes, terms) + _coordinate_terms(system, nodes, terms, slots)
+    slots = Slots(size, contacts, len(system.frictions) + (contacts if split else 0))
+    terms = _Terms(grid.steps, pattern)
+    lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
+    lists += _friction_terms(system, nodes, terms, slots, split)
+    own, varies = _coordinate_terms(system, nodes, terms, slots, split)
     factors = terms.factors or [np.zeros(terms.shape)]
     relative = np.array(terms.slots, dtype=np.int64)
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)
     reads = np.concatenate([relative + moving * buffer * 2 * size for buffer in range(3)])
+    load = np.linalg.inv(np.asarray(system.mass)) @ nodes.force[0, 0]
     return Program(
-        code=np.array([size, contacts, len(factors), relative.size, *lists], dtype=np.int64),
+        code=np.array([size, contacts, len(factors), relative.size, *lists, *own], dtype=np.int64),
         reads=reads,
         rows=np.ascontiguousarray(np.stack(factors, axis=-1)).reshape(-1),
         width=grid.width,
         restart=grid.after_event,
-        constant_load=_constant_load(system, nodes),
+        constant_load=np.where(varies, 0.0, load),
+        pattern=np.array(terms.kept, dtype=bool),
     )
 
 
-def _constant_load(system: System, nodes: Nodes) -> Array:
-    load = np.einsum("ik,rsk->rsi", np.linalg.inv(np.asarray(system.mass)), nodes.force)
-    constant = np.ptp(load.reshape(-1, system.size), axis=0) == 0.0
-    return np.where(constant, load[0, 0], 0.0)
-
-
-def lane_load(program: Program, system: System, extra: Any) -> Array:
+def lane_load(program: Program, system: System, extra: Any, factor: Any = 1.0) -> Array:
     """Constant acceleration of each lane: the constant part of the load plus an extra force.
 
     Parameters
@@ -262,6 +376,8 @@ def lane_load(program: Program, system: System, extra: Any) -> Array:
     system : System
     extra : (lanes, n) array
         Extra generalized force of each lane [N or N*m].
+    factor : float or (lanes,) array
+        Factor of the constant part [1].
 
     Returns
     -------
@@ -269,4 +385,5 @@ def lane_load(program: Program, system: System, extra: Any) -> Array:
         In m/s^2 or rad/s^2.
     """
     inverse = np.linalg.inv(np.asarray(system.mass))
-    return np.asarray(program.constant_load + np.asarray(extra, dtype=float) @ inverse.T)
+    own = np.multiply.outer(np.asarray(factor, dtype=float), program.constant_load)
+    return np.asarray(own + np.asarray(extra, dtype=float) @ inverse.T)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import Compiled
 
 if TYPE_CHECKING:
@@ -96,7 +97,9 @@ class Response:
     floquet_multipliers : (m,) array
         Multipliers of the orbit; empty for a transient.
     cycles_used : int
-        Mesh cycles that were marched to find the orbit.
+        Mesh cycles that were marched to find the orbit; lanes marched at a time count once.
+    search_cycles : int
+        Those of them that came before Newton's method found the orbit.
     extra_force : (n,) array
         Generalized force that the torque balance added [N or N*m].
     period : int
@@ -121,6 +124,7 @@ class Response:
         default_factory=lambda: np.zeros(0, dtype=complex)
     )
     cycles_used: int = 0
+    search_cycles: int = 0
     extra_force: Array = field(default_factory=lambda: np.zeros(0))
     period: int = 0
 
@@ -255,6 +259,9 @@ def _fine_samples(
     total = nodes.force + extra_force - q @ np.asarray(system.stiffness).T
     total = total - v @ np.asarray(system.damping).T
     total = total - np.einsum("rsji,crsj->crsi", nodes.force_direction, force)
+    if system.frictions:
+        rub = friction_force(system, nodes.friction_coefficients, force)
+        total = total - np.einsum("rsfi,crsf->crsi", nodes.friction_direction, rub)
     acceleration = total @ np.linalg.inv(np.asarray(system.mass)).T
     phase = np.arange(cycles)[:, None, None] + nodes.phase
     weight = np.broadcast_to(nodes.weight / cycles, phase.shape)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.dynamics.load_friction import carried_load, friction_secant, push_with_friction
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.program import Nodes
 
@@ -13,6 +14,7 @@ __all__ = ["static_start"]
 Array = NDArray[np.float64]
 
 #: Rounds in which the ramps of a force law open and close; each round goes down the law.
+#: The same number of rounds is enough for the friction that goes with the load.
 _ROUNDS = 50
 
 
@@ -58,12 +60,29 @@ def static_start(compiled: Compiled) -> Array:
 def _equilibrium(compiled: Compiled, carrying: Array) -> Array:
     """Position at rest with the stiffness (steps, 3, contacts) that carries."""
     system, nodes = compiled.system, compiled.nodes
+    position = _balance(compiled, carrying, nodes.force_direction)
+    for _ in range(_ROUNDS if system.frictions else 0):
+        compression = np.einsum("rsji,i->rsj", nodes.direction, position) - nodes.error
+        load = carried_load(system, carrying * (compression - nodes.gap))
+        ratio = friction_secant(system, nodes.friction_coefficients, load)
+        last, position = (
+            position,
+            _balance(compiled, carrying, push_with_friction(system, nodes, ratio)),
+        )
+        if np.abs(position - last).max() <= 1e-12 * np.abs(position).max():
+            break
+    return position
+
+
+def _balance(compiled: Compiled, carrying: Array, push: Array) -> Array:
+    """Position at rest if each newton of a contact pushes with ``push`` (steps, 3, contacts, n)."""
+    system, nodes = compiled.system, compiled.nodes
     weight = nodes.weight
-    outer = np.einsum("rsji,rsjk->rsjik", nodes.force_direction, nodes.direction)
+    outer = np.einsum("rsji,rsjk->rsjik", push, nodes.direction)
     stiffness = system.stiffness + np.einsum("rs,rsj,rsjik->ik", weight, carrying, outer)
     shift = carrying * (nodes.error + nodes.gap)
     force = np.einsum("rs,rsi->i", weight, nodes.force)
-    force = force + np.einsum("rs,rsj,rsji->i", weight, shift, nodes.force_direction)
+    force = force + np.einsum("rs,rsj,rsji->i", weight, shift, push)
     # Least squares in mass-weighted coordinates: free motions get no displacement.
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
     matrix = stiffness * np.outer(scale, scale)

@@ -1,19 +1,23 @@
 """Periodic orbits: the steady state found directly, with a certified error.
 
-The map of the state over the mesh cycles of one period has the orbit as its fixed point.
-Anderson-accelerated iteration comes close, Newton's method with the full matrix of the map (the
-monodromy matrix, one marched lane per column) finishes. The same matrix gives the Floquet
+The map of the state over the mesh cycles of one period has the orbit as its fixed point. Newton's
+method with the full matrix of the map (the monodromy matrix, one marched lane per column) finds
+it, after plain cycles where dead zones leave a choice of orbits, and after Anderson-accelerated
+iteration where the motion does not settle. The same matrix gives the Floquet
 multipliers and the error: the residual alone understates the distance to the orbit by a factor
 1/(1 - rho), where rho is the largest multiplier.
 """
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.orbit_map import OrbitMap
+from tribodyn.dynamics.orbit_periods import find_any_orbit, shortest_period
 from tribodyn.dynamics.orbit_search import OrbitPoint, find_orbit
 from tribodyn.dynamics.response import Response, build_response
 from tribodyn.dynamics.simulate import read_start
@@ -26,8 +30,6 @@ __all__ = ["TOLERANCE", "steady_state"]
 
 #: An orbit whose certified error is above this is not converged.
 TOLERANCE = 1e-8
-#: States one period apart that differ by less than this part of the motion are the same.
-_REPEATS = 1e-5
 
 
 def steady_state(
@@ -35,7 +37,7 @@ def steady_state(
     mesh_frequency: float,
     *,
     steps: int = 512,
-    periods: int = 1,
+    periods: int | Literal["auto"] = 1,
     start: tuple[ArrayLike, ArrayLike] | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress = SILENT,
@@ -49,8 +51,9 @@ def steady_state(
         Mesh frequency [Hz].
     steps : int
         Steps per mesh cycle.
-    periods : int
-        Mesh cycles after which the motion repeats.
+    periods : int or "auto"
+        Mesh cycles after which the motion repeats. With ``"auto"`` the motion from the start is
+        followed, and the stable orbit of up to 8 mesh cycles that it approaches is returned.
     start : (position, velocity), optional
         Two (n,) arrays from which to look [m or rad, m/s or rad/s]; the static equilibrium at
         mean stiffness by default.
@@ -88,12 +91,9 @@ def steady_state(
     >>> steady_state(System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair]), 1.0).converged
     True
     """
-    if int(periods) != periods or periods < 1:
-        raise InputError(
-            Problem(what=f"periods = {periods}", where="argument periods", why="Whole number >= 1")
-        )
+    count = _whole_periods(periods)
     compiled = compile_for(system, mesh_frequency, steps)
-    mapping = OrbitMap(compiled, mesh_frequency, int(periods))
+    mapping = OrbitMap(compiled, mesh_frequency, count or 1)
     state = static_start(compiled) if start is None else read_start(system, start)
     y = mapping.coordinates.reduce(state)
     if y.size == 0:
@@ -108,28 +108,71 @@ def steady_state(
     if mapping.balance is not None:
         y = np.append(y, 0.0)
     progress.start("Searching the steady state", None)
-    orbit = find_orbit(mapping, y, tolerance)
+    if count is None:
+        any_orbit = find_any_orbit(mapping, y, tolerance)
+        mapping, orbit, apart = any_orbit.mapping, any_orbit.orbit, any_orbit.apart
+        mapping.cycles = any_orbit.cycles
+    else:
+        orbit, apart = find_orbit(mapping, y, tolerance), np.zeros(0)
     progress.finish()
-    return _finish(mapping, orbit, mesh_frequency, tolerance)
+    return _finish(mapping, orbit, mesh_frequency, tolerance, apart)
 
 
-def _finish(mapping: OrbitMap, orbit: OrbitPoint, frequency: float, tolerance: float) -> Response:
+def _whole_periods(periods: int | str) -> int | None:
+    """Check the number of mesh cycles; None stands for "auto"."""
+    if periods == "auto":
+        return None
+    if isinstance(periods, str) or int(periods) != periods or periods < 1:
+        raise InputError(
+            Problem(
+                what=f"periods = {periods!r}",
+                where="argument periods",
+                why='A whole number >= 1, or "auto"',
+            )
+        )
+    return int(periods)
+
+
+def _advice(mapping: OrbitMap, apart: NDArray[np.float64]) -> str:
+    """What to do where no stable orbit was found."""
+    if np.isinf(apart).any():
+        return "The motion itself was marched on and grows without bounds: nothing holds it"
+    if apart.size:
+        listed = ", ".join(f"{value:.1e}" for value in apart)
+        return (
+            f"The motion itself was marched on: it is {listed} of its size away from where it was "
+            f"1 to {apart.size} mesh cycles before. It repeats later, is quasi-periodic or "
+            "chaotic: tribodyn.analysis.lyapunov_exponents tells"
+        )
+    if mapping.affine:
+        return "The system is linear, so that its motion grows without bounds"
+    return (
+        'Try periods = "auto" and other starts; if no orbit of up to 8 mesh cycles is stable, '
+        "march over time, and let tribodyn.analysis.lyapunov_exponents tell whether it is chaos"
+    )
+
+
+def _finish(
+    mapping: OrbitMap,
+    orbit: OrbitPoint,
+    frequency: float,
+    tolerance: float,
+    apart: NDArray[np.float64],
+) -> Response:
     error = max(orbit.error, float(np.finfo(float).eps))
     converged = bool(np.isfinite(error) and error <= tolerance)
     if not converged:
         warn(
             "steady-state",
             f"no periodic orbit of {mapping.periods} mesh cycle(s) was found: certified error "
-            f"{error:.2e}, limit {tolerance:.0e}. The motion may repeat after more cycles or "
-            "never: try periods = 2, 3, 4 or march over time",
+            f"{error:.2e}, limit {tolerance:.0e}. {_advice(mapping, apart)}",
             stacklevel=3,
         )
     elif np.abs(orbit.multipliers[0]) > 1.0:
         warn(
             "unstable-orbit",
             f"the orbit exists but a motion leaves it: largest multiplier "
-            f"{np.abs(orbit.multipliers[0]):.6g}, limit 1. Try other starts, periods = 2, 3, 4, "
-            "or march over time",
+            f"{np.abs(orbit.multipliers[0]):.6g}, limit 1. {_advice(mapping, apart)}",
             stacklevel=3,
         )
     states, extra = mapping.record(orbit.point)
@@ -142,17 +185,6 @@ def _finish(mapping: OrbitMap, orbit: OrbitPoint, frequency: float, tolerance: f
         converged=converged,
         floquet_multipliers=orbit.multipliers,
         cycles_used=mapping.cycles,
-        period=_shortest(mapping, states),
+        search_cycles=orbit.search,
+        period=shortest_period(mapping, states),
     )
-
-
-def _shortest(mapping: OrbitMap, states: NDArray[np.float64]) -> int:
-    """Mesh cycles after which a recorded orbit repeats: a divisor of those recorded."""
-    steps, whole = mapping.compiled.grid.steps, mapping.periods
-    reduced = mapping.coordinates.reduce(states[: whole * steps : steps])
-    size = max(float(np.linalg.norm(mapping.coordinates.reduce(states), axis=1).max()), 1e-300)
-    for count in range(1, whole):
-        apart = np.linalg.norm(np.roll(reduced, count, axis=0) - reduced, axis=1).max()
-        if whole % count == 0 and apart <= _REPEATS * size:
-            return count
-    return whole

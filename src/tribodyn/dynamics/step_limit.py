@@ -13,24 +13,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
+from tribodyn.dynamics.lane_parameters import LaneParameters
+from tribodyn.dynamics.load_friction import friction_tangent, push_with_friction
 from tribodyn.dynamics.program import Nodes, compile_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["LIMIT", "largest_rate", "recommended_steps", "refuse_unstable_step"]
+__all__ = [
+    "LIMIT",
+    "largest_rate",
+    "recommended_steps",
+    "refuse_unstable_lanes",
+    "refuse_unstable_step",
+]
+
+Array = NDArray[np.float64]
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.
 LIMIT = 2.7
 
-#: Rows of the table that are examined at most.
-_SAMPLES = 32
+#: Rows of the table that are examined at most, and lanes.
+_SAMPLES, _LANES = 32, 256
+#: Factors of stiffness, damping and friction of a system as it stands.
+_PLAIN = (1.0, 1.0, 1.0)
 #: ``omega_max * dt`` at which figures of a spur gear pair are good to about 1e-6.
 _ACCURATE = 0.2
 #: Range of the recommended steps; the limit of 2.7 still holds above it.
 _FEWEST, _MOST = 1024, 65536
 
 
-def largest_rate(system: System, nodes: Nodes) -> float:
+def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLAIN) -> float:
     """Largest modulus of an eigenvalue of the motion with all contacts closed.
 
     Parameters
@@ -38,6 +50,8 @@ def largest_rate(system: System, nodes: Nodes) -> float:
     system : System
     nodes : Nodes
         The system on its grid.
+    factors : tuple of float
+        Factors of contact stiffness, contact damping and friction [1].
 
     Returns
     -------
@@ -51,23 +65,37 @@ def largest_rate(system: System, nodes: Nodes) -> float:
     >>> round(largest_rate(system, compile_system(system, 8)[1]), 6)
     0.5
     """
-    size = system.size
     rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
+    return float(_rates(system, nodes, rows, stages, np.array([factors])).max())
+
+
+def _rates(
+    system: System, nodes: Nodes, rows: NDArray[np.int64], stages: NDArray[np.int64], factors: Array
+) -> Array:
+    """Largest modulus of an eigenvalue for each row of ``factors`` (f, 3), f or 1 rows each."""
+    size = system.size
     along, push = nodes.direction[rows, stages], nodes.force_direction[rows, stages]
-    outer = np.einsum("mji,mjk->mjik", push, along)
-    stiffness = np.einsum("mj,mjik->mik", nodes.stiffness[rows, stages], outer)
-    damping = np.einsum("mj,mjik->mik", nodes.damping[rows, stages], outer)
+    if system.frictions:
+        at = Nodes(*(part[rows, stages] for part in nodes))
+        nominal = np.array([one.load for one in system.frictions])
+        push = push_with_friction(
+            system, at, friction_tangent(system, at.friction_coefficients, nominal)
+        )
+    spring, damper, rub = (column[:, None, None, None] for column in factors.T)
+    outer = np.einsum("...mji,mjk->...mjik", along + rub * (push - along), along)
+    stiffness = np.einsum("mj,...mjik->...mik", nodes.stiffness[rows, stages], outer)
+    damping = np.einsum("mj,...mjik->...mik", nodes.damping[rows, stages], outer)
     inverse = np.linalg.inv(np.asarray(system.mass))
-    spring = inverse @ (stiffness + np.asarray(system.stiffness))
-    damper = inverse @ (damping + np.asarray(system.damping))
+    elastic = inverse @ (spring * stiffness + np.asarray(system.stiffness))
+    viscous = inverse @ (damper * damping + np.asarray(system.damping))
     # Displacements in units of velocity over the largest stiffness rate: without it the matrix
     # mixes entries of 1 and 1e12 and the eigenvalues lose digits.
-    scale = max(float(np.sqrt(np.abs(spring).max())), 1e-30)
-    state = np.zeros((rows.size, 2 * size, 2 * size))
-    state[:, :size, size:] = scale * np.eye(size)
-    state[:, size:, :size] = -spring / scale
-    state[:, size:, size:] = -damper
-    return float(np.abs(np.linalg.eigvals(state)).max())
+    scale = max(float(np.sqrt(np.abs(elastic).max())), 1e-30)
+    state = np.zeros((*elastic.shape[:-2], 2 * size, 2 * size))
+    state[..., :size, size:] = scale * np.eye(size)
+    state[..., size:, :size] = -elastic / scale
+    state[..., size:, size:] = -viscous
+    return np.asarray(np.abs(np.linalg.eigvals(state)).max(axis=(-2, -1)))
 
 
 def _stiffest_rows(total: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -101,7 +129,14 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
     return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), _FEWEST), _MOST))
 
 
-def refuse_unstable_step(system: System, nodes: Nodes, grid: Grid, mesh_frequency: float) -> float:
+def refuse_unstable_step(
+    system: System,
+    nodes: Nodes,
+    grid: Grid,
+    mesh_frequency: float,
+    factors: tuple[float, ...] = _PLAIN,
+    lane: str = "",
+) -> float:
     """Return ``omega_max * dt`` of the widest step, or refuse it.
 
     Parameters
@@ -111,6 +146,10 @@ def refuse_unstable_step(system: System, nodes: Nodes, grid: Grid, mesh_frequenc
     grid : Grid
     mesh_frequency : float
         Mesh frequency [Hz].
+    factors : tuple of float
+        Factors of contact stiffness, contact damping and friction [1].
+    lane : str
+        Whose step it is, for the message.
 
     Returns
     -------
@@ -122,14 +161,14 @@ def refuse_unstable_step(system: System, nodes: Nodes, grid: Grid, mesh_frequenc
     InputError
         If it exceeds 2.7; the message gives the number of steps that is needed.
     """
-    rate = largest_rate(system, nodes)
+    rate = largest_rate(system, nodes, factors)
     number = rate * float(grid.width.max()) / mesh_frequency
     if number > LIMIT:
         needed = int(np.ceil(grid.steps * number / LIMIT / 64.0)) * 64
         raise InputError(
             Problem(
                 what=f"omega_max*dt = {number:.3f} with {grid.steps} steps per mesh cycle at "
-                f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s",
+                f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
                 where="argument steps",
                 why=f"The limit is {LIMIT}; above 2.83 the Runge-Kutta scheme is unstable and "
                 "its result is not physics",
@@ -137,3 +176,71 @@ def refuse_unstable_step(system: System, nodes: Nodes, grid: Grid, mesh_frequenc
             )
         )
     return number
+
+
+def refuse_unstable_lanes(
+    system: System,
+    nodes: Nodes,
+    grid: Grid,
+    mesh_frequency: Array,
+    parameters: LaneParameters | None,
+    lanes: NDArray[np.int64] | None = None,
+) -> float:
+    """Return the largest ``omega_max * dt`` of lanes that scale a system, or refuse it.
+
+    Parameters
+    ----------
+    system : System
+    nodes : Nodes
+    grid : Grid
+    mesh_frequency : float or (all lanes,) array
+        Mesh frequency [Hz].
+    parameters : LaneParameters or None
+        Factors of all lanes.
+    lanes : (m,) int array, optional
+        Lanes that march this system; all by default.
+
+    Returns
+    -------
+    float
+        ``omega_max * dt`` [-], or a number below the limit that it does not exceed.
+
+    Raises
+    ------
+    InputError
+        If it exceeds 2.7; the message names the lane and its factors.
+    """
+    table, beat = _every_lane(mesh_frequency, parameters, lanes)
+    longest = float(grid.width.max())
+    # Often the stiffest, most damped and slowest of all would still be within the limit.
+    least = largest_rate(system, nodes, tuple(table.max(axis=0))) * longest / float(beat.min())
+    if least <= LIMIT:
+        return least
+    likely = np.unique(
+        np.concatenate([np.argsort(-key)[:_LANES] for key in (table[:, 0] / beat**2,
+                                                             table[:, 1] / beat)])
+    )  # fmt: skip
+    rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
+    stiffest = np.array([int(nodes.stiffness.sum(axis=-1)[rows, stages].argmax())])
+    rates = _rates(system, nodes, rows[stiffest], stages[stiffest], table[likely])
+    worst = int(likely[np.argmax(rates / beat[likely])])
+    names = ("stiffness_scale", "damping_scale", "friction_scale")
+    given = [f"{name} = {value:g}" for name, value in zip(names, table[worst], strict=True)
+             if value != 1.0]  # fmt: skip
+    number = worst if lanes is None else int(lanes[worst])
+    who = f" in lane {number}" + (f" ({', '.join(given)})" if given else "")
+    factors = tuple(table[worst].tolist())
+    return refuse_unstable_step(system, nodes, grid, float(beat[worst]), factors, who)
+
+
+def _every_lane(
+    mesh_frequency: Array, parameters: LaneParameters | None, lanes: NDArray[np.int64] | None
+) -> tuple[Array, Array]:
+    """Factors (m, 3) and mesh frequency (m,) of the lanes concerned."""
+    beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    count = beat.size
+    if count == 1 and parameters is not None:
+        count = parameters.count
+        beat = np.broadcast_to(beat, (count,))
+    table = np.ones((count, 3)) if parameters is None else parameters.table(count)[:, :3]
+    return (table, beat) if lanes is None else (table[lanes], beat[lanes])

@@ -9,19 +9,17 @@ already carries the sign of sliding, the friction coefficients and the load shar
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.dynamics.entry import Entry, read_events
+from tribodyn.dynamics.load_friction import LoadFriction
 from tribodyn.errors import InputError, Problem
 
 __all__ = ["Contact", "Entry", "System"]
-
-#: A constant, or a vectorized function of the mesh phase in [0, 1).
-Entry = float | ArrayLike | Callable[[NDArray[np.float64]], Any]
 
 
 @dataclass(frozen=True)
@@ -72,18 +70,7 @@ class Contact:
     damping_in_gap: bool = False
 
     def __post_init__(self) -> None:
-        events = tuple(float(event) for event in self.events)
-        bad = [event for event in events if not 0.0 <= event < 1.0]
-        if bad:
-            raise InputError(
-                Problem(
-                    what=f"events holds {bad[0]:g}",
-                    where="Contact.events",
-                    why="Events are mesh phases and lie in [0, 1)",
-                    remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
-                )
-            )
-        object.__setattr__(self, "events", events)
+        object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
 
     def __repr__(self) -> str:
         """One line."""
@@ -124,11 +111,14 @@ class System:
     balance : (n,) array, optional
         Direction of a torque whose size is found so that the free rotation of the whole drive
         keeps its mean speed [N*m per unit]. Without it every force is held as given.
+    frictions : sequence of LoadFriction
+        Frictions whose coefficients follow the contact forces.
 
     Raises
     ------
     InputError
-        If shapes disagree, a value is not finite or the mass matrix is singular.
+        If shapes disagree, a value is not finite, the mass matrix is not that of a kinetic energy
+        greater than zero, or a friction names a contact that does not exist.
 
     Examples
     --------
@@ -144,6 +134,7 @@ class System:
     contacts: Sequence[Contact] = ()
     names: Sequence[str] = ()
     balance: ArrayLike | None = None
+    frictions: Sequence[LoadFriction] = ()
     _checked: bool = field(default=False, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -159,15 +150,18 @@ class System:
                     )
                 )
             object.__setattr__(self, name, matrix)
-        _refuse_singular(matrices["mass"])
         contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
         object.__setattr__(self, "contacts", tuple(contacts))
+        one = isinstance(self.frictions, LoadFriction)
+        object.__setattr__(self, "frictions", (self.frictions,) if one else tuple(self.frictions))
         names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
         if len(names) != size:
             raise InputError(
                 Problem(what=f"{len(names)} names for {size} coordinates", where="System.names")
             )
         object.__setattr__(self, "names", names)
+        _refuse_singular(matrices["mass"], names)
+        _refuse_missing_contacts(self)
         if self.balance is not None:
             balance = np.asarray(self.balance, dtype=float)
             if balance.shape != (size,):
@@ -193,16 +187,52 @@ class System:
 _MATRICES = ("mass", "damping", "stiffness")
 
 
-def _refuse_singular(mass: NDArray[np.float64]) -> None:
+def _refuse_singular(mass: NDArray[np.float64], names: tuple[str, ...]) -> None:
     scale = np.sqrt(np.abs(np.diag(mass)))
-    if np.any(scale == 0.0) or np.linalg.cond(mass / np.outer(scale, scale)) > 1e12:
-        empty = np.flatnonzero(scale == 0.0)
-        detail = f"coordinate {empty[0]} has no inertia" if empty.size else "it is singular"
+    empty = np.flatnonzero(scale == 0.0)
+    if empty.size or np.linalg.cond(mass / np.outer(scale, scale)) > 1e12:
+        at = int(empty[0]) if empty.size else 0
+        detail = f"coordinate {at} has no inertia ({names[at]})"
         raise InputError(
             Problem(
-                what=f"the mass matrix cannot be inverted: {detail}",
+                what="the mass matrix cannot be inverted: "
+                + (detail if empty.size else f"it is singular{_without_inertia(mass, names)}"),
                 where="System.mass",
                 why="Every coordinate needs an inertia of its own",
                 remedy="Remove the coordinate, or give it a mass or moment of inertia",
             )
         )
+    even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
+    if not even or np.linalg.eigvalsh(mass / np.outer(scale, scale))[0] <= 0.0:
+        raise InputError(
+            Problem(
+                what="the mass matrix is not symmetric and positive definite"
+                + ("" if not even else _without_inertia(mass, names)),
+                where="System.mass",
+                why="Every motion has a kinetic energy greater than zero",
+                remedy="Look for a wrong sign or place in the matrix",
+            )
+        )
+
+
+def _without_inertia(mass: NDArray[np.float64], names: tuple[str, ...]) -> str:
+    """Name the coordinates that move most in the motion with the least kinetic energy."""
+    scale = np.sqrt(np.abs(np.diag(mass)))
+    even = 0.5 * (mass + mass.T) / np.outer(scale, scale)
+    motion = np.abs(np.linalg.eigh(even)[1][:, 0])
+    most = [names[i] for i in np.flatnonzero(motion > 0.5 * motion.max())]
+    return f", a motion of {' and '.join(most[:4])} has no kinetic energy"
+
+
+def _refuse_missing_contacts(system: System) -> None:
+    for f, friction in enumerate(system.frictions):
+        if max(friction.contacts) >= len(system.contacts):
+            count = len(system.contacts)
+            raise InputError(
+                Problem(
+                    what=f"friction {f} follows contact {max(friction.contacts)}, and there "
+                    + (f"are {count} contacts" if count != 1 else "is 1 contact"),
+                    where=f"System.frictions[{f}].contacts",
+                    why="Contacts are counted from 0 in the order of System.contacts",
+                )
+            )

@@ -7,7 +7,7 @@ from tribodyn.mesh.film import film_columns
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid, phase_grid
-from tribodyn.mesh.load_friction import LOADS, MeshFriction, mesh_friction
+from tribodyn.mesh.mesh_friction import LOADS, MeshFriction, mesh_friction
 from tribodyn.mesh.monotone_phase import MonotonePhaseFunction
 from tribodyn.mesh.moving_film import moving_film
 from tribodyn.mesh.operation import FilmOverOperation, film_over_operation

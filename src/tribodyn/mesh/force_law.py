@@ -105,7 +105,7 @@ class MeshForceLaw:
         Raises
         ------
         InputError
-            If points are not in order, the law does not begin at zero or is not convex.
+            If points are not in order, the law does not begin at zero, falls or is not convex.
 
         Notes
         -----
@@ -131,6 +131,14 @@ class MeshForceLaw:
         if np.any(np.abs(force[:, 0]) > 1e-12 * np.abs(force).max()):
             _refuse(f"the first force is {force[:, 0].max():.4g} N", "The law begins at no force")
         slope = np.diff(force, axis=1) / np.diff(place, axis=1)
+        if slope.min() < -_ROUNDING * slope.max():
+            row, point = np.unravel_index(int(np.argmin(slope)), slope.shape)
+            _refuse(
+                f"the force falls from {force[row, point]:.6g} N at {1e6 * place[row, point]:.4g} "
+                f"um to {force[row, point + 1]:.6g} N at {1e6 * place[row, point + 1]:.4g} um, at "
+                f"the mesh phase {grid.phase[row]:.4g}",
+                "Teeth that are pressed together push back more: each force has one deflection",
+            )
         rise = np.diff(slope, axis=1, prepend=0.0)
         least = float((rise / slope.max(axis=1, keepdims=True)).min())
         if least < -_ROUNDING:

@@ -13,7 +13,6 @@ from tribodyn.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from tribodyn.mesh.force_law import MeshForceLaw
-    from tribodyn.mesh.load_friction import MeshFriction
 
 __all__ = ["MeshFunctions"]
 
@@ -42,8 +41,6 @@ class MeshFunctions:
         Nominal load along the line of action [N].
     force_law : MeshForceLaw, optional
         Force over deflection at every phase.
-    load_friction : MeshFriction, optional
-        Friction sums that follow the load, instead of those at the nominal load.
     """
 
     stiffness: Callable[[FloatArray | float], FloatArray]
@@ -55,7 +52,6 @@ class MeshFunctions:
     static_transmission_error: Callable[[FloatArray | float], FloatArray] | None = None
     total_normal_force: float | None = None
     force_law: MeshForceLaw | None = None
-    load_friction: MeshFriction | None = None
 
     def tangent_error(self, phase: FloatArray | float) -> FloatArray:
         """Error that makes the tangent stiffness deflect like the force law at the nominal load.

@@ -6,6 +6,7 @@ Figures are looked up by name in :data:`FIGURES`. Plotly is loaded when the firs
 from __future__ import annotations
 
 from tribodyn.plot.acceleration import acceleration
+from tribodyn.plot.basins import basins
 from tribodyn.plot.bearing_force import bearing_force
 from tribodyn.plot.bearing_spectrum import bearing_spectrum
 from tribodyn.plot.bifurcation import bifurcation
@@ -28,17 +29,25 @@ from tribodyn.plot.line_contact import line_contact
 from tribodyn.plot.load_sharing import load_sharing
 from tribodyn.plot.loaded_contact import loaded_contact
 from tribodyn.plot.loaded_sharing import loaded_sharing
+from tribodyn.plot.lyapunov import lyapunov
 from tribodyn.plot.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh_force import mesh_force
 from tribodyn.plot.mesh_stiffness import mesh_stiffness
 from tribodyn.plot.mode_shapes import mode_shapes
 from tribodyn.plot.order_map import order_map
+from tribodyn.plot.parameter_map import parameter_map
 from tribodyn.plot.path_of_contact import path_of_contact
+from tribodyn.plot.phase_portrait import phase_portrait
+from tribodyn.plot.poincare import poincare
 from tribodyn.plot.registry import FIGURES, Drawing, drawing
+from tribodyn.plot.run_up import run_up
+from tribodyn.plot.run_up_map import run_up_map
 from tribodyn.plot.spectrogram import spectrogram
 from tribodyn.plot.spectrum import spectrum
+from tribodyn.plot.speed_sweep import speed_sweep
 from tribodyn.plot.static_stiffness import static_stiffness
 from tribodyn.plot.static_transmission_error import static_transmission_error
+from tribodyn.plot.sweep import sweep
 from tribodyn.plot.tip_relief_map import tip_relief_map
 from tribodyn.plot.transmission_error import transmission_error
 from tribodyn.plot.waterfall import waterfall
@@ -47,6 +56,7 @@ __all__ = [
     "FIGURES",
     "Drawing",
     "acceleration",
+    "basins",
     "bearing_force",
     "bearing_spectrum",
     "bifurcation",
@@ -72,16 +82,24 @@ __all__ = [
     "load_sharing",
     "loaded_contact",
     "loaded_sharing",
+    "lyapunov",
     "mesh_deformation",
     "mesh_force",
     "mesh_stiffness",
     "mode_shapes",
     "order_map",
+    "parameter_map",
     "path_of_contact",
+    "phase_portrait",
+    "poincare",
+    "run_up",
+    "run_up_map",
     "spectrogram",
     "spectrum",
+    "speed_sweep",
     "static_stiffness",
     "static_transmission_error",
+    "sweep",
     "tip_relief_map",
     "transmission_error",
     "waterfall",

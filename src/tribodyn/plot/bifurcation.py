@@ -10,6 +10,7 @@ from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.labels import axis_label, displayed, readable
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PINION, WHEEL, Panel, line, stack
+from tribodyn.units import convert
 
 __all__ = ["bifurcation"]
 
@@ -42,7 +43,14 @@ def _parameter(found: Any) -> tuple[Any, str]:
     if name in QUANTITIES and QUANTITIES[name].unit == found.parameter_unit:
         return displayed(name, found.parameter), axis_label(name)
     words, unit = name.replace("_", " ").capitalize(), found.parameter_unit
-    return found.parameter, words if unit in ("", "-") else f"{words} [{readable(unit)}]"
+    if unit in ("", "-"):
+        return found.parameter, words
+    kind = name.rpartition("_")[2]
+    alike = [each.display_unit for each in QUANTITIES.values()
+             if each.unit == unit and each.name.rpartition("_")[2] == kind]  # fmt: skip
+    shown = alike[0] if alike else unit
+    factor = convert(1.0, unit, shown) if alike else 1.0
+    return found.parameter * factor, f"{words} [{readable(shown)}]"
 
 
 def _section(found: Any, parameter: Any, factor: float, unit: str) -> list[dict[str, Any]]:

@@ -12,6 +12,7 @@ from tribodyn.plot.harmonics import harmonic_panel
 from tribodyn.plot.labels import axis_label, axis_words, display_unit
 from tribodyn.plot.motion import Motion
 from tribodyn.plot.style import PINION, WHEEL, Panel, line
+from tribodyn.study.record import centre_column
 
 __all__ = ["harmonic_panels", "motion_panels", "no_translation"]
 
@@ -42,7 +43,7 @@ def no_translation(result: Any) -> str:
     str
         Empty when the gear centres move.
     """
-    if "pinion_y" in result.response.names:
+    if centre_column(result.response.names, "pinion", "y") is not None:
         return ""
     return (
         "The model turns the gears only: their centres stay in place and no bearing is loaded. "

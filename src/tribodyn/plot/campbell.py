@@ -35,7 +35,8 @@ def _title(diagram: Any) -> str:
     )
 
 
-def _modes(diagram: Any, speed: Any) -> list[dict[str, Any]]:
+def _modes(diagram: Any, speed: Any, top: float) -> list[dict[str, Any]]:
+    """Lines of the modes; those wholly above the picture have no place in its legend."""
     unit, traces = display_unit("frequency"), []
     for column in range(diagram.frequency.shape[1]):
         share = float(np.mean(diagram.contact_share[:, column]))
@@ -43,7 +44,8 @@ def _modes(diagram: Any, speed: Any) -> list[dict[str, Any]]:
         color = PAIR_COLORS[column % len(PAIR_COLORS)]
         values = displayed("frequency", diagram.frequency[:, column])
         width = _THIN + (_THICK - _THIN) * share
-        traces.append(line(speed, values, name, color, unit=unit, width=width))
+        trace = line(speed, values, name, color, unit=unit, width=width)
+        traces.append({**trace, "showlegend": bool(np.min(values) <= top)})
     return traces
 
 
@@ -111,7 +113,7 @@ def campbell(diagram: Any) -> Any:
     lines = float(np.max(displayed("frequency", max(diagram.orders) * diagram.mesh_frequency)))
     top = 1.1 * (min(modes, lines) or lines)
     axis = {"range": [0.0, top]}
-    traces = [*_modes(diagram, speed), *_rising(diagram, speed, top), *_met(diagram)]
+    traces = [*_modes(diagram, speed, top), *_rising(diagram, speed, top), *_met(diagram)]
     return stack(
         _title(diagram),
         axis_label("speed"),

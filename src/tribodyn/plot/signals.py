@@ -63,7 +63,7 @@ def acceleration(result: Any, gear: str, axis: str) -> Array:
     array, shape (3 s,)
         Acceleration [m/s^2].
     """
-    column = result.response.names.index(f"{gear}_{axis}")
+    column = record.centre_column(result.response.names, gear, axis)
     return np.asarray(result.response.fine.acceleration[:, column])
 
 
@@ -84,5 +84,5 @@ def bearing_force(result: Any, gear: str, axis: str) -> Array:
     array, shape (3 s,)
         Force [N].
     """
-    column = result.response.names.index(f"{gear}_{axis}")
+    column = record.centre_column(result.response.names, gear, axis)
     return record.support_forces(result.system, result.response.fine)[:, column]

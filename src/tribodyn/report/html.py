@@ -12,13 +12,25 @@ from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.study.save import write_file
 
-__all__ = ["render_report", "write_report"]
+__all__ = ["plotly_script", "render_report", "template", "text_of", "write_report"]
 
 _HERE = Path(__file__).parent
 
 
-@lru_cache(maxsize=1)
-def _template() -> Any:
+@lru_cache(maxsize=4)
+def template(name: str) -> Any:
+    """Read a template of this package.
+
+    Parameters
+    ----------
+    name : str
+        Its file.
+
+    Returns
+    -------
+    jinja2.Template
+        Every text that it is given is escaped.
+    """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(
@@ -28,17 +40,35 @@ def _template() -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template("template.html.j2")
+    return environment.get_template(name)
 
 
-def _own(name: str) -> Any:
-    """Text of a file of this package, marked as safe."""
+def text_of(name: str) -> Any:
+    """Read a file of this package.
+
+    Parameters
+    ----------
+    name : str
+        Its file.
+
+    Returns
+    -------
+    markupsafe.Markup
+        Its text, marked as safe.
+    """
     from markupsafe import Markup
 
     return Markup((_HERE / name).read_text(encoding="utf-8"))
 
 
-def _plotly_js() -> Any:
+def plotly_script() -> Any:
+    """Return the script that draws figures.
+
+    Returns
+    -------
+    markupsafe.Markup
+        Marked as safe.
+    """
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
 
@@ -67,7 +97,7 @@ def render_report(result: Any) -> str:
     """
     summary, blocks = result.summary(), figure_blocks(result)
     return str(
-        _template().render(
+        template("template.html.j2").render(
             title=result.case.title,
             version=version(),
             operating_point=operating_point(result.case),
@@ -80,9 +110,9 @@ def render_report(result: Any) -> str:
             provenance=provenance(result),
             case_text=result.case.to_toml(),
             figures=_figures(blocks),
-            style=_own("report.css"),
-            script=_own("report.js"),
-            plotly_js=_plotly_js(),
+            style=text_of("report.css"),
+            script=text_of("report.js"),
+            plotly_js=plotly_script(),
         )
     )
 

@@ -46,7 +46,7 @@ _WORDS = {
 _START = re.compile(rf"^({'|'.join(_STATISTICS)})_")
 _ENDINGS = (
     (re.compile(r"_harmonic_(\d+)$"), "mesh harmonic {}"),
-    (re.compile(r"_(pinion|wheel)$"), "{}"),
+    (re.compile(r"_(pinion|wheel|shaft[12])$"), "{}"),
     (re.compile(r"_(loa)$"), "along the line of action"),
     (re.compile(r"_(oloa)$"), "across the line of action"),
     (re.compile(r"_([A-E])$"), "at {}"),

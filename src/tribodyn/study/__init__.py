@@ -9,21 +9,25 @@ if TYPE_CHECKING:
     from tribodyn.study.bifurcation_diagram import bifurcation
     from tribodyn.study.case import Case
     from tribodyn.study.films import film_over_operation
+    from tribodyn.study.parameter_sweep import sweep
     from tribodyn.study.pipeline import run
     from tribodyn.study.read import read_case
     from tribodyn.study.result import Result
+    from tribodyn.study.run_up_study import run_up
     from tribodyn.study.static_studies import (
         comprehensive_stiffness,
         harris_map,
         optimize_tip_relief,
     )
     from tribodyn.study.summary_names import SUMMARY
+    from tribodyn.study.sweep_result import Sweep
     from tribodyn.study.transmission_error import loaded_contact
 
 __all__ = [
     "SUMMARY",
     "Case",
     "Result",
+    "Sweep",
     "bifurcation",
     "comprehensive_stiffness",
     "film_over_operation",
@@ -32,6 +36,8 @@ __all__ = [
     "optimize_tip_relief",
     "read_case",
     "run",
+    "run_up",
+    "sweep",
 ]
 
 _HOMES = {
@@ -44,8 +50,11 @@ _HOMES = {
     "optimize_tip_relief": "static_studies",
     "read_case": "read",
     "run": "pipeline",
+    "run_up": "run_up_study",
     "Result": "result",
     "SUMMARY": "summary_names",
+    "Sweep": "sweep_result",
+    "sweep": "parameter_sweep",
 }
 
 

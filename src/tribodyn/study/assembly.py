@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.study.geometry import geometry
+from tribodyn.study.rig import rig_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce, System
@@ -93,6 +94,8 @@ def system_of(case: Case, mesh: MeshTable, damping: Damping) -> System:
         shared["error"] = lambda phase: static_error(case, phase)
     if case.dynamics.model == "torsional":
         return torsional(mesh.functions(), **shared)
+    if case.dynamics.model == "fzg-12dof":
+        return rig_of(case, mesh, damping, shared)
     return spur6(
         mesh.functions(),
         mass=[body[f"mass_{gear}"] for gear in _GEARS],

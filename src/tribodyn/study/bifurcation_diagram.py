@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.assembly import system_of
+from tribodyn.study.axes import ends_of
 from tribodyn.study.collect import collected
 from tribodyn.study.damping import damping_of
 from tribodyn.study.pipeline import _mesh
 from tribodyn.study.places import placed
-from tribodyn.study.provenance import effective
+from tribodyn.study.provenance import spec_of
 from tribodyn.study.steps import steps_of
 
 if TYPE_CHECKING:
@@ -25,6 +26,9 @@ __all__ = ["bifurcation"]
 
 #: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
 _COARSER, _FEWEST = 4, 512
+#: Steps of all values are those of the slowest where these are no more than this times as many;
+#: values of one structure are then marched side by side.
+_ALIKE = 2
 
 
 def bifurcation(
@@ -34,6 +38,7 @@ def bifurcation(
     points: int = 300,
     *,
     steps: int | None = None,
+    by: str = "",
     progress: Progress = SILENT,
     **options: Any,
 ) -> Bifurcation:
@@ -52,11 +57,13 @@ def bifurcation(
     steps : int, optional
         Steps per mesh cycle; those of the case, else a quarter of what a single run takes and at
         least 512. Every motion is judged by a repetition with half the step.
+    by : str
+        What asks, for messages; then a bare number for a dimension is refused as in a file.
     progress : Progress
         Told how far the study has come; silent by default.
     **options : object
-        ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict`` and ``exponents``
-        of :func:`tribodyn.analysis.bifurcation`.
+        ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict``, ``exponents`` and
+        ``keep_partial`` of :func:`tribodyn.analysis.bifurcation`.
 
     Returns
     -------
@@ -78,19 +85,8 @@ def bifurcation(
     """
     from tribodyn.analysis import bifurcation as compute
 
-    values = _values(case, over, between, points)
-    systems: list[System] = []
-    frequency, counts = [], []
-    progress.start("tooth contact", len(values))
-    with placed(case), collected():
-        for value in values:
-            changed = case.replace({over: float(value)})
-            mesh = _mesh(changed)
-            systems.append(system_of(changed, mesh, damping_of(changed, mesh)))
-            frequency.append(mesh.mesh_frequency)
-            counts.append(steps or _steps(changed, systems[-1], mesh.mesh_frequency))
-            progress.advance()
-    progress.finish()
+    values = _values(case, over, between, points, by)
+    systems, frequency, counts = _systems(case, over, values, steps, progress)
     return compute(
         systems,
         frequency,
@@ -103,12 +99,44 @@ def bifurcation(
     )
 
 
+def _systems(
+    case: Case, over: str, values: Any, steps: int | None, progress: Progress
+) -> tuple[list[System], list[float], list[int]]:
+    """Structure, mesh frequency and steps of every value; one structure where none differs."""
+    systems: list[System] = []
+    frequency: list[float] = []
+    counts: list[int] = []
+    same = over == "operation.speed" and _contact_without_speed(case)
+    progress.start("tooth contact", len(values))
+    with placed(case), collected():
+        for value in values:
+            changed = case.replace({over: float(value)})
+            if same and systems:
+                systems.append(systems[0])
+                frequency.append(frequency[0] * float(value) / float(values[0]))
+            else:
+                mesh = _mesh(changed)
+                systems.append(system_of(changed, mesh, damping_of(changed, mesh)))
+                frequency.append(mesh.mesh_frequency)
+            counts.append(steps or _steps(changed, systems[-1], frequency[-1]))
+            progress.advance()
+    progress.finish()
+    if same and max(counts) <= _ALIKE * min(counts):
+        counts = [max(counts)] * len(counts)
+    return systems, frequency, counts
+
+
+def _contact_without_speed(case: Case) -> bool:
+    """Whether nothing in the tooth contact depends on how fast the gears turn."""
+    return case.film.model == "none" and case.friction.law in ("none", "constant")
+
+
 def _steps(case: Case, system: System, mesh_frequency: float) -> int:
     accurate = steps_of(case, system, mesh_frequency)
     return case.solver.steps_per_mesh_cycle or max(_FEWEST, accurate // _COARSER)
 
 
-def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int) -> Any:
+def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int, by: str) -> Any:
     """Values of the key in SI; the two ends are checked like the key of the case."""
     if between is None or len(between) != 2 or int(points) != points or points < 2:
         raise InputError(
@@ -119,14 +147,10 @@ def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int)
                 'Write, for example, between=("400 rpm", "3500 rpm")',
             )
         )
-    ends = [effective(case.replace({over: end})).get(over) for end in between]
-    if not all(isinstance(end, float) for end in ends):
-        what = f"{over} is not a number that can vary"
-        raise InputError(Problem(what, "argument over", "", 'For example "operation.speed"'))
-    return np.linspace(cast("float", ends[0]), cast("float", ends[1]), int(points))
+    first, last = ends_of(case, over, between, by=by)
+    return np.linspace(first, last, int(points))
 
 
 def _unit(case: Case, over: str) -> str:
-    section, _, name = over.partition(".")
-    spec = type(getattr(case, section)).spec(name)
+    spec = spec_of(case, over)
     return str(spec.unit) if spec is not None and spec.unit else "-"

@@ -8,7 +8,13 @@ from typing import Any
 
 from tribodyn.errors import Problem
 from tribodyn.study.given import Given
-from tribodyn.study.options import film_problems, friction_problems, stiffness_problems
+from tribodyn.study.options import (
+    film_problems,
+    foreign_dynamics,
+    friction_problems,
+    stiffness_problems,
+)
+from tribodyn.study.rig import is_rig_key
 
 __all__ = ["DEFAULT_MARK", "cross_problems"]
 
@@ -126,6 +132,10 @@ def _film_of_friction(given: Given) -> Found:
                 yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
 
 
+#: Why a structure that only turns has no supports.
+_FIXED = "That model turns the gears about fixed axes"
+
+
 def _dynamics(given: Given) -> Found:
     for name in ("mesh_damping", "bearing_damping"):
         value, ratio = f"dynamics.{name}", f"dynamics.{name}_ratio"
@@ -137,12 +147,14 @@ def _dynamics(given: Given) -> Found:
         what, why = "bearing_stiffness is missing", 'model = "spur-6dof" supports each gear'
         remedy = 'Add bearing_stiffness = "3.5e9 N/m" to [dynamics], or choose "torsional"'
         yield key, Problem(what, "", why, remedy)
-    if model == "torsional":
-        for key in given.keys("dynamics"):
-            if key.startswith("dynamics.bearing_"):
-                what = f'{given.show(key)} does not belong to model = "torsional"'
-                why = "That model turns the gears about fixed axes"
-                yield key, Problem(what, "", why, 'Remove it, or choose "spur-6dof"')
+    foreign = foreign_dynamics(str(model))
+    for key in given.keys("dynamics"):
+        if key.rpartition(".")[2] in foreign:
+            what = f'{given.show(key)} does not belong to model = "{model}"'
+            shaft = is_rig_key(key)
+            why = "That model has no shafts" if shaft else _FIXED
+            other = "fzg-12dof" if shaft else "spur-6dof"
+            yield key, Problem(what, "", why, f'Remove it, or choose "{other}"')
 
 
 def _solver(given: Given) -> Found:

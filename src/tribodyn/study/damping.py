@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tribodyn.study.geometry import geometry
+from tribodyn.study.provenance import effective
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
@@ -92,8 +93,9 @@ def damping_of(case: Case, mesh: MeshTable) -> Damping:
 
 def _support(case: Case, mass: float) -> float:
     data = case.dynamics
-    if data.bearing_stiffness is None:
+    stiffness = effective(case)["dynamics.bearing_stiffness"]
+    if stiffness is None:
         return 0.0
     if data.bearing_damping is not None:
         return data.bearing_damping
-    return 2.0 * data.bearing_damping_ratio * math.sqrt(data.bearing_stiffness * mass)
+    return 2.0 * data.bearing_damping_ratio * math.sqrt(stiffness * mass)

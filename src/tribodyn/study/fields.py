@@ -97,6 +97,7 @@ _EXAMPLES = {
     "pair_stiffness": '"2e8 N/m"', "mesh_stiffness": '"2.5e8 N/m"', "roll_angle": '"0.5 rad"',
     "sliding_speed": '"0.001 m/s"', "bearing_stiffness": '"3.5e9 N/m"', "backlash": '"0.05 mm"',
     "bearing_damping": '"4000 N*s/m"', "mesh_damping": '"900 N*s/m"',
+    "shaft_stiffness": '"75400 N*m/rad"', "shaft_damping": '"1 N*m*s/rad"',
     "transmission_error": '"2 um"', "friction_coefficient": "0.05", "eyring_stress": '"5 MPa"',
     "temperature_viscosity_coefficient": '"0.04 1/K"', "thermal_conductivity": '"0.13 W/m/K"',
     "tip_relief": '"10 um"', "tip_relief_length": '"4 mm"', "root_relief": '"10 um"',

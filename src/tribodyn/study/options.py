@@ -7,10 +7,12 @@ from typing import Any
 
 from tribodyn.errors import Problem
 from tribodyn.study.given import Given
+from tribodyn.study.rig import RIG_KEYS
 
 __all__ = [
     "TABLE_FORMS",
     "film_problems",
+    "foreign_dynamics",
     "friction_problems",
     "left_behind",
     "model_options",
@@ -80,12 +82,34 @@ def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, 
     }
 
 
+def foreign_dynamics(model: str) -> tuple[str, ...]:
+    """Keys of ``[dynamics]`` that a structure does not take.
+
+    Parameters
+    ----------
+    model : str
+        Name of the structure.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> "bearing_stiffness" in foreign_dynamics("torsional")
+    True
+    """
+    supports = ("bearing_stiffness", "bearing_damping", "bearing_damping_ratio")
+    shafts = () if model == "fzg-12dof" else RIG_KEYS
+    return (*supports, *shafts) if model == "torsional" else shafts
+
+
 def _takes(given: Given, selector: str, name: str, key: str) -> bool:
     section, _, option = key.rpartition(".")
     if key == "film.stiffness":
         return given.value(key) in _film_stiffnesses(name)
     if selector == "dynamics.model":
-        return name != "torsional" or not option.startswith("bearing_")
+        return option not in foreign_dynamics(name)
     if selector == "solver.method":
         return name != "steady" or option != "cycles"
     return option in model_options(section, name)

@@ -11,6 +11,7 @@ from tribodyn.study.derived import BASIS, derived_values
 from tribodyn.study.faults import section_at
 from tribodyn.study.fields import Spec
 from tribodyn.study.options import model_options
+from tribodyn.study.rig import RIG
 
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
@@ -67,6 +68,8 @@ def _option_default(case: Case, key: str) -> Any:
     section, _, name = key.rpartition(".")
     if key == "dynamics.mesh_law":
         return mesh_law_of(case)
+    if section == "dynamics" and case.dynamics.model == "fzg-12dof":
+        return RIG.get(name)
     chosen = {
         "film": case.film.model, "stiffness": case.stiffness.model, "friction": case.friction.law,
     }.get(section)  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from tribodyn.study.result import Result
 
 __all__ = [
+    "centre_column",
     "compression",
     "first_touch",
     "is_steady",
@@ -25,6 +27,8 @@ __all__ = [
 
 #: Distance from an event that tells its two sides apart [mesh cycles].
 _SIDE = 1e-11
+#: What structures with shafts call the directions across and along the line of action.
+_LETTERS = {"x": "v", "y": "w"}
 
 
 def is_steady(response: Response) -> bool:
@@ -40,6 +44,34 @@ def is_steady(response: Response) -> bool:
     bool
     """
     return response.floquet_multipliers.size > 0
+
+
+def centre_column(names: Sequence[str], gear: str, axis: str) -> int | None:
+    """Find the coordinate of a gear's centre.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Coordinates of the structure.
+    gear : str
+        ``"pinion"`` or ``"wheel"``.
+    axis : str
+        ``"y"`` along the line of action, ``"x"`` across it.
+
+    Returns
+    -------
+    int or None
+        Its column; None where the structure only turns.
+
+    Examples
+    --------
+    >>> centre_column(("pinion_x", "pinion_y"), "pinion", "y")
+    1
+    >>> centre_column(("wheel_v", "wheel_w"), "wheel", "x")
+    0
+    """
+    known = [f"{gear}_{letter}" for letter in (axis, _LETTERS[axis])]
+    return next((column for column, name in enumerate(names) if name in known), None)
 
 
 def measured(response: Response) -> FineSamples:

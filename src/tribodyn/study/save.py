@@ -11,10 +11,26 @@ from pathlib import Path
 
 from tribodyn.errors import InputError, OutputExistsError, Problem
 
-__all__ = ["RESULT_FILES", "check_target", "new_directory", "write_file"]
+__all__ = [
+    "BIFURCATION_FILES",
+    "RESULT_FILES",
+    "SWEEP_FILES",
+    "check_target",
+    "new_directory",
+    "write_file",
+]
 
 #: What a result directory holds; only such a directory may be replaced.
 RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.html")
+#: The same of studies.
+SWEEP_FILES = ("case.toml", "sweep.csv", "sweep.nc", "report.html")
+BIFURCATION_FILES = ("case.toml", "bifurcation.nc", "bifurcation.html")
+#: File by which a directory is known -> all that it may hold.
+_KINDS = {
+    "summary.json": RESULT_FILES,
+    "sweep.nc": SWEEP_FILES,
+    "bifurcation.nc": BIFURCATION_FILES,
+}
 
 
 def write_file(path: Path, text: str) -> None:
@@ -110,10 +126,11 @@ def _strangers(target: Path) -> str:
     if target.is_symlink() or not target.is_dir():
         return "is not a directory"
     names = sorted(entry.name for entry in target.iterdir())
-    others = [name for name in names if name not in RESULT_FILES]
+    allowed = next((files for mark, files in _KINDS.items() if mark in names), RESULT_FILES)
+    others = [name for name in names if name not in allowed]
     if others:
         return f"holds {others[0]}"
-    return "" if "summary.json" in names else "holds no summary.json"
+    return "" if any(mark in names for mark in _KINDS) else "holds no summary.json"
 
 
 @contextmanager

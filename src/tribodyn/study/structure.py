@@ -113,8 +113,8 @@ class Dynamics(Section):
 
     model: str = choice(
         "spur-6dof",
-        ("spur-6dof", "torsional"),
-        later=("fzg-12dof", "hypoid-14dof"),
+        ("spur-6dof", "torsional", "fzg-12dof"),
+        later=("hypoid-14dof",),
         meaning="structure that vibrates",
     )
     mesh_law: str | None = choice(
@@ -128,6 +128,34 @@ class Dynamics(Section):
         0.02, 0.0, 2.0, "supports lie between 0.01 and 0.1",
         meaning="damping of each gear on its bearing over its critical value",
     )  # fmt: skip
+    shaft1_stiffness: float | None = number(
+        None, 1.0, 1e12, _GUARD, of="shaft_stiffness",
+        meaning="torsional stiffness of shaft 1, between its disc and the wheel",
+    )  # fmt: skip
+    shaft1_damping: float | None = number(
+        None, 0.0, 1e6, _GUARD, of="shaft_damping", meaning="torsional damping of shaft 1"
+    )
+    shaft1_moment_of_inertia: float | None = number(
+        None, 1e-14, 1e7, _GUARD, of="moment_of_inertia",
+        meaning="polar moment of inertia of the disc of shaft 1",
+    )  # fmt: skip
+    shaft1_mass: float | None = number(
+        None, 1e-7, 1e6, _GUARD, of="mass", meaning="mass of the disc of shaft 1"
+    )
+    shaft2_stiffness: float | None = number(
+        None, 1.0, 1e12, _GUARD, of="shaft_stiffness",
+        meaning="torsional stiffness of shaft 2, between its disc and the pinion",
+    )  # fmt: skip
+    shaft2_damping: float | None = number(
+        None, 0.0, 1e6, _GUARD, of="shaft_damping", meaning="torsional damping of shaft 2"
+    )
+    shaft2_moment_of_inertia: float | None = number(
+        None, 1e-14, 1e7, _GUARD, of="moment_of_inertia",
+        meaning="polar moment of inertia of the disc of shaft 2",
+    )  # fmt: skip
+    shaft2_mass: float | None = number(
+        None, 1e-7, 1e6, _GUARD, of="mass", meaning="mass of the disc of shaft 2"
+    )
     mesh_damping: float | None = number(None, 0.0, 1e9, _GUARD, of="mesh_damping")
     mesh_damping_ratio: float = number(
         0.04, 0.0, 2.0, "meshes lie between 0.03 and 0.17", of="mesh_damping_ratio"

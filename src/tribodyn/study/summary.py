@@ -8,6 +8,7 @@ import numpy as np
 
 from tribodyn.study.geometry import geometry
 from tribodyn.study.record import (
+    centre_column,
     compression,
     first_touch,
     is_steady,
@@ -55,8 +56,10 @@ def summarize(result: Result) -> dict[str, float]:
         **_error_figures(result, samples),
         **_friction_figures(result.mesh, samples),
     }
-    if "pinion_x" in result.response.names:
+    if centre_column(result.response.names, "pinion", "x") is not None:
         values |= _support_figures(result, samples)
+    if result.case.dynamics.model == "fzg-12dof":
+        values |= _shaft_figures(result, samples)
     values["steps_per_mesh_cycle"] = result.response.time.size // result.response.periods
     values["omega_max_dt"] = result.response.step_number
     if is_steady(result.response):
@@ -167,7 +170,9 @@ def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     """Forces on the supports and accelerations of the gear centres."""
     from tribodyn.analysis import alternating_rms, line_of_action_indicator
 
-    index = result.response.index
+    def column(gear: str, letter: str) -> int | None:
+        return centre_column(result.response.names, gear, letter)
+
     forces = support_forces(result.system, samples)
     figures: dict[str, Any] = {
         "bearing_damping_pinion": result.damping.bearing_pinion,
@@ -176,10 +181,24 @@ def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     for kind, signals in (("bearing_force", forces), ("acceleration", samples.acceleration)):
         for gear in _GEARS:
             for direction, letter in _DIRECTIONS.items():
-                signal = signals[:, index(f"{gear}_{letter}")]
+                signal = signals[:, column(gear, letter)]
                 figures[f"rms_{kind}_{direction}_{gear}"] = alternating_rms(samples, signal)
-    along, across = (forces[:, index(f"pinion_{letter}")] for letter in "yx")
+    along, across = (forces[:, column("pinion", letter)] for letter in "yx")
     indicator = line_of_action_indicator(samples, along, across)
     if np.isfinite(indicator):
         figures["line_of_action_indicator"] = indicator
+    return figures
+
+
+def _shaft_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    """Torque in both shafts, from springs and dampers together."""
+    from tribodyn.analysis import alternating_rms, mean
+
+    forces, names = support_forces(result.system, samples), result.response.names
+    figures: dict[str, Any] = {}
+    for number in (1, 2):
+        # What twists a shaft turns its disc one way and the gear the other.
+        signal = forces[:, names.index(f"shaft{number}_theta")]
+        figures[f"mean_torque_shaft{number}"] = abs(mean(samples, signal))
+        figures[f"rms_torque_shaft{number}"] = alternating_rms(samples, signal)
     return figures

@@ -42,6 +42,7 @@ UNITLESS = {
 }
 #: Figures of studies, and figures that these results have not.
 OTHERS = {
+    "basins",
     "bifurcation",
     "campbell",
     "comprehensive_stiffness",
@@ -52,10 +53,18 @@ OTHERS = {
     "harris_map",
     "loaded_contact",
     "loaded_sharing",
+    "lyapunov",
     "mesh_deformation",
     "mode_shapes",
     "order_map",
+    "parameter_map",
+    "phase_portrait",
+    "poincare",
+    "run_up",
+    "run_up_map",
     "spectrogram",
+    "speed_sweep",
+    "sweep",
     "tip_relief_map",
     "waterfall",
 }

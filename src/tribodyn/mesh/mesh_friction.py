@@ -37,14 +37,14 @@ class MeshFriction:
     grid : PhaseGrid
         Knots on the mesh phase, twice at each event.
     coefficients : array (n, terms, 3)
-        Coefficients ``c_k`` of the sum of friction over normal force, and of its moments on pinion
-        and wheel [m].
+        Coefficients ``c_k`` of the sum of friction over normal force [1], and of its moments on
+        pinion and wheel over it [m].
     load : float [N]
         Nominal normal force of all pairs.
     limit : float
-        Load over the nominal load above which friction over normal force stays what it is.
+        Load over the nominal load above which friction over normal force stays [1].
     fit_error : float
-        Largest distance of a friction force from its polynomial, over the largest friction force.
+        Largest distance of a friction force from its polynomial, over the largest one [1].
     """
 
     grid: PhaseGrid
@@ -165,7 +165,7 @@ def _check(tables: Sequence[MeshTable], nominal: MeshTable, ratio: FloatArray) -
                 what=f"{np.unique(ratio).size} different loads",
                 where="argument tables",
                 why=f"A polynomial with {_TERMS} terms goes through more than {_TERMS} loads",
-                remedy="Build the mesh at the loads in tribodyn.mesh.load_friction.LOADS",
+                remedy="Build the mesh at the loads in tribodyn.mesh.mesh_friction.LOADS",
             )
         )
     require_between("load over the nominal load", ratio, 0.0, np.inf, "")

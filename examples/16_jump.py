@@ -1,0 +1,74 @@
+"""Jump of a gear pair with backlash: two motions at one speed, and which of them comes about.
+
+A pair of equal spur gears of the kind on which Blankenship and Kahraman measured the jump of the
+transmission error, with plausible values: near its resonance the teeth part, the pair gets softer
+the more it vibrates, and the curve of the vibration over the speed leans over. Between two speeds
+a loud and a quiet motion exist. Which one comes about depends on where it starts: from below or
+from above, or from any state of the plane of basins.
+"""
+
+import math
+
+import numpy as np
+
+from tribodyn.analysis import basins, bifurcation, phase_portrait
+from tribodyn.dynamics import Contact, System, continuation, steady_state
+
+MASS, STIFFNESS, RATIO = 1.15, 3.8e8, 0.02  # kg, N/m, damping ratio
+BACKLASH, LOAD = 0.14e-3, 4800.0  # m, N along the line of action
+natural = math.sqrt(STIFFNESS / MASS)  # rad/s
+
+teeth = Contact(
+    direction=[1.0],
+    stiffness=lambda phase: STIFFNESS * (1.0 + 0.06 * np.cos(2.0 * np.pi * phase)),
+    damping=2.0 * RATIO * math.sqrt(STIFFNESS * MASS),
+    gap=0.5 * BACKLASH,
+)
+pair = System([[MASS]], [[0.0]], [[0.0]], [LOAD], [teeth], names=["x"])
+print(f"resonance of small vibrations  {natural / (2.0 * math.pi):.1f} Hz")
+
+# The branch, stable and unstable, and its two turning points.
+ends = (2300.0, 3200.0)
+branch = continuation(pair, between=ends, steps=256, longest_step=0.02)
+folds = sorted(point.parameter for point in branch.special("fold"))
+print(f"two motions between            {folds[0]:.1f} and {folds[-1]:.1f} Hz")
+
+# Turning the speed up and down again.
+speeds = np.linspace(*ends, 46)
+swept = bifurcation(pair, speeds, sweep="both", steps=256)
+differ = np.abs(swept.rms[0] - swept.rms[1]) > 0.05 * swept.rms.max()
+print(f"the sweeps differ between      {speeds[differ][0]:.1f} and {speeds[differ][-1]:.1f} Hz")
+print(f"verdicts                       {swept.verdicts()}")
+
+
+def free_frequency(speed):
+    """Frequency [Hz] and swing [m] of the free vibration that leaves contact at a speed [m/s]."""
+    preload = LOAD / STIFFNESS
+    reach = math.hypot(preload, speed / natural)
+    contact = 2.0 / natural * (math.pi - math.acos(preload / reach))
+    flight = 2.0 * speed * MASS / LOAD
+    return 1.0 / (contact + flight), reach + preload + speed**2 * MASS / (2.0 * LOAD)
+
+
+# The loudest motion lies on the backbone: the free vibration of the same swing.
+top = int(np.argmax(branch.peak_to_peak[:, 0]))
+speed = np.linspace(0.0, 2.0, 4001)
+frequency, swing = np.array([free_frequency(v) for v in speed]).T
+backbone = float(np.interp(branch.peak_to_peak[top, 0], swing, frequency))
+print(f"loudest motion                 {branch.mesh_frequency[top]:.1f} Hz")
+print(f"backbone at the same swing     {backbone:.1f} Hz")
+
+# Which start comes to which motion, in the middle of the two turning points.
+middle = 0.5 * (folds[0] + folds[-1])
+plane = basins(pair, middle, between=((4e-5, 1.2e-4), (-0.6, 0.6)), points=(81, 61), steps=128)
+print(f"motions at {middle:.0f} Hz")
+for each in plane.attractors:
+    print(f"  rms {1e6 * each.rms:6.3f} um  share {100.0 * each.share:5.1f} %  {each.verdict}")
+loud = max(plane.attractors, key=lambda each: each.rms)
+orbit = steady_state(pair, middle, start=(loud.position[0], loud.velocity[0]))
+
+branch.plot().write_html("jump-branch.html")
+swept.plot().write_html("jump-sweeps.html")
+plane.plot().write_html("jump-basins.html")
+phase_portrait(orbit, 0, gap=0.5 * BACKLASH).plot().write_html("jump-phase.html")
+print("figures: jump-branch.html jump-sweeps.html jump-basins.html jump-phase.html")

@@ -1,0 +1,119 @@
+"""What a map over two parameters is: period, rms, contact loss and a verdict at every point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["ParameterMap"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ParameterMap:
+    """Motions over two parameters; every array is (nx, ny) unless said otherwise.
+
+    Parameters
+    ----------
+    names, units : tuple of two str
+        Parameters and their units.
+    first, second : (nx,), (ny,) array
+        Their values [Hz or -, or as ``units`` says].
+    period : int array
+        Mesh cycles after which the motion repeats; 0 if it does not.
+    rms : array
+        Alternating rms of the signal [m or rad]; NaN for a motion that grew beyond all bounds.
+    contact_loss_share : array
+        Part of the time off the driving flank [-].
+    steps : int array
+        Steps per mesh cycle.
+    step_number : array
+        ``omega_max * dt`` [-].
+    verdict : str array
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not asked for.
+    signal : str
+        Name of what rms and contact loss are of, a contact or a coordinate.
+    finished : bool array
+        Which motions are there; all of them unless the work was interrupted.
+    """
+
+    names: tuple[str, str]
+    units: tuple[str, str]
+    first: Array = field(repr=False)
+    second: Array = field(repr=False)
+    period: NDArray[np.int64] = field(repr=False)
+    rms: Array = field(repr=False)
+    contact_loss_share: Array = field(repr=False)
+    steps: NDArray[np.int64] = field(repr=False)
+    step_number: Array = field(repr=False)
+    verdict: NDArray[np.str_] = field(repr=False)
+    signal: str
+    finished: NDArray[np.bool_] = field(repr=False)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every motion is there."""
+        return bool(self.finished.all())
+
+    def verdicts(self) -> dict[str, int]:
+        """Count the verdicts.
+
+        Returns
+        -------
+        dict of str to int
+            Only those that occur.
+        """
+        words, counts = np.unique(self.verdict, return_counts=True)
+        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
+
+    def __repr__(self) -> str:
+        """One line."""
+        words = [f"{count} {word}" for word, count in self.verdicts().items()]
+        return (
+            f"ParameterMap({self.first.size} values of {self.names[0]} x {self.second.size} of "
+            f"{self.names[1]}{': ' if words else ''}{', '.join(words)}"
+            f"{'' if self.complete else ', interrupted'})"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the map as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions are the two parameters.
+        """
+        import xarray
+
+        units = {"rms": "m or rad"}
+        data: dict[str, Any] = {
+            name: (self.names, getattr(self, name), {"units": units.get(name, "1")})
+            for name in ("period", "rms", "contact_loss_share", "steps", "step_number")
+        }
+        data["verdict"] = (self.names, self.verdict)
+        data["finished"] = (self.names, self.finished)
+        axes = {
+            name: (name, values, {"units": unit})
+            for name, values, unit in zip(
+                self.names, (self.first, self.second), self.units, strict=True
+            )
+        }
+        return xarray.Dataset(data, axes, {"signal": self.signal})
+
+    def plot(self) -> Any:
+        """Draw period, rms and contact loss.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["parameter_map"](self)

@@ -1,0 +1,129 @@
+"""``tribodyn bifurcation``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from tribodyn.cli.changes import changed_case
+from tribodyn.cli.ranges import GRAMMAR, read_ranges
+from tribodyn.cli.screen import say, say_json, tell
+
+if TYPE_CHECKING:
+    from tribodyn.analysis.bifurcation_result import Bifurcation
+    from tribodyn.study.bifurcation_findings import Findings
+    from tribodyn.study.case import Case
+
+__all__ = ["bifurcation"]
+
+_REPLACE = "Choose another directory with --out, or replace it with --force"
+#: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.
+_INTERRUPTED = 130
+
+
+def bifurcation(
+    case: str,
+    /,
+    *over: str,
+    sweep: Literal["up", "down", "both", "independent"] = "up",
+    cycles: int = 64,
+    transient: int = 300,
+    steps: int | None = None,
+    out: Path | None = None,
+    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Follow the motion of a case over one value; tell periods, jumps and what the step made.
+
+    Parameters
+    ----------
+    case : str
+        Built-in case or path of a case file.
+    over : str
+        What varies: "operation.speed=400..3500 rpm:300".
+    sweep : str
+        Each value from the end of the one before (up), the other way (down), both ways, or each
+        by itself (independent).
+    cycles : int
+        Mesh cycles of the statistics at each value.
+    transient : int
+        Mesh cycles before, fewer where the motion repeats.
+    steps : int
+        Steps per mesh cycle.
+    out : Path
+        Directory to write; by default that of the case with "-bifurcation".
+    set_ : list of str
+        Values to change, for example "operation.torque=120 N*m".
+    force : bool
+        Replace an earlier result in that directory.
+    json : bool
+        Write what was found in SI as one JSON object to stdout.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    from tribodyn.cli.bar import progress_bar
+    from tribodyn.study.save import check_target
+
+    target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
+    key, (first, last, points) = _one(over)
+    ready = changed_case(case, set_ or [])
+    check_target(target, force, remedy=_REPLACE)
+    options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
+    with progress_bar() as progress:
+        from tribodyn.study.axes import read_axes
+        from tribodyn.study.bifurcation_diagram import bifurcation as compute
+        from tribodyn.study.bifurcation_findings import Findings
+
+        read_axes(ready, {key: (first, last, points)}, by="bifurcation")
+        found = compute(
+            ready, key, (first, last), points, steps=steps, sweep=sweep, by="bifurcation",
+            keep_partial=True, progress=progress, **options,
+        )  # fmt: skip
+    if not found.finished.any():
+        raise KeyboardInterrupt
+    judged = int((found.finished & (found.verdict != "")).sum())
+    complete = judged == found.finished.size
+    if not complete:
+        tell(
+            f"interrupted: {int(found.finished.sum())} of {found.finished.size} motions are done, "
+            f"{judged} of them judged, and being written; Ctrl-C again stops at once"
+        )
+    findings = Findings(ready, found)
+    _save(found, ready, findings, target, force=force)
+    if json:
+        say_json({**findings.figures(), "complete": complete})
+    else:
+        say("\n".join([ready.title, *(f"  {line}" for line in findings.sentences())]))
+    tell(f"Diagram: {target / 'bifurcation.html'}")
+    return 0 if complete else _INTERRUPTED
+
+
+def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
+    """The one key that varies."""
+    from tribodyn.errors import InputError, Problem
+
+    ranges = read_ranges(over, lists=False)
+    if len(ranges) > 1:
+        what = f"{len(ranges)} keys vary: {', '.join(ranges)}"
+        raise InputError(Problem(what, "", "A diagram goes over one of them", GRAMMAR))
+    return next(iter(ranges.items()))
+
+
+def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, force: bool) -> None:
+    from tribodyn.report import write_bifurcation_report
+    from tribodyn.study.save import new_directory
+
+    head, rows = findings.rows()
+    with new_directory(target, force=force) as place:
+        (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+        found.to_xarray().to_netcdf(place / "bifurcation.nc", engine="h5netcdf")
+        write_bifurcation_report(
+            found, case, place / "bifurcation.html", lead=findings.lead(),
+            told=findings.sentences(), head=head, rows=rows,
+        )  # fmt: skip

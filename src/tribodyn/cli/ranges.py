@@ -1,0 +1,98 @@
+"""``KEY=LOW..HIGH UNIT:POINTS`` and ``KEY=A,B,C UNIT``: values that a study varies."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from tribodyn.cli.changes import read_value
+from tribodyn.errors import InputError, Problem
+
+__all__ = ["GRAMMAR", "read_ranges"]
+
+GRAMMAR = 'Write "operation.speed=400..3500 rpm:60" or "operation.torque=50,150,300 N*m"'
+
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
+
+
+def read_ranges(words: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
+    """Read what varies: a range with its number of points, or a list of values.
+
+    Parameters
+    ----------
+    words : sequence of str
+        One word for each key.
+    lists : bool
+        Whether a list of values is allowed.
+
+    Returns
+    -------
+    dict of str to object
+        Dotted key to ``(first, last, points)`` or to a list; numbers with a unit are text.
+
+    Raises
+    ------
+    InputError
+        If a word follows neither form, or a key comes twice.
+
+    Examples
+    --------
+    >>> read_ranges(["operation.speed=400..3500 rpm:60", "operation.torque=50,150 N*m"])
+    {'operation.speed': ('400 rpm', '3500 rpm', 60), 'operation.torque': ['50 N*m', '150 N*m']}
+    """
+    found: dict[str, Any] = {}
+    problems = []
+    if not words:
+        problems.append(Problem("nothing varies", "", "", GRAMMAR))
+    for word in words:
+        key, equals, text = (part.strip() for part in word.partition("="))
+        try:
+            if not (key and equals and text):
+                raise _UnreadError("it is not KEY=VALUES")
+            if key in found:
+                raise _UnreadError(f"{key} varies twice")
+            found[key] = _range(text) if ".." in text else _list(text, lists)
+        except _UnreadError as fault:
+            problems.append(Problem(f'cannot read "{word}"', "", str(fault), GRAMMAR))
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+class _UnreadError(ValueError):
+    """Why a word cannot be read."""
+
+
+def _range(text: str) -> tuple[Any, Any, int]:
+    ends, colon, count = text.rpartition(":")
+    if not colon:
+        raise _UnreadError("the number of points after a colon is missing")
+    try:
+        points = int(count)
+    except ValueError:
+        raise _UnreadError(f'"{count}" is no whole number of points') from None
+    low, _, high = (part.strip() for part in ends.partition(".."))
+    first, last = _NUMBER.fullmatch(low), _NUMBER.fullmatch(high)
+    if not (first and last):
+        raise _UnreadError(f'"{high if first else low}" is no number')
+    unit = last.group(2)
+    return (_with(first.group(1), first.group(2) or unit), _with(last.group(1), unit), points)
+
+
+def _list(text: str, allowed: bool) -> list[Any]:
+    if not allowed:
+        raise _UnreadError("a range LOW..HIGH with a number of points is needed")
+    items = [item.strip() for item in text.split(",")]
+    if not all(items):
+        raise _UnreadError("a value between two commas is missing")
+    parts = [_NUMBER.fullmatch(item) for item in items]
+    last = parts[-1]
+    if last is None or not all(parts):
+        return [read_value(item) for item in items]
+    return [_with(part.group(1), part.group(2) or last.group(2)) for part in parts if part]
+
+
+def _with(number: str, unit: str) -> Any:
+    """Return number and unit as text, or the bare number."""
+    return f"{number} {unit}" if unit else read_value(number)

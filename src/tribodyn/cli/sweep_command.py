@@ -1,0 +1,106 @@
+"""``tribodyn sweep``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from tribodyn.cli.changes import changed_case
+from tribodyn.cli.ranges import read_ranges
+from tribodyn.cli.screen import say, say_json, table, tell
+
+if TYPE_CHECKING:
+    from tribodyn.study.sweep_result import Sweep
+
+__all__ = ["sweep"]
+
+_REPLACE = "Choose another directory with --out, or replace it with --force"
+#: Exit code of a sweep that was stopped by Ctrl-C; what was done is kept.
+_INTERRUPTED = 130
+#: Figures on the screen; all of them are in the files.
+_SHOWN = (
+    "rms_mesh_force",
+    "peak_mesh_force",
+    "peak_to_peak_dynamic_transmission_error",
+    "contact_loss_share",
+)
+
+
+def sweep(
+    case: str,
+    /,
+    *over: str,
+    out: Path | None = None,
+    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Compute a case at many values of its keys; write a table and a report.
+
+    Parameters
+    ----------
+    case : str
+        Built-in case or path of a case file.
+    over : str
+        What varies: "operation.speed=400..3500 rpm:60" or "operation.torque=50,150,300 N*m".
+        Several make a grid.
+    out : Path
+        Directory to write; by default that of the case with "-sweep".
+    set_ : list of str
+        Values to change, for example "operation.torque=120 N*m".
+    force : bool
+        Replace an earlier result in that directory.
+    json : bool
+        Write all figures in SI as one JSON object to stdout.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    from tribodyn.cli.bar import progress_bar
+    from tribodyn.study.save import check_target
+
+    target = out if out is not None else Path(f"{Path(case).stem}-sweep")
+    ranges = read_ranges(over)
+    ready = changed_case(case, set_ or [])
+    check_target(target, force, remedy=_REPLACE)
+    with progress_bar() as progress:
+        from tribodyn.study.parameter_sweep import sweep as compute
+
+        found = compute(ready, ranges, partial=True, by="sweep", progress=progress)
+    if not found.complete:
+        tell(
+            f"interrupted: {len(found.points)} of {found.failed.size} values are done and being "
+            "written; Ctrl-C again stops at once"
+        )
+    with progress_bar() as progress:
+        progress.start("writing the report")
+        found.save(target, force=force)
+        progress.finish()
+    _show(found, json)
+    failed = sum(bool(point.failed) for point in found.points)
+    if failed:
+        tell(f"{failed} of {len(found.points)} values failed; the column failed tells why.")
+    tell(f"Report: {target / 'report.html'}")
+    if not found.complete:
+        return _INTERRUPTED
+    return 1 if failed == len(found.points) else 0
+
+
+def _show(found: Sweep, as_json: bool) -> None:
+    from tribodyn.study.summary_names import SUMMARY
+
+    if as_json:
+        units = {axis.key: axis.unit for axis in found.axes}
+        say_json({"keys": units, "complete": found.complete, "rows": list(found.rows())})
+        return
+    names = [name for name in _SHOWN if name in found.figures]
+    rows: list[list[str]] = [[*(axis.name for axis in found.axes), *names, ""]]
+    for point in found.points:
+        keys: list[Any] = [a.show(v) for a, v in zip(found.axes, point.values, strict=True)]
+        figures = [SUMMARY[n].show(point.figures[n]) if n in point.figures else "-" for n in names]
+        rows.append([*keys, *figures, f"failed: {point.failed}" if point.failed else ""])
+    say(f"{found.case.title}\n{table(rows)}")

@@ -1,0 +1,380 @@
+"""From a system to adaptively marched lanes: tolerances, blocks, threads, failures."""
+
+from __future__ import annotations
+
+import math
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.dynamics.dormand_prince_table import PhaseTable, build_table
+from tribodyn.dynamics.dormand_prince_tolerance import (
+    SMALL,
+    Tolerance,
+    read_atol,
+    static_scale,
+    step_share,
+)
+from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.program import compile_system, lane_load
+from tribodyn.dynamics.step_limit import largest_rate
+from tribodyn.dynamics.system import System
+from tribodyn.errors import ComputationError, InputError, Problem, require_between
+
+__all__ = ["AdaptiveEngine", "AdaptiveRun", "adaptive_engine", "march_adaptive"]
+
+Array = NDArray[np.float64]
+
+#: Lanes of one block.
+_WIDTHS = (1, 16)
+_SAMPLE = 64
+
+
+@dataclass(frozen=True)
+class AdaptiveRun:
+    """What a march gives.
+
+    Parameters
+    ----------
+    state : (lanes, 2 n) array
+        Position and velocity at the end.
+    steps, rejections, crossings : int
+        Accepted steps, steps repeated for their error, and changes of side of contacts, summed
+        over blocks of lanes.
+    widest : float
+        Widest step in mesh phase [-].
+    trail : (steps, 3 + 6 n) array
+        Steps of a single lane: phase and width, position, velocity, acceleration, mean velocity,
+        and velocity and acceleration at the end.
+    memory : (blocks, ...) array
+        Step sizes and sizes of the state, to go on with.
+    """
+
+    state: Array
+    steps: int
+    rejections: int
+    crossings: int
+    widest: float
+    trail: Array
+    memory: Array
+
+
+@dataclass(frozen=True)
+class AdaptiveEngine:
+    """A system with its phase table and tolerances.
+
+    Parameters
+    ----------
+    system : System
+    table : PhaseTable
+    rtol : float
+        Error over the largest size so far of each state [-].
+    atol : (2 n,) array
+        Error allowed on top of that [m or rad, m/s or rad/s].
+    rate : float
+        Fastest motion of the system [rad/s].
+    safety : float
+        Error of a step over the tolerance [-].
+    """
+
+    system: System
+    table: PhaseTable
+    rtol: float
+    atol: Array
+    rate: float
+    safety: float
+
+    def march(
+        self,
+        period: Array,
+        state: Array,
+        cycles: int,
+        *,
+        extra_force: Array | None = None,
+        points: Array | None = None,
+        record: Array | None = None,
+        memory: Array | None = None,
+        room: int = 0,
+        width: int | None = None,
+        threads: int | None = None,
+    ) -> AdaptiveRun:
+        """March lanes by whole mesh cycles.
+
+        Parameters
+        ----------
+        period : (lanes,) array
+            Mesh period [s].
+        state : (lanes, 2 n) array
+            Position and velocity.
+        cycles : int
+            Mesh cycles.
+        extra_force : (lanes, n) array, optional
+            Constant generalized force on top of the system's [N or N*m].
+        points : (steps,) array, optional
+            Mesh phases to record at, rising from 0 [-].
+        record : (cycles * steps + 1, 2 n, lanes) array, optional
+            Receives the states there and at the end.
+        memory : array, optional
+            Of the run that this one continues.
+        room : int
+            Steps of a single lane to keep.
+        width : int, optional
+            Lanes per block; chosen by the number of lanes by default.
+        threads : int, optional
+            Blocks marched at a time; the number of processors by default.
+
+        Returns
+        -------
+        AdaptiveRun
+
+        Raises
+        ------
+        ComputationError
+            If a step falls below all bounds, or a contact chatters.
+        """
+        lanes, double = state.shape
+        width = width or (_WIDTHS[0] if lanes < 4 else _WIDTHS[1])
+        extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
+        load = lane_load(self.table.program, self.system, extra)
+        starts = range(0, lanes, width)
+        if memory is None:
+            memory = np.zeros((len(starts), 2 + double * width))
+            longest = float(np.max(period))
+            memory[:, 0] = min(0.1 * self.rtol**0.2 / max(self.rate * longest, 1e-9), 0.1)
+            memory[:, 1] = 1.0
+        memory, new = memory.copy(), np.empty_like(state)
+        trail, reports = np.zeros((room, 2 + 3 * double)), np.zeros((len(starts), 10))
+        grid = np.zeros(1) if points is None else np.ascontiguousarray(points)
+
+        def block(number: int) -> None:
+            # Lanes past the end repeat the last one, so that a block is always full.
+            first = starts[number]
+            index = np.minimum(np.arange(first, first + width), lanes - 1)
+            count = min(width, lanes - first)
+            part = np.ascontiguousarray(state[index])
+            kept = np.zeros((0, double, width))
+            if record is not None:
+                kept = record if lanes == width else np.empty((*record.shape[:2], width))
+            self._march_block(
+                period[index], load[index], part, memory[number], cycles, grid, kept, trail,
+                reports[number], index,
+            )  # fmt: skip
+            new[first : first + count] = part[:count]
+            if record is not None and kept is not record:
+                record[:, :, first : first + count] = kept[:, :, :count]
+
+        threads = threads or os.cpu_count() or 1
+        if len(starts) == 1 or threads == 1:
+            for number in range(len(starts)):
+                block(number)
+        else:
+            with ThreadPoolExecutor(threads) as pool:
+                list(pool.map(block, range(len(starts))))
+        total = reports.sum(axis=0)
+        return AdaptiveRun(
+            new, int(total[0]), int(total[1]), int(total[2]), float(reports[:, 3].max()),
+            trail[: int(reports[0, 8])], memory,
+        )  # fmt: skip
+
+    def _march_block(
+        self,
+        period: Array,
+        load: Array,
+        state: Array,
+        memory: Array,
+        cycles: int,
+        points: Array,
+        record: Array,
+        trail: Array,
+        report: Array,
+        index: NDArray[np.int64],
+    ) -> None:
+        from tribodyn.dynamics.dormand_prince_kernel import own_slots
+        from tribodyn.dynamics.dormand_prince_marching import march_adaptive_block
+
+        table, program = self.table, self.table.program
+        width, n = len(state), self.system.size
+        own = program.slots.count
+        slots = own + own_slots(n, len(self.system.contacts))
+        work = np.zeros(slots * (width + 1) + table.constant.size)
+        march_adaptive_block(
+            (0.0,) * width, program.code, program.reads, table.constant, table.edge, table.degree,
+            table.start, table.coefficients, table.varying, table.events, table.first, work,
+            own, slots, np.ascontiguousarray(period), np.ascontiguousarray(load), state, memory,
+            self.safety * self.rtol, self.safety * self.atol, cycles, points, record, trail, report,
+        )  # fmt: skip
+        if report[4]:
+            lane = int(report[6])
+            blocks = work[: slots * width].reshape(slots, width)[:, lane]
+            single = work[slots * width : slots * (width + 1)]
+            used = single if report[4] == 2.0 else blocks
+            # The state at the failed step, and its largest sizes before.
+            self._report_failure(
+                report, float(period[lane]), used[: 2 * n], int(index[lane]), len(index)
+            )
+
+    def _report_failure(
+        self, report: Array, period: float, state: Array, lane: int, lanes: int
+    ) -> None:
+        cycle, phase = int(report[9]), float(report[5])
+        n = self.system.size
+        where = f"time {(cycle + phase) * period:.6g} s, mesh cycle {cycle + 1}, phase {phase:.6g}"
+        where += f", trajectory {lane}" if lanes > 1 else ""
+        if report[4] == 2.0:
+            raise ComputationError(
+                Problem(
+                    what=f"contact {int(report[7])} opens and closes more than 64 times in a step",
+                    where=where,
+                    why="It chatters: its damping, error or direction throws it back at once",
+                    remedy="Look for negative damping, and for an error or a gap that jumps "
+                    "at a phase that is not an event",
+                )
+            )
+        size = np.abs(state) / np.maximum(self.atol / (SMALL * self.rtol), 1e-300)
+        worst = int(np.argmax(np.where(np.isfinite(state), size, np.inf)))
+        name = self.system.names[worst % n]
+        kind = "position" if worst < n else "velocity"
+        beyond = not np.isfinite(state[worst]) or size[worst] > 1e9
+        raise ComputationError(
+            Problem(
+                what=f"the motion grew beyond all bounds: the {kind} of {name} is "
+                f"{state[worst]:.3g}"
+                if beyond
+                else f"no step meets the tolerance: {name} moves fastest, its {kind} is "
+                f"{state[worst]:.3g}",
+                where=where,
+                why="Steps are as short as accuracy needs, so the system itself is unstable"
+                if beyond
+                else "An entry is not smooth there, or rounding exceeds the tolerance",
+                remedy="Look for negative stiffness or damping, or friction that feeds energy in"
+                if beyond
+                else "Give the phase as an event, or a larger rtol or atol",
+            )
+        )
+
+
+def adaptive_engine(
+    system: System,
+    mesh_frequency: ArrayLike,
+    cycles: int,
+    *,
+    rtol: float = 1e-6,
+    atol: Tolerance | None = None,
+    table: PhaseTable | None = None,
+) -> AdaptiveEngine:
+    """Prepare a system for adaptive steps.
+
+    Parameters
+    ----------
+    system : System
+    mesh_frequency : float or (lanes,) array
+        Mesh frequency [Hz].
+    cycles : int
+        Mesh cycles to march: the longer, the more errors of steps can add up.
+    rtol : float
+        Error over the largest size so far of each state [-].
+    atol : float, (position, velocity) or (2 n,) array, optional
+        Error allowed on top of that [m or rad, m/s or rad/s].
+    table : PhaseTable, optional
+        Of the same system, to spare building it again.
+
+    Returns
+    -------
+    AdaptiveEngine
+
+    Raises
+    ------
+    InputError
+        If a tolerance is out of range, an entry jumps at a phase that is not an event, or the
+        entries are too rough for the tolerance.
+
+    Notes
+    -----
+    By default ``atol`` is 0.001 ``rtol`` times the size of the static state: every position
+    ``s / sqrt(m_i)`` with ``s`` the largest ``sqrt(m_i) |q_i|`` of the static deflection, and
+    every velocity ``sqrt(f.q / m_i)``, that of the work of the mean load. It only matters for
+    states that stay near zero.
+
+    The error of a step is held to a fraction of the tolerance, the smaller the longer the motion
+    remembers it: 0.03, with dead zones 0.005, or 3 over the angle through which its least damped
+    mode turns while it decays or while the march lasts.
+    """
+    require_between("rtol", rtol, 1e-12, 1e-2)
+    table = build_table(system) if table is None else table
+    if table.error > rtol:
+        raise InputError(
+            Problem(
+                what=f"rtol = {rtol:.1e}, and the entries of the system are known over the mesh "
+                f"phase to {table.error:.1e}",
+                where="argument rtol",
+                why="Their kinks or noise cannot be followed any closer",
+                remedy=f"Give rtol of at least {table.error:.0e}, or smoother entries",
+            )
+        )
+    grid, nodes, program = compile_system(system, max(_SAMPLE, 2 * table.events.size))
+    compiled = Compiled(system, grid, nodes, program, math.nan)
+    slowest = float(np.min(np.asarray(mesh_frequency, dtype=float)))
+    if atol is None:
+        given = SMALL * rtol * static_scale(compiled, slowest)
+    else:
+        given = read_atol(atol, system.size)
+    safety = step_share(compiled, cycles / slowest)
+    return AdaptiveEngine(system, table, float(rtol), given, largest_rate(system, nodes), safety)
+
+
+def march_adaptive(
+    compiled: Compiled,
+    period: Array,
+    state: Array,
+    cycles: int,
+    *,
+    rtol: float = 1e-6,
+    atol: Tolerance | None = None,
+    extra_force: Array | None = None,
+    record: Array | None = None,
+    threads: int | None = None,
+) -> Array:
+    """March lanes by whole mesh cycles; returns their new state.
+
+    Parameters
+    ----------
+    compiled : Compiled
+        Its grid is the one to record on; its step limit does not matter.
+    period : (lanes,) array
+        Mesh period [s].
+    state : (lanes, 2 n) array
+        Position and velocity.
+    cycles : int
+        Mesh cycles.
+    rtol : float
+        Error over the largest size so far of each state [-].
+    atol : float, (position, velocity) or (2 n,) array, optional
+        Error allowed on top of that [m or rad, m/s or rad/s].
+    extra_force : (lanes, n) array, optional
+        Constant generalized force on top of the system's [N or N*m].
+    record : (steps * cycles + 1, 2 n, lanes) array, optional
+        Receives every state on the grid.
+    threads : int, optional
+        Blocks marched at a time; the number of processors by default.
+
+    Returns
+    -------
+    (lanes, 2 n) array
+
+    Raises
+    ------
+    InputError
+        If a tolerance is out of range.
+    ComputationError
+        If a step falls below all bounds, or a contact chatters.
+    """
+    engine = adaptive_engine(
+        compiled.system, 1.0 / np.asarray(period), cycles, rtol=rtol, atol=atol
+    )
+    return engine.march(
+        period, state, cycles, extra_force=extra_force, points=compiled.grid.left, record=record,
+        threads=threads,
+    ).state  # fmt: skip

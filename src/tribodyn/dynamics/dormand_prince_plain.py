@@ -1,0 +1,98 @@
+"""One adaptive step in plain NumPy: every line readable, nothing compiled.
+
+The compiled step is tested against it. One trajectory, entries evaluated directly, each contact
+on a given side of its dead zone.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.dormand_prince_kernel import MATRIX, NODES, WEIGHT_ERROR
+from tribodyn.dynamics.grid import Grid
+from tribodyn.dynamics.program import compile_on
+from tribodyn.dynamics.system import System
+
+__all__ = ["PlainStep", "step_plain"]
+
+Array = NDArray[np.float64]
+
+
+class PlainStep(NamedTuple):
+    """A step and its error.
+
+    Parameters
+    ----------
+    state : (2 n,) array
+        Position and velocity at the end [m or rad, m/s or rad/s].
+    error : (2 n,) array
+        Difference between the solutions of fifth and fourth order, in the same units.
+    middle : (2 n,) array
+        Dense output in the middle of the step, in the same units.
+    """
+
+    state: Array
+    error: Array
+    middle: Array
+
+
+def _acceleration(system: System, phase: float, beat: float, y: Array, side: Array) -> Array:
+    point = Grid(np.array([phase]), np.zeros(1), np.zeros(1, dtype=bool), np.zeros(1), np.ones(1))
+    nodes, _ = compile_on(system, point)
+    row = {name: values[0, 0] for name, values in nodes._asdict().items()}
+    size = system.size
+    q, v = y[:size], y[size:]
+    compression = row["direction"] @ q - row["error"]
+    rate = row["direction"] @ v + beat * (row["direction_slope"] @ q - row["error_slope"])
+    spring = np.abs(side) * row["stiffness"] * (compression - side * row["gap"])
+    free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
+    damper = np.where((side != 0.0) | free, row["damping"] * rate, 0.0)
+    inner = np.asarray(system.stiffness) @ q + np.asarray(system.damping) @ v
+    contact = row["force_direction"].T @ (spring + damper)
+    return np.asarray(np.linalg.solve(np.asarray(system.mass), row["force"] - inner - contact))
+
+
+def step_plain(
+    system: System, mesh_frequency: float, phase: float, width: float, state: Array, side: Array
+) -> PlainStep:
+    """Step one trajectory within a segment between two events.
+
+    Parameters
+    ----------
+    system : System
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    phase, width : float
+        Mesh phase at the start and width of the step [-].
+    state : (2 n,) array
+        Position and velocity.
+    side : (contacts,) array
+        1 or -1 on a flank, 0 in the gap.
+
+    Returns
+    -------
+    PlainStep
+    """
+    n, h = system.size, width / mesh_frequency
+    slopes = np.zeros((7, 2 * n))
+    y = np.asarray(state, dtype=float)
+    for s in range(7):
+        y = state + h * MATRIX[s] @ slopes[:6]
+        place = phase + NODES[s] * width
+        slopes[s] = np.concatenate((y[n:], _acceleration(system, place, mesh_frequency, y, side)))
+    return PlainStep(y, h * WEIGHT_ERROR @ slopes, _middle(state, y, slopes[0], slopes[6], h))
+
+
+def _middle(start: Array, end: Array, first: Array, last: Array, h: float) -> Array:
+    """Quintic polynomial through position, velocity and acceleration at both ends, at its middle.
+
+    ``first`` and ``last`` are the time derivatives of the states ``start`` and ``end``.
+    """
+    n = start.size // 2
+    q0, q1, v0, v1, a0, a1 = start[:n], end[:n], first[:n], last[:n], first[n:], last[n:]
+    position = 0.5 * (q0 + q1) + 5.0 / 32.0 * h * (v0 - v1) + h**2 / 64.0 * (a0 + a1)
+    velocity = 15.0 / 8.0 * (q1 - q0) / h - 7.0 / 16.0 * (v0 + v1) + h / 32.0 * (a1 - a0)
+    return np.concatenate((position, velocity))

@@ -1,0 +1,49 @@
+"""What a part of a contact can be given as: a constant or a function of the mesh phase."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import InputError, Problem
+
+__all__ = ["Entry", "read_events"]
+
+#: A constant, or a vectorized function of the mesh phase in [0, 1).
+Entry = float | ArrayLike | Callable[[NDArray[np.float64]], Any]
+
+
+def read_events(given: Any, where: str) -> tuple[float, ...]:
+    """Check mesh phases at which an entry jumps.
+
+    Parameters
+    ----------
+    given : sequence of float
+        Mesh phases [-].
+    where : str
+        Name for messages.
+
+    Returns
+    -------
+    tuple of float
+
+    Raises
+    ------
+    InputError
+        If a phase lies outside [0, 1).
+    """
+    events = tuple(float(event) for event in given)
+    bad = [event for event in events if not 0.0 <= event < 1.0]
+    if bad:
+        raise InputError(
+            Problem(
+                what=f"events holds {bad[0]:g}",
+                where=where,
+                why="Events are mesh phases and lie in [0, 1)",
+                remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
+            )
+        )
+    return events

@@ -1,0 +1,155 @@
+"""What lanes of an ensemble differ by: factors of the parts of one system."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.errors import InputError, Problem
+
+__all__ = ["LaneParameters"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LaneParameters:
+    """Factors by which each lane of an ensemble scales its system.
+
+    Each is a number for all lanes or an array (lanes,).
+
+    Parameters
+    ----------
+    stiffness_scale : float or (lanes,) array
+        Of the stiffness of every contact [1].
+    damping_scale : float or (lanes,) array
+        Of the damping of every contact [1].
+    friction_scale : float or (lanes,) array
+        Of every friction force [1].
+    error_scale : float or (lanes,) array
+        Of the displacement error and its rate [1].
+    gap_scale : float or (lanes,) array
+        Of the dead zone of every contact [1].
+    force_scale : float or (lanes,) array
+        Of the external force of the system; an extra force is not scaled [1].
+
+    Raises
+    ------
+    InputError
+        If a factor is not finite, a stiffness or gap factor is negative, or arrays differ in
+        length.
+
+    Examples
+    --------
+    >>> LaneParameters(stiffness_scale=[1.0, 1.2], force_scale=0.5)
+    LaneParameters(stiffness_scale 1 to 1.2, force_scale 0.5)
+    """
+
+    stiffness_scale: ArrayLike = 1.0
+    damping_scale: ArrayLike = 1.0
+    friction_scale: ArrayLike = 1.0
+    error_scale: ArrayLike = 1.0
+    gap_scale: ArrayLike = 1.0
+    force_scale: ArrayLike = 1.0
+
+    def __post_init__(self) -> None:
+        lengths: dict[int, str] = {}
+        for name in _NAMES:
+            values = np.array(getattr(self, name), dtype=float)
+            if values.ndim > 1 or not np.all(np.isfinite(values)):
+                raise InputError(
+                    Problem(
+                        what=f"{name} has the shape {values.shape}"
+                        if values.ndim > 1
+                        else f"{name} holds NaN or infinity",
+                        where=f"LaneParameters.{name}",
+                        why="A factor is one number, or one number per lane",
+                    )
+                )
+            if name in _NOT_NEGATIVE and np.any(values < 0.0):
+                worst = int(np.argmin(values))
+                raise InputError(
+                    Problem(
+                        what=f"{name} = {values.reshape(-1)[worst]:g} in lane {worst}",
+                        where=f"LaneParameters.{name}",
+                        why="The factor cannot be negative",
+                    )
+                )
+            if values.ndim:
+                lengths[values.size] = name
+            object.__setattr__(self, name, values)
+        if len(lengths) > 1:
+            (one, first), (two, second), *_ = lengths.items()
+            raise InputError(
+                Problem(
+                    what=f"{first} holds {one} factors and {second} holds {two}",
+                    where="LaneParameters",
+                    why="Every array has one factor for each lane",
+                )
+            )
+
+    def __repr__(self) -> str:
+        """One line."""
+        parts = []
+        for name in _NAMES:
+            values = np.asarray(getattr(self, name))
+            low, high = float(values.min()), float(values.max())
+            if low != high:
+                parts.append(f"{name} {low:g} to {high:g}")
+            elif low != 1.0:
+                parts.append(f"{name} {low:g}")
+        return f"LaneParameters({', '.join(parts)})"
+
+    @property
+    def scales_contacts(self) -> bool:
+        """Whether stiffness, damping or dead zone differ from those of the system."""
+        return any(np.any(np.asarray(getattr(self, name)) != 1.0) for name in _OF_CONTACTS)
+
+    @property
+    def scales_friction(self) -> bool:
+        """Whether friction differs from that of the system."""
+        return bool(np.any(np.asarray(self.friction_scale) != 1.0))
+
+    @property
+    def count(self) -> int:
+        """Number of lanes that the arrays hold; 1 if there are only numbers."""
+        return max(np.asarray(getattr(self, name)).size for name in _NAMES)
+
+    def table(self, lanes: int) -> Array:
+        """All factors of all lanes.
+
+        Parameters
+        ----------
+        lanes : int
+            Number of lanes.
+
+        Returns
+        -------
+        (lanes, 6) array
+            Stiffness, damping, friction, error, gap and force [1].
+
+        Raises
+        ------
+        InputError
+            If an array has another length.
+        """
+        columns = []
+        for name in _NAMES:
+            values = np.asarray(getattr(self, name))
+            if values.ndim and values.size != lanes:
+                raise InputError(
+                    Problem(
+                        what=f"{name} holds {values.size} factors for {lanes} lanes",
+                        where=f"LaneParameters.{name}",
+                        why="One number, or one for each lane",
+                    )
+                )
+            columns.append(np.broadcast_to(values, (lanes,)))
+        return np.stack(columns, axis=1)
+
+
+_NAMES = tuple(item.name for item in fields(LaneParameters))
+_NOT_NEGATIVE = ("stiffness_scale", "gap_scale")
+_OF_CONTACTS = ("stiffness_scale", "damping_scale", "gap_scale")

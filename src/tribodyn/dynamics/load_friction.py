@@ -1,0 +1,295 @@
+"""Friction that follows the load of a contact: coefficient and share vary with the force.
+
+``F = N sum_k c_k(phi) x^k`` with ``x = min(|N|/load, limit)`` acts along ``-direction(phi)``. The
+coefficients carry the sign of sliding, so that a friction coefficient and a load share that depend
+on the tooth force become one polynomial for each row of the table.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.entry import Entry, read_events
+from tribodyn.errors import InputError, Problem, require_positive
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics.grid import RowEvaluator
+    from tribodyn.dynamics.program import Nodes
+    from tribodyn.dynamics.system import System
+
+__all__ = [
+    "LoadFriction",
+    "carried_load",
+    "coefficient_count",
+    "friction_coefficients",
+    "friction_directions",
+    "friction_force",
+    "friction_secant",
+    "friction_tangent",
+    "push_with_friction",
+]
+
+Array = NDArray[np.float64]
+
+#: Phases at which a function tells how many coefficients it returns; no likely number of these.
+_PROBE = 37
+
+
+@dataclass(frozen=True)
+class LoadFriction:
+    """Friction whose coefficient follows the contact force.
+
+    Parameters
+    ----------
+    direction : (n,) array or function
+        Generalized force against which one newton of friction acts [1 or m]; a function takes
+        mesh phases (p,) and returns (p, n).
+    coefficients : float, (m,) array or function
+        ``c_0, c_1, ...`` of ``F/N = sum_k c_k x^k``, with the sign of sliding [1]; a function
+        returns (p, m).
+    load : float
+        Contact force at which ``x = 1`` [N].
+    contacts : tuple of int
+        Contacts whose forces add up to N; the ramps of one force law belong together.
+    limit : float
+        Largest ``x``: beyond it the coefficient stays as it is there [1].
+    events : tuple of float
+        Mesh phases at which an entry jumps, beside those of the contacts.
+
+    Raises
+    ------
+    InputError
+        If load or limit is not positive, no contact is named, or an event lies outside [0, 1).
+
+    Notes
+    -----
+    ``x = min(|N|/load, limit)``. The friction keeps the sign of N: while the back flank carries,
+    or a damper pulls, N is negative and the friction turns round with it, as that of
+    :class:`Contact` does.
+
+    Examples
+    --------
+    >>> LoadFriction(direction=[1.0, -1.0], coefficients=[0.05, 0.01, -0.002], load=1000.0)
+    LoadFriction(load=1000.0, contacts=(0,))
+    """
+
+    direction: Entry
+    coefficients: Entry
+    load: float
+    contacts: tuple[int, ...] = (0,)
+    limit: float = 4.0
+    events: tuple[float, ...] = (0.0,)
+
+    def __post_init__(self) -> None:
+        require_positive("load", self.load, "N")
+        require_positive("limit", self.limit, "")
+        object.__setattr__(self, "events", read_events(self.events, "LoadFriction.events"))
+        contacts = (self.contacts,) if isinstance(self.contacts, int) else self.contacts
+        numbers = tuple(int(contact) for contact in contacts)
+        if not numbers or min(numbers) < 0:
+            raise InputError(
+                Problem(
+                    what=f"contacts = {numbers}",
+                    where="LoadFriction.contacts",
+                    why="The friction follows the force of one contact or of several",
+                    remedy="Name them by their place in System.contacts, counted from 0",
+                )
+            )
+        object.__setattr__(self, "contacts", numbers)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"LoadFriction(load={self.load}, contacts={self.contacts})"
+
+
+def coefficient_count(where: str, friction: LoadFriction) -> int:
+    """Number of coefficients of one row.
+
+    Parameters
+    ----------
+    where : str
+        Name for messages.
+    friction : LoadFriction
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InputError
+        If the coefficients are neither a number nor a row of numbers.
+    """
+    given = friction.coefficients
+    probe = (np.arange(_PROBE) + 0.5) / _PROBE
+    values = np.asarray(given(probe) if callable(given) else given, dtype=float)
+    shape = values.shape
+    if callable(given) and _PROBE in shape:
+        shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())
+    if len(shape) > 1 or 0 in shape:
+        raise InputError(
+            Problem(
+                what=f"{where} gives the shape {values.shape}",
+                where=where,
+                why=f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases",
+            )
+        )
+    return int(shape[0]) if shape else 1
+
+
+def friction_directions(system: System, rows: RowEvaluator) -> Array:
+    """Directions of all frictions on the rows.
+
+    Parameters
+    ----------
+    system : System
+    rows : RowEvaluator
+
+    Returns
+    -------
+    (steps, 3, frictions, n) array
+    """
+    out = np.zeros((*rows.nodes.shape, len(system.frictions), system.size))
+    for f, one in enumerate(system.frictions):
+        out[:, :, f] = rows.values(f"frictions[{f}].direction", one.direction, system.size)
+    return out
+
+
+def friction_coefficients(system: System, rows: RowEvaluator) -> Array:
+    """Coefficients of all frictions on the rows, filled up with zeros.
+
+    Parameters
+    ----------
+    system : System
+    rows : RowEvaluator
+
+    Returns
+    -------
+    (steps, 3, frictions, m) array
+    """
+    names = [f"frictions[{f}].coefficients" for f in range(len(system.frictions))]
+    pairs = list(zip(names, system.frictions, strict=True))
+    counts = [coefficient_count(name, one) for name, one in pairs]
+    out = np.zeros((*rows.nodes.shape, len(pairs), max(counts, default=1)))
+    for f, (name, one) in enumerate(pairs):
+        out[:, :, f, : counts[f]] = rows.values(name, one.coefficients, counts[f])
+    return out
+
+
+def carried_load(system: System, contact_force: Array) -> Array:
+    """Force N that each friction follows.
+
+    Parameters
+    ----------
+    system : System
+    contact_force : (..., contacts) array
+        Force of the contacts [N].
+
+    Returns
+    -------
+    (..., frictions) array
+        In N.
+    """
+    columns = [contact_force[..., list(one.contacts)].sum(axis=-1) for one in system.frictions]
+    return np.stack(columns, axis=-1) if columns else np.zeros((*contact_force.shape[:-1], 0))
+
+
+def _ratio(system: System, load: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Load over the nominal load, and whether it is below the limit."""
+    nominal = np.array([one.load for one in system.frictions])
+    limit = np.array([one.limit for one in system.frictions])
+    x = np.abs(load) * (1.0 / nominal)
+    return np.minimum(x, limit), x < limit
+
+
+def _polynomial(coefficients: Array, x: Array) -> Array:
+    total = np.zeros(np.broadcast_shapes(coefficients.shape[:-1], x.shape))
+    for item in range(coefficients.shape[-1] - 1, -1, -1):
+        total = total * x + coefficients[..., item]
+    return total
+
+
+def friction_secant(system: System, coefficients: Array, load: Array) -> Array:
+    """Friction over contact force, ``F/N``.
+
+    Parameters
+    ----------
+    system : System
+    coefficients : (..., frictions, m) array
+        Coefficients on the rows [1].
+    load : (..., frictions) array
+        Force N [N].
+
+    Returns
+    -------
+    (..., frictions) array
+    """
+    return _polynomial(coefficients, _ratio(system, load)[0])
+
+
+def friction_force(system: System, coefficients: Array, contact_force: Array) -> Array:
+    """Force of each friction.
+
+    Parameters
+    ----------
+    system : System
+    coefficients : (..., frictions, m) array
+        Coefficients on the rows [1].
+    contact_force : (..., contacts) array
+        Force of the contacts [N].
+
+    Returns
+    -------
+    (..., frictions) array
+        In N, along ``-direction``.
+    """
+    load = carried_load(system, contact_force)
+    return load * friction_secant(system, coefficients, load)
+
+
+def friction_tangent(system: System, coefficients: Array, load: Array) -> Array:
+    """Change of friction with contact force, ``dF/dN``.
+
+    Parameters
+    ----------
+    system : System
+    coefficients : (..., frictions, m) array
+        Coefficients on the rows [1].
+    load : (..., frictions) array
+        Force N [N].
+
+    Returns
+    -------
+    (..., frictions) array
+    """
+    x, below = _ratio(system, load)
+    # d(x P)/dx = sum (k + 1) c_k x^k; beyond the limit P stays.
+    rising = _polynomial(coefficients * np.arange(1, coefficients.shape[-1] + 1), x)
+    return np.where(below, rising, _polynomial(coefficients, x))
+
+
+def push_with_friction(system: System, nodes: Nodes, ratio: Array) -> Array:
+    """Generalized force per unit force of each contact, all friction included.
+
+    Parameters
+    ----------
+    system : System
+    nodes : Nodes
+        The system on its grid.
+    ratio : (..., frictions) array
+        Friction over contact force, or its change with it [1].
+
+    Returns
+    -------
+    (..., contacts, n) array
+    """
+    push = nodes.force_direction
+    for f, one in enumerate(system.frictions):
+        push = push.copy() if f == 0 else push
+        for j in one.contacts:
+            push[..., j, :] += ratio[..., f, None] * nodes.friction_direction[..., f, :]
+    return push

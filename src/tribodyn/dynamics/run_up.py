@@ -1,0 +1,307 @@
+"""Run-up and run-down: the motion while the speed changes as prescribed."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.dynamics.ensemble import LaneStatistics
+from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
+from tribodyn.dynamics.run_up_march import CycleMarcher, Pace
+from tribodyn.dynamics.run_up_profile import SpeedProfile, read_profile
+from tribodyn.dynamics.run_up_result import CycleStatistics, RunUp
+from tribodyn.dynamics.run_up_samples import Samples
+from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
+from tribodyn.dynamics.simulate import read_start
+from tribodyn.dynamics.steady_state import steady_state
+from tribodyn.dynamics.system import System
+from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, require_positive
+from tribodyn.progress import SILENT, Progress
+
+__all__ = ["read_outputs", "run_up"]
+
+Array = NDArray[np.float64]
+
+#: Mesh cycles whose pace is found at a time.
+_CHUNK = 64
+#: Mean, mean square, minimum, maximum, share off the driving flank.
+_PLAIN = 5
+
+
+def run_up(
+    system: System | Mapping[float, System],
+    profile: SpeedProfile | tuple[ArrayLike, ArrayLike] | Callable[[Array], ArrayLike],
+    *,
+    duration: float | None = None,
+    teeth: int = 1,
+    start: tuple[ArrayLike, ArrayLike] | None = None,
+    steps: int | None = None,
+    samples: int = 128,
+    outputs: Mapping[str, ArrayLike] | None = None,
+    output_unit: str = "N",
+    rotation: ArrayLike | None = None,
+    progress: Progress = SILENT,
+) -> RunUp:
+    """March a system while its speed changes as prescribed.
+
+    Parameters
+    ----------
+    system : System or mapping of float to System
+        One system, or several by mesh frequency [Hz] where friction, stiffness or loads change
+        with the speed: between two of them the rows are blended in a straight line.
+    profile : SpeedProfile, (time, mesh_frequency) or function
+        Mesh frequency [Hz] over time [s]: :func:`speed_ramp`, corners of straight lines, or a
+        vectorized function of time.
+    duration : float, optional
+        Length of the run [s], for a function of time.
+    teeth : int
+        Mesh cycles per revolution of the shaft whose speed is told.
+    start : (position, velocity), optional
+        Two (n,) arrays [m or rad, m/s or rad/s]; the steady state at the first speed by default.
+    steps : int, optional
+        Steps per mesh cycle at all speeds; by default each speed has as many as it needs
+        (``omega_max * dt`` up to 0.35, at least 256).
+    samples : int
+        Equally spaced samples of each mesh cycle that are kept. What lies above mesh order
+        ``samples / 2`` folds down.
+    outputs : mapping of str to (2 n,) array, optional
+        Further linear outputs of (position, velocity), for example bearing forces [N/m, N*s/m].
+    output_unit : str
+        Their unit.
+    rotation : (n,) array, optional
+        Derivative of the coordinates with respect to the angle of the shaft [rad/rad]. Given, the
+        inertia of the prescribed acceleration loads the structure.
+    progress : Progress
+        Told about the mesh cycles.
+
+    Returns
+    -------
+    RunUp
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, the lowest speed is not positive or the step too long.
+    ComputationError
+        If the motion grows beyond all bounds.
+
+    Notes
+    -----
+    The motion is marched in the mesh phase, so that events stay grid points at every speed: each
+    step takes the time in which the prescribed speed passes its width, exactly. The classical
+    Runge-Kutta scheme keeps its fourth order, and steps in which a contact opens or closes are
+    split as at constant speed.
+
+    The mean motion is prescribed. Where friction unbalances the torques, ``system.balance`` says
+    which torque follows: it takes away what the drive gained in the last cycles (a weak servo of
+    eight cycles, whose mean at a constant speed is that of :func:`steady_state`). Without it the
+    mean acceleration of the whole drive is left out.
+
+    The last mesh cycle is finished at the last speed.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
+    >>> system = System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair])
+    >>> run_up(system, ([0.0, 40.0], [0.2, 0.8]), samples=16)
+    RunUp(40 s, 20 mesh cycles from 0.2 over 0.8 to 0.8 Hz, 1 coordinates, 16 samples per cycle)
+    """
+    path = read_profile(profile, duration)
+    require_positive("teeth", teeth)
+    if int(samples) != samples or samples < 2:
+        raise InputError(Problem(f"samples = {samples}", "argument samples", "Whole number >= 2"))
+    frequency, systems = systems_by_frequency(system)
+    first = systems[0]
+    tables = Tables(systems, int(samples), path.lowest, steps)
+    linear = read_outputs(outputs, first)
+    marcher = CycleMarcher(
+        tables, frequency, path.lowest, linear, _inertia(first, rotation, int(teeth))
+    )
+    state = _begin(marcher, path, start)
+    count = max(math.ceil(path.cycles - 1e-9), 1)
+    kept = Samples(systems, frequency, count, int(samples))
+    progress.start("Marching the run-up", count)
+    figures = _march(marcher, path, count, state, kept, progress)
+    progress.finish()
+    return RunUp(
+        **kept.series(linear),
+        names=tuple(first.names),
+        output_names=tuple(outputs or ()),
+        output_unit=output_unit,
+        samples=int(samples),
+        teeth=int(teeth),
+        cycles=_statistics(path, count, *figures[:3], first),
+        profile=path,
+        step_number=figures[3],
+        modes=_modes(systems[len(systems) // 2]),
+    )
+
+
+def _march(
+    marcher: CycleMarcher, path: SpeedProfile, count: int, state: Array, kept: Samples,
+    progress: Progress,
+) -> tuple[Array, Array, list[int], float]:  # fmt: skip
+    """March all cycles: their moments, extra forces and steps, and the largest step number."""
+    moments, extras, used, largest = [], [], [], 0.0
+    for table, begin, end in _chunks(marcher.tables, path, count):
+        pace = Pace.over(path, table, begin, end - begin)
+        record = np.empty((table.grid.steps + 1, state.size, 1))
+        period = pace.time[:, -1] - pace.time[:, 0]
+        rate = np.diff(path.frequency_at(pace.time[:, [0, -1]]))[:, 0] / period
+        chunk = np.empty((end - begin, table.kept.size, state.size))
+        ends = np.empty((end - begin, state.size))
+        for here in range(end - begin):
+            program = marcher.program(table, pace, here, 1.0 / period[here])
+            state = marcher.without_free_motion(state)
+            marcher.time = float(pace.time[here, 0])
+            state, found, extra = marcher.cycle(program, period[here], rate[here], state, record)
+            chunk[here], ends[here] = record[table.kept, :, 0], state
+            moments.append(found)
+            extras.append(extra)
+        used += [table.grid.steps] * (end - begin)
+        largest = max(largest, table.step_number * float(period.max()))
+        time = pace.time[:, table.kept]
+        _take_drift(marcher, chunk, ends, (time - pace.time[:, :1]) / period[:, None], period)
+        weights = [marcher.weights(1.0 / each) for each in period]
+        kept.add(table, begin, time, path.frequency_at(time), chunk, weights, extras[begin:end])
+        progress.advance(end - begin)
+    return np.array(moments).T, np.array(extras), used, largest
+
+
+def _modes(system: System) -> NaturalModes | None:
+    try:
+        return natural_modes(system)
+    except (InputError, ComputationError):
+        return None
+
+
+def read_outputs(outputs: Mapping[str, ArrayLike] | None, system: System) -> Array:
+    """Check linear outputs of the state.
+
+    Parameters
+    ----------
+    outputs : mapping of str to (2 n,) array, optional
+        Rows over (position, velocity).
+    system : System
+
+    Returns
+    -------
+    (o, 2 n) array
+
+    Raises
+    ------
+    InputError
+        If a row has another shape.
+    """
+    rows = [np.asarray(row, dtype=float) for row in (outputs or {}).values()]
+    for name, row in zip(outputs or {}, rows, strict=True):
+        if row.shape != (2 * system.size,):
+            raise InputError(
+                Problem(
+                    what=f"the output {name} has the shape {row.shape}",
+                    where="argument outputs",
+                    why=f"It is a row over positions and velocities, ({2 * system.size},)",
+                )
+            )
+    return np.array(rows) if rows else np.zeros((0, 2 * system.size))
+
+
+def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
+    """Generalized force against a mesh frequency that rises by 1 Hz/s."""
+    if rotation is None:
+        return np.zeros(system.size)
+    turning = np.asarray(rotation, dtype=float)
+    if turning.shape != (system.size,):
+        raise InputError(
+            Problem(
+                what=f"rotation has the shape {turning.shape}, not ({system.size},)",
+                where="argument rotation",
+            )
+        )
+    return np.asarray(-np.asarray(system.mass) @ turning * (2.0 * np.pi / teeth))
+
+
+def _begin(
+    marcher: CycleMarcher, path: SpeedProfile, start: tuple[ArrayLike, ArrayLike] | None
+) -> Array:
+    """State at the beginning; the balancing torque of a steady state is kept."""
+    beat = float(path.frequency_at(0.0))
+    left, part = marcher.weights(beat)
+    system = marcher.systems[left + round(part)]
+    if start is not None:
+        return read_start(system, start)
+    with warnings.catch_warnings():
+        # A motion that does not repeat is as good a beginning as any other.
+        warnings.simplefilter("ignore", ModelWarning)
+        orbit = steady_state(system, beat, steps=marcher.tables.steps_at(beat))
+    if orbit.converged and marcher.balance is not None:
+        marcher.hold(orbit.extra_force)
+    return np.concatenate((orbit.position[0], orbit.velocity[0]))
+
+
+def _chunks(tables: Tables, path: SpeedProfile, count: int) -> Any:
+    """Runs of mesh cycles on one grid: table, first cycle, one past the last."""
+    time = path.time_at(np.arange(count + 1))
+    ends = path.frequency_at(time)
+    slowest = np.minimum(ends[1:], ends[:-1])
+    corners = np.asarray(path.time)[1:-1]
+    inside = np.searchsorted(time, corners, side="right") - 1
+    lows = path.frequency_at(corners)
+    np.minimum.at(slowest, np.minimum(inside, count - 1), lows)
+    needed = np.array([tables.steps_at(float(each)) for each in slowest])
+    begin = 0
+    while begin < count:
+        end = begin + 1
+        while end < count and end - begin < _CHUNK and needed[end] == needed[begin]:
+            end += 1
+        yield tables.at(float(slowest[begin])), begin, end
+        begin = end
+
+
+def _take_drift(
+    marcher: CycleMarcher, states: Array, ends: Array, passed: Array, period: Array
+) -> None:
+    """Take mean acceleration and mean speed of every cycle out of the free motion.
+
+    The free motion begins at rest; then it also ends where it began, as the orbits of
+    :func:`steady_state` do.
+    """
+    size = marcher.size
+    rise = (ends[:, size:] @ marcher.free)[:, None]
+    travel = (ends[:, :size] @ marcher.free)[:, None] - 0.5 * period[:, None, None] * rise
+    part, whole = passed[:, :, None], period[:, None, None]
+    states[..., :size] -= part * travel + 0.5 * part**2 * whole * rise
+    states[..., size:] -= travel / whole + part * rise
+
+
+def _statistics(
+    path: SpeedProfile, count: int, moments: Array, extras: Array, steps: list[int], system: System
+) -> CycleStatistics:
+    time = path.time_at(np.arange(count + 1))
+    period = np.diff(time)
+    rows = moments.reshape(-1, _PLAIN, count)
+    contacts, size = len(system.contacts), system.size
+
+    def figures(part: Array) -> LaneStatistics:
+        none = np.zeros((count, part.shape[0], 0), dtype=complex)
+        mean, square, low, high = (part[:, k].T for k in range(4))
+        return LaneStatistics(mean, np.sqrt(np.maximum(square, 0.0)), low, high, none)
+
+    return CycleStatistics(
+        time=0.5 * (time[1:] + time[:-1]),
+        mesh_frequency=1.0 / period,
+        rate=np.diff(path.frequency_at(time)) / period,
+        deflection=figures(rows[:contacts]),
+        contact_force=figures(rows[contacts : 2 * contacts]),
+        acceleration=figures(rows[2 * contacts : 2 * contacts + size]),
+        output=figures(rows[2 * contacts + size :]),
+        contact_loss_share=rows[contacts : 2 * contacts, 4].T,
+        extra_force=extras,
+        steps=np.array(steps, dtype=np.int64),
+    )

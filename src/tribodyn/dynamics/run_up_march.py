@@ -1,0 +1,275 @@
+"""Marching over mesh cycles whose speed changes: one cycle after the other, one lane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.coordinates import OrbitCoordinates, orbit_coordinates
+from tribodyn.dynamics.ensemble import _fresh_moments
+from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.orbit_map import _balance_direction
+from tribodyn.dynamics.program import Program
+from tribodyn.dynamics.run_up_profile import SpeedProfile
+from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.errors import ComputationError, Problem
+
+__all__ = ["CycleMarcher", "Pace"]
+
+Array = NDArray[np.float64]
+
+#: Part of the unbalanced torque of a cycle that is taken away in the next, after the first cycles.
+_SERVO = 0.125
+#: Shift of the middle of a step, as a part of its width, that matters.
+_SHIFT = 1e-8
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Speed within some mesh cycles on one grid.
+
+    Parameters
+    ----------
+    time : (cycles, steps + 1) array
+        Time at the ends of the steps [s].
+    share : (cycles, steps) array
+        Duration of each step over that of its cycle [-].
+    shift : (cycles, steps) array
+        Mesh phase in the middle of the time of a step, less its middle, over its width [-].
+    ratio : (cycles, steps, 3) array
+        Speed at the beginning, middle and end of a step over the mean speed of its cycle [-].
+    """
+
+    time: Array
+    share: Array
+    shift: Array
+    ratio: Array
+
+    @classmethod
+    def over(cls, profile: SpeedProfile, table: Table, first: int, count: int) -> Pace:
+        """Find the pace of some cycles.
+
+        Parameters
+        ----------
+        profile : SpeedProfile
+        table : Table
+        first, count : int
+            Number of the first mesh cycle, and how many.
+
+        Returns
+        -------
+        Pace
+        """
+        grid = table.grid
+        cycle = first + np.arange(count)[:, None]
+        time = profile.time_at(cycle + np.append(grid.left, 1.0))
+        middle = 0.5 * (time[:, 1:] + time[:, :-1])
+        period = time[:, -1:] - time[:, :1]
+        centre = grid.left + 0.5 * grid.width
+        shift = (profile.phase_at(middle) - cycle - centre) / grid.width
+        places = np.stack((time[:, :-1], middle, time[:, 1:]), axis=-1)
+        ratio = profile.frequency_at(places) * period[:, :, None]
+        return cls(time, np.diff(time, axis=1) / period, shift, ratio)
+
+
+class CycleMarcher:
+    """Marches one mesh cycle at a time, with a balanced drive.
+
+    Parameters
+    ----------
+    tables : Tables
+    frequency : (m,) array
+        Mesh frequencies of the systems [Hz].
+    lowest : float
+        Lowest mesh frequency of the run [Hz].
+    outputs : (o, 2 n) array
+        Linear outputs of the state.
+    inertia : (n,) array
+        Generalized force of the prescribed acceleration, for 1 Hz/s of the mesh frequency.
+
+    Notes
+    -----
+    Nothing depends on the free rotation of the whole drive: it is taken out of the state before
+    every cycle. With ``system.balance`` a torque follows that takes away what the last cycles
+    gained: an integrating servo of eight cycles. Its mean is that of the steady state at the same
+    speed; the torque itself hardly changes within a cycle.
+    """
+
+    def __init__(
+        self, tables: Tables, frequency: Array, lowest: float, outputs: Array, inertia: Array
+    ) -> None:
+        table = tables.at(lowest)
+        system = tables.systems[0]
+        first = Compiled(system, table.grid, table.nodes[0], table.programs[0], 0.0)
+        self.tables, self.systems = tables, tables.systems
+        self.frequency, self.outputs, self.inertia = frequency, outputs, inertia
+        self.size, self.contacts = system.size, len(system.contacts)
+        self.coordinates: OrbitCoordinates = orbit_coordinates(first, lowest)
+        self.inverse = np.linalg.inv(np.asarray(system.mass))
+        lower, free = self.coordinates.lower, self.coordinates.free
+        #: Free velocities of a velocity, and the velocity of one of them.
+        self.down, self.up = lower @ free, free.T @ np.linalg.inv(lower)
+        #: Free motion of a position or velocity.
+        self.free = self.down @ self.up
+        self.balance = _balance_direction(system, self.coordinates)
+        self.torque = np.zeros(self.size)
+        #: Time at the beginning of the cycle, for messages.
+        self.time = 0.0
+        self.count = 0
+        self._rows: Array = np.zeros(0)
+        #: Steps, number of a system, and by how much the rows of the next one differ.
+        self._between: tuple[int, int, Array] = (0, 0, self._rows)
+        self._fresh = _fresh_moments(self.contacts, self.size + len(outputs), 0, 1)[:, 0]
+
+    def weights(self, frequency: float) -> tuple[int, float]:
+        """Which two neighbouring systems there are at a speed, and the part of the second.
+
+        Parameters
+        ----------
+        frequency : float
+            Mesh frequency [Hz].
+
+        Returns
+        -------
+        tuple of int and float
+            Outside the range the nearest system alone.
+        """
+        return blend_weight(self.frequency, frequency)
+
+    def program(self, table: Table, pace: Pace, cycle: int, frequency: float) -> Program:
+        """Program of one cycle.
+
+        Parameters
+        ----------
+        table : Table
+        pace : Pace
+        cycle : int
+            Number within the pace.
+        frequency : float
+            Mean mesh frequency of the cycle [Hz].
+
+        Returns
+        -------
+        Program
+            Its rows are overwritten by the next one.
+        """
+        left, part = self.weights(frequency)
+        base = table.programs[left]
+        steady = base.constant_load
+        shape = (table.grid.steps, 3, int(base.code[2]))
+        rows = base.rows.reshape(shape)
+        level = not np.any(np.abs(pace.shift[cycle]) > _SHIFT)
+        if level and part == 0.0 and np.ptp(pace.ratio[cycle]) < _SHIFT:
+            return base._replace(width=np.ascontiguousarray(pace.share[cycle]))
+        if self._rows.size != base.rows.size:
+            self._rows = np.empty(base.rows.size)
+        own = self._rows.reshape(shape)
+        if part > 0.0:
+            other = table.programs[left + 1]
+            if self._between[:2] != (table.grid.steps, left):
+                change = other.rows.reshape(shape) - rows
+                self._between = (table.grid.steps, left, change)
+            np.multiply(self._between[2], part, out=own)
+            own += rows
+            steady = steady + part * (other.constant_load - steady)
+        else:
+            np.copyto(own, rows)
+        if not level:
+            own[:, 1] += pace.shift[cycle][:, None] * (own[:, 2] - own[:, 0])
+        for column in table.slopes:
+            own[:, :, column] *= pace.ratio[cycle]
+        return base._replace(
+            rows=own.reshape(-1), width=np.ascontiguousarray(pace.share[cycle]),
+            constant_load=steady,
+        )  # fmt: skip
+
+    def hold(self, torque: Array) -> None:
+        """Begin with a known balancing torque.
+
+        Parameters
+        ----------
+        torque : (n,) array
+            Generalized force [N or N*m].
+        """
+        self.torque, self.count = torque.copy(), int(1.0 / _SERVO)
+
+    def without_free_motion(self, state: Array) -> Array:
+        """Take the free motion out of a state.
+
+        Parameters
+        ----------
+        state : (2 n,) array
+
+        Returns
+        -------
+        (2 n,) array
+        """
+        n = self.size
+        place, speed = state[:n], state[n:]
+        return np.concatenate((place - place @ self.free, speed - speed @ self.free))
+
+    def cycle(
+        self, program: Program, period: float, change: float, state: Array, record: Array
+    ) -> tuple[Array, Array, Array]:
+        """March one cycle.
+
+        Parameters
+        ----------
+        program : Program
+        period : float
+            Its duration [s].
+        change : float
+            Mean change of the mesh frequency [Hz/s].
+        state : (2 n,) array
+            Without free motion.
+        record : (steps + 1, 2 n, 1) array
+            Receives the states.
+
+        Returns
+        -------
+        tuple of three arrays
+            New state, moments, generalized force on top of the system's [N or N*m].
+
+        Raises
+        ------
+        ComputationError
+            If the motion grows beyond all bounds.
+        """
+        from tribodyn.dynamics.marching import march_block
+
+        load = self.inertia * change
+        extra = self.torque + load
+        if self.balance is not None:
+            direction, force, _ = self.balance
+            extra = extra - (self.up @ load) @ direction * force
+        moments, lane = self._fresh.copy(), state[None, :].copy()
+        work = np.zeros(2 * program.slots.count + 6 * int(program.code[2]))
+        failed = march_block(
+            (0.0,), program.code, program.reads, program.rows, program.width, program.restart,
+            work, np.array([period]), (program.constant_load + extra @ self.inverse.T)[None, :],
+            lane, 1, record, self.outputs, np.zeros(0), 0, moments,
+        )  # fmt: skip
+        if failed >= 0:
+            moving = record[max(failed - 2, 0), self.size :, 0]
+            energy = np.diag(np.asarray(self.systems[0].mass)) * moving**2
+            name = self.systems[0].names[int(np.argmax(np.nan_to_num(energy)))]
+            raise ComputationError(
+                Problem(
+                    what=f"the motion grew beyond all bounds after {self.time:.5g} s, at "
+                    f"{1.0 / period:.5g} Hz, first of all {name}",
+                    why="The step is within the stability limit of the integrator, so the system "
+                    "itself is unstable there",
+                    remedy="Look for negative stiffness or damping, or friction that feeds energy "
+                    "in",
+                )
+            )
+        new = lane[0]
+        if self.balance is not None:
+            direction, force, _ = self.balance
+            gained = float(((new - state)[self.size :] @ self.down) @ direction)
+            self.count += 1
+            part = max(_SERVO, 1.0 / self.count)
+            self.torque = self.torque - part * gained / period * force
+        return new, moments, extra

@@ -1,0 +1,180 @@
+"""A sweep or a bifurcation diagram as one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tribodyn.plot import FIGURES
+from tribodyn.report.blocks import Block, script_json
+from tribodyn.report.html import plotly_script, template, text_of
+from tribodyn.report.numbers import in_words
+from tribodyn.report.origin import operating_point, provenance, version
+from tribodyn.study.provenance import assumptions
+from tribodyn.study.save import write_file
+from tribodyn.study.summary_names import SUMMARY
+
+__all__ = ["SWEEP_FIGURES", "write_bifurcation_report", "write_sweep_report"]
+
+#: Figures of the summary that the report of a sweep draws and tabulates, where they occur.
+SWEEP_FIGURES = (
+    "rms_mesh_force",
+    "peak_mesh_force",
+    "peak_to_peak_dynamic_transmission_error",
+    "rms_bearing_force_loa_pinion",
+    "mean_friction_power",
+    "contact_loss_share",
+)
+#: Rows of the table; more are in the files beside it.
+_ROWS = 400
+
+
+def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
+    """Write the figures and the table of a sweep to a file.
+
+    Parameters
+    ----------
+    found : Sweep
+        What :func:`tribodyn.sweep` returns.
+    path : path
+        File to write; an existing one is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    names = [name for name in SWEEP_FIGURES if name in found.figures]
+    caption = str(getattr(FIGURES["sweep"], "caption", ""))
+    blocks = [
+        _block(name, in_words(name), found.plot(name), caption if name == names[0] else "")
+        for name in names
+    ]
+    head = [_headed(axis.name, axis.display_unit) for axis in found.axes]
+    head += [_headed(in_words(name), SUMMARY[name].display_unit) for name in names]
+    rows = []
+    for point in found.points[:_ROWS]:
+        keys = zip(found.axes, point.values, strict=True)
+        cells = [axis.show(value).partition(" ")[0] for axis, value in keys]
+        shown = [SUMMARY[n].show(point.figures[n]).partition(" ")[0] if n in point.figures else ""
+                 for n in names]  # fmt: skip
+        rows.append([*cells, *shown, point.failed])
+    failed = [point for point in found.points if point.failed]
+    lacking = "" if found.complete else f"Interrupted: {len(found.points)} of {found.failed.size}"
+    return _write(
+        Path(path), found.case, kind="sweep", lead=repr(found)[6:-1], blocks=blocks,
+        varied=[axis.key for axis in found.axes], notice_heading="Take care",
+        cards=[("Values", f"{len(found.points)}"), ("Failed", f"{len(failed)}")],
+        notices=[
+            *([f"{lacking} values are done."] if lacking else []),
+            *dict.fromkeys(point.failed for point in failed),
+        ],
+        head=[*head, "Failed"], rows=rows,
+        more=f"The first {_ROWS} values; all of them are in sweep.csv."
+        if len(found.points) > _ROWS else "",
+    )  # fmt: skip
+
+
+def write_bifurcation_report(
+    found: Any,
+    case: Any,
+    path: str | os.PathLike[str],
+    *,
+    lead: str,
+    told: Sequence[str],
+    head: Sequence[str],
+    rows: Sequence[Sequence[str]],
+) -> Path:
+    """Write a bifurcation diagram of a case to a file.
+
+    Parameters
+    ----------
+    found : Bifurcation
+        What :func:`tribodyn.bifurcation` returns.
+    case : Case
+        The case that was varied.
+    path : path
+        File to write; an existing one is replaced.
+    lead : str
+        What varies, in a line.
+    told : sequence of str
+        What was found, in sentences.
+    head : sequence of str
+        Head of the table.
+    rows : sequence of sequence of str
+        Its rows.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    caption = str(getattr(FIGURES["bifurcation"], "caption", ""))
+    counts = [(word.capitalize(), str(count)) for word, count in found.verdicts().items()]
+    return _write(
+        Path(path), case, kind="bifurcation diagram", lead=lead,
+        varied=[found.parameter_name], notice_heading="What it says",
+        blocks=[_block("bifurcation", "Motion once per mesh cycle", found.plot(), caption)],
+        cards=[("Values", str(found.parameter.size)), *counts], notices=list(told), head=head,
+        rows=rows, more="",
+    )  # fmt: skip
+
+
+def _headed(words: str, unit: str) -> str:
+    text = words.replace("_", " ")
+    return f"{text[:1].upper()}{text[1:]} [{unit}]" if unit else f"{text[:1].upper()}{text[1:]}"
+
+
+def _block(name: str, heading: str, drawn: Any, caption: str) -> Block:
+    title, saved = drawn.layout.title.text, drawn.layout.margin.t - 44
+    # The page prints the title itself, where it can break into lines on a narrow screen.
+    drawn.layout.update(
+        title=None, margin={"t": 44}, height=drawn.layout.height - saved, overwrite=False
+    )
+    return Block(
+        name, heading, caption, title=title, height=round(drawn.layout.height),
+        json=script_json(drawn.to_json()),
+    )  # fmt: skip
+
+
+#: Keys of the case -> what the operating point calls them.
+_CHIPS = {
+    "operation.speed": "Speed", "operation.torque": "Torque", "gears.driver": "Driver",
+    "film.model": "Film model", "friction.law": "Friction law",
+    "stiffness.model": "Stiffness model", "dynamics.model": "Structure",
+    "gears.composite_roughness": "Composite roughness", "lubricant.name": "Oil",
+}  # fmt: skip
+
+
+def _write(path: Path, case: Any, *, varied: Sequence[str], **parts: Any) -> Path:
+    from markupsafe import Markup
+
+    gone = {_CHIPS.get(key, "") for key in varied}
+    drawn = ",\n".join(f'"{block.name}": {block.json}' for block in parts["blocks"])
+    page = template("study.html.j2").render(
+        title=case.title,
+        version=version(),
+        operating_point=[chip for chip in operating_point(case) if chip[0] not in gone],
+        assumptions=assumptions(case),
+        provenance=provenance(None),
+        case_text=case.to_toml(),
+        figures=Markup("{\n" + drawn + "\n}"),
+        style=text_of("report.css"),
+        script=text_of("report.js"),
+        plotly_js=plotly_script(),
+        **parts,
+    )
+    write_file(path, str(page))
+    return path

@@ -1,0 +1,198 @@
+"""The values that a study varies: dotted keys of a case, each with its values in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.study.faults import section_at
+from tribodyn.study.provenance import spec_of
+from tribodyn.study.values import Plain, read_value
+
+if TYPE_CHECKING:
+    from tribodyn.study.case import Case
+
+__all__ = ["Axis", "ends_of", "read_axes"]
+
+_EXAMPLE = 'Write, for example, {"operation.speed": ("400 rpm", "3500 rpm", 60)}'
+_WORD = 'Write, for example, "operation.speed=400..3500 rpm:60"'
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One key that varies.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key of the case file.
+    values : tuple
+        Its values: floats in SI, whole numbers or names.
+    unit, display_unit : str
+        SI unit and the unit shown; empty for a pure number or a name.
+    """
+
+    key: str
+    values: tuple[Any, ...]
+    unit: str = ""
+    display_unit: str = ""
+
+    @property
+    def name(self) -> str:
+        """Last part of the key."""
+        return self.key.rpartition(".")[2]
+
+    @property
+    def numeric(self) -> bool:
+        """Whether the values are numbers."""
+        return all(isinstance(v, int | float) and not isinstance(v, bool) for v in self.values)
+
+    def shown(self) -> NDArray[Any]:
+        """Return the values as engineers read them.
+
+        Returns
+        -------
+        array
+            Numbers in ``display_unit``, or names.
+        """
+        from tribodyn.units import convert
+
+        if not self.numeric:
+            return np.array([str(value) for value in self.values])
+        factor = convert(1.0, self.unit, self.display_unit) if self.unit else 1.0
+        return np.asarray(self.values, dtype=float) * factor
+
+    def show(self, value: Any) -> str:
+        """Write one of the values with its unit.
+
+        Parameters
+        ----------
+        value : object
+            One of ``values``.
+
+        Returns
+        -------
+        str
+        """
+        from tribodyn.units import convert
+
+        if not self.numeric:
+            return str(value)
+        shown = convert(float(value), self.unit, self.display_unit) if self.unit else value
+        return f"{shown:.6g} {self.display_unit}".rstrip()
+
+
+def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple[float, ...]:
+    """Read values of one key as the case does, each by itself.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    key : str
+        Dotted key of a number.
+    ends : sequence
+        Floats in SI, or text with a unit.
+    by : str
+        What asks, for messages; then a bare number for a dimension is refused as in a file.
+
+    Returns
+    -------
+    tuple of float
+        In SI.
+
+    Raises
+    ------
+    InputError
+        If there is no such key, it is no number, or a value is out of range.
+    """
+    found = [_one(case, key, end, by) for end in ends]
+    if not all(isinstance(value, float) for value in found):
+        what = f"{key} is not a number that can vary"
+        raise InputError(Problem(what, "argument over", "", 'For example "operation.speed"'))
+    return tuple(float(value) for value in found)
+
+
+def _one(case: Case, key: str, value: Any, by: str) -> Any:
+    """Read one value; what it does together with other keys is seen when it is computed."""
+    spec = spec_of(case, key)
+    if spec is None and section_at(type(case), tuple(key.split("."))) is not None:
+        remedy = f"Name one of its keys, such as {key}.{_first_key(case, key)}"
+        raise InputError(Problem(f"{key} is a table", "argument over", "", remedy))
+    if spec is None:
+        case.replace({key: value}, by=by or "over")  # tells which keys there are
+        raise InputError(Problem(f'there is no key "{key}"', "argument over"))
+    try:
+        return read_value(spec, key.rpartition(".")[2], value if by else Plain(value))
+    except PydanticCustomError as error:
+        told = error.context or {}
+        where = f"{by} {key}".strip()
+        raise InputError(Problem(told["what"], where, told["why"], told["remedy"])) from None
+
+
+def _first_key(case: Case, key: str) -> str:
+    section = section_at(type(case), tuple(key.split(".")))
+    return next(iter(section.model_fields)) if section else ""
+
+
+def read_axes(case: Case, over: Mapping[str, Any], *, by: str = "") -> tuple[Axis, ...]:
+    """Read the keys that vary.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    over : mapping
+        Dotted key to ``(first, last, points)``, a tuple, or to a list of values.
+    by : str
+        What asks, for messages.
+
+    Returns
+    -------
+    tuple of Axis
+
+    Raises
+    ------
+    InputError
+        Naming the first key that is unknown, has fewer than two values, or runs backwards.
+    """
+    if not over:
+        raise InputError(Problem("nothing varies", "argument over", "", _EXAMPLE))
+    return tuple(_axis(case, key, values, by) for key, values in over.items())
+
+
+def _axis(case: Case, key: str, given: Any, by: str) -> Axis:
+    if isinstance(given, tuple) and len(given) == 3:
+        values = _range(case, key, given, by)
+    elif isinstance(given, list | np.ndarray):
+        values = tuple(_one(case, key, value, by) for value in given)
+    else:
+        why = "It is (first, last, points), a tuple, or a list of values"
+        raise InputError(Problem(f"{key} = {given!r}", "argument over", why, _EXAMPLE))
+    if len(values) < 2:
+        what = f"{key} has {len(values)} value{'s' if not values else ''}"
+        remedy = "Give more values, or change the one in the case itself"
+        raise InputError(Problem(what, "argument over", "A sweep needs at least two", remedy))
+    spec = spec_of(case, key)
+    unit, shown = (spec.unit, spec.display_unit) if spec else ("", "")
+    return Axis(key, values, unit, shown)
+
+
+def _range(case: Case, key: str, given: tuple[Any, ...], by: str) -> tuple[float, ...]:
+    first, last, points = given
+    if isinstance(points, bool) or int(points) != points or points < 2:
+        why = "A range has at least two points, both ends included"
+        what = f"{key} has {points} point{'s' if points != 1 else ''}"
+        raise InputError(Problem(what, "argument over", why, _WORD if by else _EXAMPLE))
+    low, high = ends_of(case, key, (first, last), by=by)
+    if not low < high:
+        why, remedy = "A range goes from the smaller value to the larger", "Exchange the two ends"
+        what = f"{key} goes from {first} to {last}"
+        raise InputError(Problem(what, "argument over", why, remedy))
+    return tuple(np.linspace(low, high, int(points)).tolist())

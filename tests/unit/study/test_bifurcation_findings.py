@@ -1,0 +1,96 @@
+"""What a diagram says: verdicts, step limit, periods, jumps, two motions, in display units."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.analysis.bifurcation_result import Bifurcation
+from tribodyn.study.bifurcation_findings import Findings
+
+
+@pytest.fixture(scope="module")
+def case():
+    return td.load_case("fzg-roughness")
+
+
+def diagram(count=10, branches=("up",)):
+    """Motions of period 1 whose rms rises slowly, between 1000 and 1900 rpm."""
+    shape = (len(branches), count)
+    rpm = 1000.0 + 100.0 * np.arange(count)
+    rms = np.tile(1e-6 * (1.0 + 0.01 * np.arange(count)), (len(branches), 1))
+    return Bifurcation(
+        parameter=rpm * np.pi / 30.0, parameter_name="operation.speed", parameter_unit="rad/s",
+        mesh_frequency=rpm * 16.0 / 60.0, branches=branches, signal="contact 0",
+        section=np.zeros((*shape, 4)), period=np.ones(shape, dtype=int), rms=rms,
+        contact_loss_share=np.zeros(shape), step_number=np.full(count, 0.5),
+        steps=np.full(count, 512), verdict=np.full(shape, "physical", dtype="<U12"),
+        refined_period=np.ones(shape, dtype=int), refined_rms=rms,
+        refined_steps=np.full(count, 1024), largest_exponent=np.full(shape, np.nan),
+        finished=np.ones(shape, dtype=bool),
+    )  # fmt: skip
+
+
+def test_a_quiet_diagram(case):
+    found = Findings(case, diagram())
+    assert found.sentences() == [
+        "10 motions: 10 physical",
+        "up: period 1 from 1000 rpm to 1900 rpm",
+    ]
+    assert found.lead() == "10 values of operation.speed from 1000 rpm to 1900 rpm"
+    head, rows = found.rows()
+    assert head[0] == "speed [rpm]"
+    assert rows[3][:4] == ["1300", "up", "1", "1.03"]
+    assert found.figures()["jumps"] == []
+
+
+def test_step_limit_names_its_onset_and_what_is_left_with_shorter_steps(case):
+    plain = diagram()
+    verdict, period = plain.verdict.copy(), plain.period.copy()
+    verdict[0, 6:], period[0, 8:] = "step-limited", 0
+    number = np.where(np.arange(10) >= 6, 2.75, 2.5)
+    found = Findings(case, replace(plain, verdict=verdict, period=period, step_number=number))
+    told = "\n".join(found.sentences())
+    assert "step-limited from 1600 rpm on: omega_max dt = 2.75 with 512 steps" in told
+    assert "with 1024 steps the motion has period 1" in told
+    assert "from 1800 rpm on" in told
+    # what the step made is no period of the motion
+    assert "up: period 1 from 1000 rpm to 1500 rpm" in told
+    assert "no period" not in told
+    assert found.figures()["step_limited_onset"] == pytest.approx(1600.0 * np.pi / 30.0)
+
+
+def test_periods_jumps_and_two_motions(case):
+    plain = diagram(branches=("up", "down"))
+    period, rms = plain.period.copy(), plain.rms.copy()
+    period[0, 4:6], period[0, 7] = 2, 0
+    rms[0, 5:] *= 2.0
+    rms[1, 3:] *= 2.0
+    found = Findings(case, replace(plain, period=period, rms=rms))
+    told = found.sentences()
+    assert "up: period 2 from 1400 rpm to 1500 rpm" in told
+    assert "up: no period within 16 mesh cycles at 1700 rpm" in told
+    assert "up: the rms jumps between 1400 rpm and 1500 rpm, from 1.04 um to 2.1 um" in told
+    assert "down: the rms jumps between 1200 rpm and 1300 rpm, from 1.02 um to 2.06 um" in told
+    assert "two motions are possible from 1300 rpm to 1400 rpm: up and down differ" in told
+    assert [jump["branch"] for jump in found.figures()["jumps"]] == ["up", "down"]
+
+
+def test_a_resonance_is_no_jump(case):
+    plain = diagram(40)
+    speed = np.arange(40.0)
+    peak = 1e-6 / np.hypot(1.0 - (speed / 20.0) ** 2, 0.1)
+    assert Findings(case, replace(plain, rms=peak[None])).figures()["jumps"] == []
+
+
+def test_interrupted_diagram_counts_what_is_there(case):
+    plain = diagram()
+    finished, verdict = plain.finished.copy(), plain.verdict.copy()
+    finished[0, 7:], verdict[0, 5:] = False, ""
+    found = Findings(case, replace(plain, finished=finished, verdict=verdict))
+    assert found.sentences()[0] == "7 motions: 5 physical, 2 not judged"
+    assert len(found.rows()[1]) == 7
+    assert found.figures()["finished"] == 7

@@ -1,0 +1,64 @@
+"""A case that runs up: tables follow the speed, supports are outputs, bad ranges are refused."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+import tribodyn
+from tribodyn.analysis import alternating_rms
+from tribodyn.errors import InputError
+from tribodyn.study.run_up_study import _rotation, speed_systems
+
+
+@pytest.fixture(scope="module")
+def case() -> tribodyn.Case:
+    return tribodyn.load_case("fzg-roughness")
+
+
+def test_a_held_speed_is_the_run_at_that_speed(case: tribodyn.Case) -> None:
+    low = case.operation.speed
+    run = tribodyn.run_up(case, (low, 1.002 * low), 0.1, tables=1, samples=64)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", tribodyn.ModelWarning)
+        steady = tribodyn.run(case)
+    force = steady.response.fine.contact_force.sum(axis=1)
+    own = run.cycles.contact_force.alternating_rms[-1, 0]
+    assert own == pytest.approx(float(alternating_rms(steady.response.fine, force)), rel=0.03)
+    names = run.output_names
+    assert {"bearing_force_pinion_y", "bearing_force_wheel_x"} <= set(names)
+    # the supports carry the mesh force on average
+    mean = run.cycles.output.mean[-1, names.index("bearing_force_wheel_y")]
+    assert abs(mean) == pytest.approx(run.cycles.contact_force.mean[-1, 0], rel=1e-3)
+    assert run.teeth == case.gear_pair.pinion.teeth or case.operation.speed_of == "wheel"
+    assert run.speed[0] == pytest.approx(low, rel=1e-3)
+
+
+def test_friction_and_inertia_follow_the_speed(case: tribodyn.Case) -> None:
+    systems, per_speed = speed_systems(case, [50.0, 300.0])
+    slow, quick = (systems[each] for each in sorted(systems))
+    phase = np.array([0.1, 0.6])
+    less = np.abs(slow.contacts[0].friction(phase)).max()
+    assert less != pytest.approx(np.abs(quick.contacts[0].friction(phase)).max(), rel=0.02)
+    turning = _rotation(case, slow, per_speed)
+    by_name = dict(zip(slow.names, turning, strict=True))
+    # both gears roll on each other: teeth times angle agree
+    pair = case.gear_pair
+    rolled = [by_name[f"{g}_theta"] * getattr(pair, g).teeth for g in ("pinion", "wheel")]
+    assert rolled[0] == pytest.approx(rolled[1])
+    assert 2 * np.pi * per_speed == pytest.approx(rolled[0])
+
+
+@pytest.mark.parametrize(
+    ("between", "words"),
+    [
+        (None, "from one speed"),
+        (("900 rpm", "400 rpm"), "the lowest"),
+        (("0 rpm", "9 rpm"), "speed"),
+    ],
+)
+def test_bad_ranges_are_refused(case: tribodyn.Case, between: object, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        tribodyn.run_up(case, between)  # type: ignore[arg-type]
