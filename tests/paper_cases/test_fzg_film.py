@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.study.pipeline import _mesh
 from tribodyn.study.provenance import provenance
+from tribodyn.study.tooth_contact import mesh_of
 
 _RPM = math.pi / 30.0
 
@@ -92,9 +92,9 @@ def test_film_stiffness_rises_with_torque_and_falls_with_speed(case: Any, kind: 
     ready = case.replace({"film.stiffness": kind})
     # Below 150 N*m the film of two pairs turns from rigid to elastic, and its tangent has a pole.
     loads = [150.0, 200.0, 300.0] if kind == "tangent" else [50.0, 150.0, 300.0]
-    tables = [_mesh(ready.replace({"operation.torque": load})) for load in loads]
+    tables = [mesh_of(ready.replace({"operation.torque": load})) for load in loads]
     fast = [
-        _mesh(ready.replace({"operation.speed": f"{speed} rpm"})) for speed in (800, 1800, 3000)
+        mesh_of(ready.replace({"operation.speed": f"{speed} rpm"})) for speed in (800, 1800, 3000)
     ]
     for table, sign in ((tables, 1.0), (fast, -1.0)):
         film = [each.film_stiffness[each.in_contact].mean() for each in table]
@@ -104,7 +104,7 @@ def test_film_stiffness_rises_with_torque_and_falls_with_speed(case: Any, kind: 
 
 
 def test_the_film_is_far_stiffer_than_the_teeth_and_changes_the_series_little(case: Any) -> None:
-    mesh = _mesh(case)
+    mesh = mesh_of(case)
     here = mesh.in_contact
     ratio = mesh.film_stiffness[here] / mesh.tooth_stiffness[here]
     assert 50.0 < ratio.min() < ratio.max() < 150.0

@@ -74,6 +74,21 @@ def test_a_sweep_in_stretches_is_the_sweep_one_by_one():
     assert np.abs(np.diff(side_by_side.rms, axis=0)).max() > 0.3
 
 
+def test_a_balanced_sweep_finds_the_torque_of_every_value():
+    pair = reference_system(0.1, gap=20e-6)
+    system = System(
+        pair.mass, pair.damping, pair.stiffness, pair.force, pair.contacts,
+        balance=[0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+    )  # fmt: skip
+    beats = [1600.0, 2000.0, 3000.0]
+    found = bifurcation(system, beats, steps=256, verdict=False)
+    for rms, beat in zip(found.rms[0], beats, strict=True):
+        orbit = steady_state(system, beat, steps=256)
+        d = orbit.fine.deflection[:, 0]
+        spread = orbit.fine.mean(d**2) - orbit.fine.mean(d) ** 2
+        assert rms == pytest.approx(math.sqrt(spread), rel=1e-6)
+
+
 def test_longer_periods_end_the_transient_early():
     pair = Contact([1.0], lambda p: 1.0 + 0.3 * np.cos(TURN * p), damping=0.05, gap=1.0)
     system = System([[1.0]], [[0.05]], [[0.0]], [0.3], [pair])

@@ -93,9 +93,9 @@ class Stretches(Motions):
             Next value; -1 at the end, and where the motion is the one that is there already.
         """
         self.met[index] = self.joining and self._same(index, facts)
+        super().store(index, state, facts)
         if self.met[index]:
             return -1
-        super().store(index, state, facts)
         with self._lock:
             after = int(self.follower[index])
             self.begun[after] |= after >= 0

@@ -2,43 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.study.damping import damping_of
 from tribodyn.study.geometry import geometry
 from tribodyn.study.rig import rig_of
+from tribodyn.study.tooth_contact import load_friction_of, mesh_law_of
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import MeshForce, System
-    from tribodyn.mesh import MeshTable
+    from tribodyn.dynamics import System
+    from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
 
-__all__ = ["mesh_law_of", "static_error", "system_of"]
+__all__ = ["static_error", "system_of", "whole_system"]
 
 _GEARS = ("pinion", "wheel")
-
-
-def mesh_law_of(case: Case) -> MeshForce:
-    """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    "stiffness", "tangent" or "force-law"
-    """
-    from tribodyn.stiffness import MODELS
-
-    if case.dynamics.mesh_law is not None:
-        return cast("MeshForce", case.dynamics.mesh_law)
-    whole = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
-    return "force-law" if whole else "stiffness"
 
 
 def static_error(case: Case, phase: NDArray[np.float64] | float) -> NDArray[np.float64]:
@@ -60,7 +42,9 @@ def static_error(case: Case, phase: NDArray[np.float64] | float) -> NDArray[np.f
     return np.asarray(amplitude * np.cos(angle))
 
 
-def system_of(case: Case, mesh: MeshTable, damping: Damping) -> System:
+def system_of(
+    case: Case, mesh: MeshTable, damping: Damping, friction: MeshFriction | None = None
+) -> System:
     """Build the structure of a case with its tooth contact.
 
     Parameters
@@ -71,11 +55,38 @@ def system_of(case: Case, mesh: MeshTable, damping: Damping) -> System:
         Its tooth contact.
     damping : Damping
         Its damping.
+    friction : MeshFriction, optional
+        Friction that follows the load of the teeth; that of the mesh at the nominal load by
+        default.
 
     Returns
     -------
     System
     """
+    from tribodyn.dynamics import follow_load
+
+    system = _structure(case, mesh, damping)
+    return system if friction is None else follow_load(system, friction)
+
+
+def whole_system(case: Case, mesh: MeshTable) -> System:
+    """Build the structure of a case with its tooth contact, its damping and its friction.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    mesh : MeshTable
+        Its tooth contact.
+
+    Returns
+    -------
+    System
+    """
+    return system_of(case, mesh, damping_of(case, mesh), load_friction_of(case, mesh))
+
+
+def _structure(case: Case, mesh: MeshTable, damping: Damping) -> System:
     from tribodyn.dynamics import spur6, torsional
 
     body, torque = geometry(case), case.pinion_torque

@@ -8,14 +8,13 @@ import numpy as np
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.assembly import system_of
+from tribodyn.study.assembly import whole_system
 from tribodyn.study.axes import ends_of
 from tribodyn.study.collect import collected
-from tribodyn.study.damping import damping_of
-from tribodyn.study.pipeline import _mesh
 from tribodyn.study.places import placed
 from tribodyn.study.provenance import spec_of
 from tribodyn.study.steps import steps_of
+from tribodyn.study.tooth_contact import mesh_of
 
 if TYPE_CHECKING:
     from tribodyn.analysis.bifurcation_result import Bifurcation
@@ -115,8 +114,8 @@ def _systems(
                 systems.append(systems[0])
                 frequency.append(frequency[0] * float(value) / float(values[0]))
             else:
-                mesh = _mesh(changed)
-                systems.append(system_of(changed, mesh, damping_of(changed, mesh)))
+                mesh = mesh_of(changed)
+                systems.append(whole_system(changed, mesh))
                 frequency.append(mesh.mesh_frequency)
             counts.append(steps or _steps(changed, systems[-1], frequency[-1]))
             progress.advance()

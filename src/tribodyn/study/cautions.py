@@ -11,15 +11,21 @@ import numpy as np
 from tribodyn.errors import ModelWarning
 from tribodyn.study.collect import collected
 from tribodyn.study.derive import gear_warnings
-from tribodyn.study.record import compression, first_touch, is_steady, measured
+from tribodyn.study.record import compression, first_touch, is_steady, measured, mesh_force
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.gear import SpurGear
-    from tribodyn.mesh import MeshTable
+    from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case import Case
 
-__all__ = ["case_cautions", "mesh_cautions", "motion_cautions", "teeth_cautions"]
+__all__ = [
+    "case_cautions",
+    "friction_cautions",
+    "mesh_cautions",
+    "motion_cautions",
+    "teeth_cautions",
+]
 
 #: Hertzian pressure that case-hardened steel does not survive [Pa].
 _STEEL = 3e9
@@ -107,6 +113,37 @@ def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
     tuple of ModelWarning
     """
     return (*_pressure(mesh), *_mixed(mesh))
+
+
+def friction_cautions(
+    friction: MeshFriction | None, response: Response
+) -> tuple[ModelWarning, ...]:
+    """Find loads of the teeth beyond those for which friction is known.
+
+    Parameters
+    ----------
+    friction : MeshFriction or None
+        Friction over the load, where it follows it.
+    response : Response
+        The motion.
+
+    Returns
+    -------
+    tuple of ModelWarning
+    """
+    if friction is None:
+        return ()
+    force = np.abs(mesh_force(measured(response)))
+    most = float(force.max()) / friction.load
+    if most <= friction.limit:
+        return ()
+    return (
+        ModelWarning(
+            "friction-load",
+            f"the teeth carry up to {most:.3g} times their nominal load of {friction.load:.4g} N. "
+            f"Friction is known up to {friction.limit:g} times: above, its coefficient is kept",
+        ),
+    )
 
 
 def _pressure(mesh: MeshTable) -> Iterator[ModelWarning]:

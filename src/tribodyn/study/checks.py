@@ -157,6 +157,14 @@ def _dynamics(given: Given) -> Found:
             yield key, Problem(what, "", why, f'Remove it, or choose "{other}"')
 
 
+def _friction_load(given: Given) -> Found:
+    key = "dynamics.friction_load"
+    if given.value(key) == "dynamic" and given.value("friction.law") == "none":
+        what = f"{given.show(key)} without friction"
+        why = 'friction.law = "none": nothing follows the load'
+        yield key, Problem(what, "", why, "Choose a friction law, or leave the key out")
+
+
 def _solver(given: Given) -> Found:
     if "solver.cycles" in given and given.value("solver.method", "steady") == "steady":
         what = f'{given.show("solver.cycles")} does not belong to method = "steady"'
@@ -177,7 +185,8 @@ def _assumed(given: Given, faulty: set[str]) -> Found:
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _roughness, _face_width, _size, _lubricant, _needs, _film_of_friction, _dynamics, _solver,
+    _roughness, _face_width, _size, _lubricant, _needs, _film_of_friction, _dynamics,
+    _friction_load, _solver,
 )  # fmt: skip
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.operating_points import pinion_speeds, pinion_torques
-from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
+from tribodyn.study.tooth_contact import model_settings
 
 if TYPE_CHECKING:
     from tribodyn.mesh import FilmOverOperation

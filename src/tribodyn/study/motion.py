@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
 from tribodyn.progress import Progress
-from tribodyn.study.assembly import mesh_law_of
 from tribodyn.study.collect import collected
 from tribodyn.study.provenance import effective
 from tribodyn.study.steps import steps_of
+from tribodyn.study.tooth_contact import mesh_law_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study import derive
-from tribodyn.study.assembly import mesh_law_of, system_of
-from tribodyn.study.cautions import case_cautions, mesh_cautions, motion_cautions, teeth_cautions
+from tribodyn.study.assembly import system_of
+from tribodyn.study.cautions import (
+    case_cautions,
+    friction_cautions,
+    mesh_cautions,
+    motion_cautions,
+    teeth_cautions,
+)
 from tribodyn.study.collect import collected
 from tribodyn.study.damping import damping_of
 from tribodyn.study.motion import motion_of
-from tribodyn.study.options import TABLE_FORMS, model_options
 from tribodyn.study.places import placed
-from tribodyn.study.provenance import effective
 from tribodyn.study.result import Result
+from tribodyn.study.tooth_contact import load_friction_of, mesh_of
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import MeshTable
     from tribodyn.study.case import Case
 
-__all__ = ["model_settings", "run"]
+__all__ = ["run"]
 
 
 def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Result:
@@ -60,65 +63,22 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     """
     with placed(case), collected() as found:
         progress.start("tooth contact")
-        mesh = _mesh(case, progress)
+        mesh = mesh_of(case, progress)
+        friction = load_friction_of(case, mesh)
         damping = damping_of(case, mesh)
-        system = system_of(case, mesh, damping)
+        system = system_of(case, mesh, damping, friction)
         progress.finish()
         response = motion_of(case, system, mesh.mesh_frequency, progress)
-    noticed = (*mesh_cautions(mesh), *motion_cautions(case, system, response))
+        compared = None
+        if friction is not None:
+            table = system_of(case, mesh, damping)
+            compared = motion_of(case, table, mesh.mesh_frequency, progress)
+    noticed = (
+        *mesh_cautions(mesh), *motion_cautions(case, system, response),
+        *friction_cautions(friction, response),
+    )  # fmt: skip
     everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
     told = tuple({str(warning): warning for warning in everything}.values())
     for warning in told:
         warnings.warn(warning, stacklevel=stacklevel)
-    return Result(case, mesh, system, response, damping, told)
-
-
-def _options(case: Case, section: str, name: str) -> dict[str, Any]:
-    """Options in force of a film model, stiffness model or friction law, as the model has them."""
-    values = effective(case)
-    found = {key: values[f"{section}.{key}"] for key in model_options(section, name)}
-    given = {key: value for key, value in found.items() if value is not None}
-    if section == "stiffness" and name == "table":
-        form = next(form for form in TABLE_FORMS if form in given)
-        given[TABLE_FORMS[form]] = given.pop("values")
-    return given
-
-
-def model_settings(case: Case) -> dict[str, Any]:
-    """Material, oil, stiffness and film of a case, as the mesh asks for them.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict of str to object
-        Keywords of :func:`tribodyn.mesh.build`.
-    """
-    return {
-        "material": case.material_properties,
-        "stiffness_model": case.stiffness.model,
-        "stiffness_options": _options(case, "stiffness", case.stiffness.model),
-        "lubricant": case.lubricant_properties or derive.unused_lubricant(),
-        "composite_roughness": case.composite_roughness or 0.0,
-        "film_model": case.film.model,
-        "film_options": _options(case, "film", case.film.model),
-    }
-
-
-def _mesh(case: Case, progress: Progress = SILENT) -> MeshTable:
-    """Compute the tooth contact of a case over one mesh cycle."""
-    from tribodyn.mesh import build
-
-    return build(
-        case.gear_pair,
-        friction_law=case.friction.law,
-        friction_options=_options(case, "friction", case.friction.law),
-        pinion_speed=case.pinion_speed,
-        pinion_torque=case.pinion_torque,
-        force_law=mesh_law_of(case) == "force-law",
-        progress=progress,
-        **model_settings(case),
-    )
+    return Result(case, mesh, system, response, damping, told, friction, compared)

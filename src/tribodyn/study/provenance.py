@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.study.assembly import mesh_law_of
 from tribodyn.study.checks import DEFAULT_MARK
 from tribodyn.study.derived import BASIS, derived_values
 from tribodyn.study.faults import section_at
 from tribodyn.study.fields import Spec
 from tribodyn.study.options import model_options
 from tribodyn.study.rig import RIG
+from tribodyn.study.tooth_contact import mesh_law_of
 
 if TYPE_CHECKING:
     from tribodyn.study.case import Case

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
-    from tribodyn.mesh import MeshTable
+    from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
@@ -51,6 +51,10 @@ class Result:
         Damping in force [N*s/m].
     warnings : tuple of ModelWarning
         What the models said on the way.
+    friction : MeshFriction, optional
+        Friction over the load, where it follows the dynamic load of the teeth.
+    nominal_friction_response : Response, optional
+        The motion with the friction of the nominal load, to compare with.
     """
 
     case: Case
@@ -59,6 +63,8 @@ class Result:
     response: Response
     damping: Damping
     warnings: tuple[ModelWarning, ...]
+    friction: MeshFriction | None = None
+    nominal_friction_response: Response | None = None
 
     @cached_property
     def _summary(self) -> dict[str, float]:

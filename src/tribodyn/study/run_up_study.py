@@ -8,12 +8,11 @@ import numpy as np
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.assembly import system_of
+from tribodyn.study.assembly import whole_system
 from tribodyn.study.collect import collected
-from tribodyn.study.damping import damping_of
-from tribodyn.study.pipeline import _mesh
 from tribodyn.study.places import placed
 from tribodyn.study.provenance import effective
+from tribodyn.study.tooth_contact import mesh_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, System
@@ -126,8 +125,8 @@ def speed_systems(
     progress.start("tooth contact", len(speeds))
     for speed in speeds:
         changed = case.replace({_SPEED: float(speed)})
-        mesh = _mesh(changed)
-        systems[mesh.mesh_frequency] = system_of(changed, mesh, damping_of(changed, mesh))
+        mesh = mesh_of(changed)
+        systems[mesh.mesh_frequency] = whole_system(changed, mesh)
         per_speed = mesh.mesh_frequency / float(speed)
         progress.advance()
     progress.finish()

@@ -11,8 +11,8 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.modification import Modification
 from tribodyn.study.operating_points import pinion_speeds, pinion_torques
-from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
+from tribodyn.study.tooth_contact import model_settings
 from tribodyn.study.transmission_error import loaded_settings
 from tribodyn.study.values import Plain, read_value
 

@@ -122,6 +122,11 @@ class Dynamics(Section):
         ("stiffness", "tangent", "force-law"),
         meaning="k(t) times deflection, linearized about the load, or the whole force law",
     )
+    friction_load: str = choice(
+        "nominal",
+        ("nominal", "dynamic"),
+        meaning="load that friction coefficients and load shares belong to",
+    )
     bearing_stiffness: float | None = number(None, 1e3, 1e13, _GUARD, of="bearing_stiffness")
     bearing_damping: float | None = number(None, 0.0, 1e9, _GUARD, of="bearing_damping")
     bearing_damping_ratio: float = number(

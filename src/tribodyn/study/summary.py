@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,7 +55,8 @@ def summarize(result: Result) -> dict[str, float]:
         **_film_figures(result.mesh),
         **_force_figures(result, samples),
         **_error_figures(result, samples),
-        **_friction_figures(result.mesh, samples),
+        **_friction_figures(result, samples),
+        **_comparison(result),
     }
     if centre_column(result.response.names, "pinion", "x") is not None:
         values |= _support_figures(result, samples)
@@ -153,17 +155,42 @@ def _error_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     }
 
 
-def _friction_figures(mesh: MeshTable, samples: FineSamples) -> dict[str, Any]:
+def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     from tribodyn.analysis import mean, rms
-    from tribodyn.mesh import PhaseFunction
 
-    force, phase = mesh_force(samples), one_sided_phase(samples)
-    losses = mesh.by_share(mesh.friction_coefficient * np.abs(mesh.sliding_speed))
-    lost = PhaseFunction(mesh.grid, losses)(phase)
+    mesh, force, phase = result.mesh, mesh_force(samples), one_sided_phase(samples)
+
+    def friction(name: str) -> Any:
+        """Friction or its moment: a friction sum times the force of the teeth."""
+        if result.friction is None:
+            return getattr(mesh.functions(), name)(phase) * force
+        return result.friction.value(name, phase, force) * force
+
+    # The surfaces of both gears move along the same friction: what one gains the other loses.
+    wheel_speed = mesh.pinion_speed / result.case.gear_pair.ratio
+    lost = mesh.pinion_speed * friction("friction_moment_pinion")
+    lost = lost - wheel_speed * friction("friction_moment_wheel")
     return {
-        "rms_friction_force": rms(samples, mesh.functions().friction_sum(phase) * force),
-        "mean_friction_power": mean(samples, lost * force),
+        "rms_friction_force": rms(samples, friction("friction_sum")),
+        "mean_friction_power": mean(samples, lost),
     }
+
+
+def _comparison(result: Result) -> dict[str, Any]:
+    """Figures of the same motion with the friction of the nominal load."""
+    if result.friction is None or result.nominal_friction_response is None:
+        return {}
+    other = replace(result, response=result.nominal_friction_response, friction=None)
+    samples = measured(other.response)
+    figures = {
+        **_force_figures(other, samples),
+        **_error_figures(other, samples),
+        **_friction_figures(other, samples),
+    }
+    names = ("rms_mesh_force", "peak_mesh_force", "peak_to_peak_dynamic_transmission_error",
+             "rms_friction_force", "mean_friction_power")  # fmt: skip
+    found = {f"{name}_nominal_friction": figures[name] for name in names}
+    return found | {"friction_fit_error": result.friction.fit_error}
 
 
 def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.study.operating_points import pinion_torques
-from tribodyn.study.pipeline import model_settings
 from tribodyn.study.places import placed
+from tribodyn.study.tooth_contact import model_settings
 
 if TYPE_CHECKING:
     from tribodyn.stiffness import LoadedContact

@@ -12,9 +12,9 @@ import tribodyn as td
 from tribodyn.study.assembly import system_of
 from tribodyn.study.cautions import case_cautions
 from tribodyn.study.damping import damping_of
-from tribodyn.study.pipeline import _mesh
 from tribodyn.study.read import read_case
 from tribodyn.study.steps import steps_of
+from tribodyn.study.tooth_contact import mesh_of
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_a_speed_too_low_for_any_number_of_steps_names_the_least(case: Any) -> N
     least = float(told.group(1))
     for speed, works in ((least, True), (0.9 * least, False)):
         changed = slow.replace({"operation.speed": f"{speed} rpm"})
-        mesh = _mesh(changed)
+        mesh = mesh_of(changed)
         system = system_of(changed, mesh, damping_of(changed, mesh))
         if works:
             assert steps_of(changed, system, mesh.mesh_frequency) <= 262144

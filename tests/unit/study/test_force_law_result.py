@@ -15,10 +15,10 @@ from tribodyn.mesh import MeshTable
 from tribodyn.plot import FIGURES
 from tribodyn.study.assembly import system_of
 from tribodyn.study.damping import damping_of
-from tribodyn.study.pipeline import _mesh
 from tribodyn.study.read import read_case
 from tribodyn.study.record import first_touch
 from tribodyn.study.result import Result
+from tribodyn.study.tooth_contact import mesh_of
 
 #: Deflection at which the relieved flanks touch, mean and swing over the mesh cycle [m].
 _TOUCH, _SWING = 6e-6, 2e-6
@@ -56,7 +56,7 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> Any:
         for place in ("assembly", "motion"):
             monkeypatch.setattr(f"tribodyn.study.{place}.mesh_law_of", lambda case: way)
         case = read_case(SOUND, "pair.toml").replace(_CHANGES | (changes or {}))
-        mesh = _with_law(_mesh(case), shares)
+        mesh = _with_law(mesh_of(case), shares)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping)
         response = steady_state(system, mesh.mesh_frequency, steps=1024)
