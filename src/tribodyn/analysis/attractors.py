@@ -33,6 +33,8 @@ Index = NDArray[np.int64]
 LONGEST_PERIOD = 8
 #: Mesh cycles between two looks at the lanes.
 _PART = 2 * LONGEST_PERIOD
+#: Lanes of the kernel.
+_LANES = 16
 #: A motion this much smaller than its start is at rest.
 _REST = 1e-6
 #: Points that differ by less than this, relative to their size, are the same.
@@ -185,6 +187,7 @@ class Motions:
         (lanes, 2 n) array
         """
         if self.parameters:
+            options["any_step"] = True
             options["parameters"] = LaneParameters(
                 **{name: values[index] for name, values in self.parameters.items()}
             )
@@ -208,8 +211,9 @@ class _Block:
         self.before = np.full((LONGEST_PERIOD, width), np.inf)
         points = LONGEST_PERIOD * self.steps + 1
         self.record = None
-        if points * size * width <= _MOST_RECORDED:
-            self.record = np.empty((points, size, width))
+        self.lanes = min(width, _LANES)
+        if points * size * self.lanes <= _MOST_RECORDED:
+            self.record = np.empty((points, size, self.lanes))
 
     def run(self) -> None:
         """March until the queue is empty."""
@@ -249,7 +253,7 @@ class _Block:
         index = np.where(self.job >= 0, self.job, self.job.max())
         try:
             middle = m.march(
-                index, self.state, _PART - LONGEST_PERIOD, self.force, width=self.width, threads=1
+                index, self.state, _PART - LONGEST_PERIOD, self.force, width=self.lanes, threads=1
             )
             gained = c.free_velocity(middle)
             last, states = self._last_cycles(index, c.expand(c.reduce(middle)))
@@ -270,11 +274,15 @@ class _Block:
     def _last_cycles(self, index: Index, state: Array) -> tuple[Array, Array]:
         """March the last 8 mesh cycles of a part; also returns all states, (9, lanes, 2 n)."""
         m = self.motions
-        options: dict[str, Any] = {"width": self.width, "threads": 1}
+        options: dict[str, Any] = {"width": self.lanes, "threads": 1}
         if self.record is not None:
             options["record"] = self.record
-            last = m.march(index, state, LONGEST_PERIOD, self.force, **options)
-            return last, np.moveaxis(self.record[:: self.steps], 2, 1)
+            kept = np.empty((LONGEST_PERIOD + 1, *state.shape))
+            for first in range(0, self.width, self.lanes):
+                own = slice(first, first + self.lanes)
+                m.march(index[own], state[own], LONGEST_PERIOD, self.force[own], **options)
+                kept[:, own] = np.moveaxis(self.record[:: self.steps], 2, 1)
+            return kept[-1], kept
         states = [state]
         for _ in range(LONGEST_PERIOD):
             states.append(m.march(index, states[-1], 1, self.force, **options))
@@ -348,7 +356,7 @@ def settle(
     tolerance : float
         Certified distance to the motion that repeats, relative to the state [-].
     width : int
-        Lanes of a block: 1, 16 or 64.
+        Lanes looked at together: 1, or a multiple of 16.
     threads : int, optional
         Blocks at a time; the number of processors by default.
     progress : Progress

@@ -21,8 +21,9 @@ __all__ = ["Compiled", "Member", "compile_for", "march"]
 
 Array = NDArray[np.float64]
 
-#: Lanes of one block. A single lane keeps everything in scalar registers.
-_WIDTHS = (1, 16, 64)
+#: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
+#: stay in the first cache, which 64 lanes of a pair of gears overflow.
+_WIDTHS = (1, 16)
 #: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
 _OWN_ROWS = 4
 
@@ -168,6 +169,7 @@ def march(
     moments: Array | None = None,
     width: int | None = None,
     threads: int | None = None,
+    any_step: bool = False,
 ) -> Array:
     """March lanes by whole mesh cycles; returns their new state.
 
@@ -196,6 +198,8 @@ def march(
         Lanes per block; chosen by the number of lanes by default.
     threads : int, optional
         Blocks marched at a time; the number of processors by default.
+    any_step : bool
+        Take the step of every lane as it is: the caller knows it, and judges what comes of it.
 
     Returns
     -------
@@ -203,11 +207,13 @@ def march(
 
     Raises
     ------
+    InputError
+        If parameters that were not compiled make the step of a lane too long.
     ComputationError
         If a state grows beyond all bounds.
     """
     lanes = state.shape[0]
-    if parameters is not None and parameters is not compiled.parameters:
+    if not any_step and parameters is not None and parameters is not compiled.parameters:
         _check_parameters(compiled, 1.0 / period, parameters)
     run = _Run(compiled, parameters, period, state, extra_force)
     width = width or _choose_width(lanes, bool(compiled.members))
@@ -242,7 +248,7 @@ def march(
 def _choose_width(lanes: int, own_rows: bool) -> int:
     if lanes < _OWN_ROWS:
         return _WIDTHS[0]
-    return _OWN_ROWS if own_rows else _WIDTHS[1] if lanes <= 32 else _WIDTHS[2]
+    return _OWN_ROWS if own_rows else _WIDTHS[1]
 
 
 def _check_parameters(compiled: Compiled, beat: Array, parameters: LaneParameters) -> None:
