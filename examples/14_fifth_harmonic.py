@@ -1,8 +1,8 @@
 """A strong fifth harmonic of the transmission error: a resonance coincidence.
 
 A published spectrum of an FZG rig has its largest line at the fifth mesh harmonic, which friction
-raises by 62 %. A rig with the usual damping shows nothing of the kind. A mode within 0.35 % of that
-harmonic and hardly any damping do: then all five harmonics change with the printed signs.
+raises by 62 %. A rig with the usual damping shows nothing of the kind. A mode 0.11 % below that
+harmonic, and hardly damped, does: then all five harmonics change with the printed signs.
 
 Run it with a folder to keep the figures: ``python examples/14_fifth_harmonic.py figures``.
 """

@@ -42,8 +42,9 @@ print(f"\norder 1.5 of the shaft at 2017 rpm is {mains:.1f} Hz: next to the main
 cut = order_cut(run, 1.5, "pinion_y", of="shaft", part="up")
 print(f"its largest amplitude here {cut.amplitude.max():.2g} m/s^2: perfect gears do not excite it")
 
-folder = Path(sys.argv[1] if len(sys.argv) > 1 else tempfile.mkdtemp())
-folder.mkdir(exist_ok=True)
-run.plot().write_html(folder / "run-up.html")
-run.plot_map().write_html(folder / "run-up-map.html")
-print("\nfigures:", *sorted(path.name for path in folder.glob("run-up*.html")))
+with tempfile.TemporaryDirectory() as scratch:
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
+    folder.mkdir(parents=True, exist_ok=True)
+    run.plot().write_html(folder / "run-up.html")
+    run.plot_map().write_html(folder / "run-up-map.html")
+    print("\nfigures:", *sorted(found.name for found in folder.glob("run-up*.html")))

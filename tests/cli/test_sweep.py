@@ -111,7 +111,11 @@ def test_a_sweep_in_which_all_fails_exits_with_one(capsys: pytest.CaptureFixture
     ("words", "says"),
     [
         (["operation.sped=400..3500 rpm:4"], 'Did you mean "speed"?'),
-        (["operation.speed=400..3500:4"], 'speed = "400 rpm"'),
+        (["operation.speed=400..3500:4"], "Write the unit behind the last number"),
+        (["operation.speed=400..3500 rpm:100000000"], "at most 100000"),
+        (["operation.speed=400...3500 rpm:4"], "two dots"),
+        (["operation.speed=400..3500 rpm:4", "--sweep", "sideways"], "--help"),
+        (["gears.pinion.teeth=15..17:3"], "no values in between"),
         (["operation.speed=3500..400 rpm:4"], "Exchange the two ends"),
         (["operation.speed=400..3500 rpm:1"], "at least two points"),
         (["operation.speed=400..3500 rpm"], "number of points"),

@@ -204,7 +204,7 @@ def jump(text: str) -> None:
     rows = [line.split() for line in text.splitlines() if line.strip().startswith("rms")]
     assert sum(float(row[4]) for row in rows) == pytest.approx(100.0, abs=0.2)
     assert [row[6] for row in rows] == ["physical", "physical"]
-    assert "jump-basins.html jump-phase.html" in text
+    assert "jump-basins.html jump-branch.html" in text
 
 
 EXPECTED: dict[str, Callable[[str], None]] = {

@@ -183,7 +183,7 @@ def test_diagram_has_units_and_a_figure(hysteresis):
     assert table["largest_exponent"].attrs["units"] == "1/s"
     assert table["rms"].sel(branch="down").values[2] == pytest.approx(0.667183, abs=1e-6)
     figure = hysteresis.plot()
-    assert figure.layout.title.text == "Every motion repeats after one mesh cycle"
+    assert figure.layout.title.text == "Two motions are possible from 0.84 to 0.9"
     assert len(figure.data) == 7
 
 

@@ -90,11 +90,11 @@ class Basins:
             f"{100.0 * a.share:.3g} % {f'period {a.period}' if a.period else 'irregular'}"
             for a in self.attractors
         ]
-        extra = f", {100.0 * self.unresolved:.2g} % unresolved" if self.unresolved else ""
+        extra = f", {100.0 * self.unresolved:.3g} % unresolved" if self.unresolved else ""
         count = f"{self.first.size} x {self.second.size}"
         return (
             f"Basins({count} starts over {' and '.join(self.coordinates)} at "
-            f"{self.mesh_frequency:.6g} Hz: {', '.join(kinds)}{extra}"
+            f"{self.mesh_frequency:.6g} Hz: {', '.join(kinds) or 'no attractor'}{extra}"
             f"{'' if self.complete else ', interrupted'})"
         )
 

@@ -334,6 +334,7 @@ def _exponents(
                     transient=_TURN_IN,
                     steps=int(steps[number]),
                     extra_force=force[number],
+                    verdict=False,
                 ).vibrating[0]
         found.append(float(largest))
     return found

@@ -128,7 +128,9 @@ def _gather(
     history = np.stack(reduced[-keep:])
     found.points[rows] = np.resize(points[-keep:], (keep, lanes)).T
     found.period[rows] = period or [repeat_period(history[:, lane]) for lane in range(lanes)]
-    found.rms[rows] = np.sqrt(np.maximum(total[1] - total[0] ** 2, 0.0))
+    # A motion on its way beyond all bounds has no rms.
+    with np.errstate(over="ignore", invalid="ignore"):
+        found.rms[rows] = np.sqrt(np.maximum(total[1] - total[0] ** 2, 0.0))
     found.contact_loss_share[rows] = total[2]
     found.last[rows] = state
 

@@ -8,7 +8,7 @@ made orthogonal again before they become parallel. Growth per time is the spectr
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,11 +18,12 @@ from tribodyn.analysis.lyapunov_crossing import carry_over_crossings
 from tribodyn.analysis.lyapunov_floquet import floquet_growth, repeats_after
 from tribodyn.analysis.lyapunov_products import grouped_products, safe_length
 from tribodyn.analysis.lyapunov_tangent import TangentTables, contact_sides
+from tribodyn.analysis.verdict import exponent_verdict
 from tribodyn.dynamics.march import compile_for, march
 from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.system import System
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ _ROOM = 6_000_000
 #: Mesh cycles of the transient over which disturbances already turn into their directions.
 _ALIGN = 200
 _BLOCKS = 32
+#: Mesh cycles over which a motion that repeats is looked at with half the step.
+_FEW = 64
 #: Mesh cycles whose matrices are compared to see whether they repeat.
 _KEPT = 32
 #: Standard errors by which the largest exponent of a chaotic motion is above zero.
@@ -66,6 +69,9 @@ class LyapunovExponents:
         Mesh cycles after which the linear equations of a disturbance repeat; 0 if they do not.
     growth : (cycles, 2 n - free) array
         Growth of the orthogonal disturbances in every mesh cycle [1/s].
+    verdict : "physical", "step-limited", "undecided" or ""
+        What half the step says of it, see
+        :func:`~tribodyn.analysis.verdict.exponent_verdict`; empty where it was not asked.
     """
 
     exponents: Array
@@ -76,6 +82,7 @@ class LyapunovExponents:
     cycles: int
     repeats: int
     growth: Array = field(repr=False)
+    verdict: str = ""
 
     @property
     def largest(self) -> float:
@@ -109,7 +116,8 @@ class LyapunovExponents:
         kind = "chaotic" if self.chaotic else "not chaotic"
         return (
             f"LyapunovExponents(largest {self.largest:.5g} +- {self.standard_error[0]:.1g} 1/s, "
-            f"sum {self.exponents.sum():.6g} 1/s, {self.cycles} mesh cycles, {kind})"
+            f"sum {self.exponents.sum():.6g} 1/s, {self.cycles} mesh cycles, {kind}"
+            f"{', ' + self.verdict if self.verdict else ''})"
         )
 
     def to_xarray(self) -> xarray.Dataset:
@@ -130,6 +138,7 @@ class LyapunovExponents:
             "divergence": self.divergence,
             "mesh_frequency": self.mesh_frequency,
             "cycles": self.cycles,
+            "verdict": self.verdict,
         }
         return xarray.Dataset(data, {"exponent": np.arange(self.exponents.size)}, attributes)
 
@@ -154,6 +163,7 @@ def lyapunov_exponents(
     transient: int = 200,
     steps: int = 512,
     extra_force: ArrayLike | None = None,
+    verdict: bool = True,
     progress: Progress = SILENT,
 ) -> LyapunovExponents:
     """Find all Lyapunov exponents of the motion that a start leads to.
@@ -175,6 +185,9 @@ def lyapunov_exponents(
         Steps per mesh cycle.
     extra_force : (n,) array, optional
         Constant generalized force on top of the system's [N or N*m].
+    verdict : bool
+        Whether to find them again with half the step, over half of the mesh cycles, or over 64 if
+        the motion repeats.
     progress : Progress
         Told about the mesh cycles.
 
@@ -229,7 +242,18 @@ def lyapunov_exponents(
     carrier.carry(align, progress)
     growth, divergence = carrier.carry(int(cycles), progress)
     progress.finish()
-    return _summarize(carrier, growth, divergence, 2 * system.size)
+    found = _summarize(carrier, growth, divergence, 2 * system.size)
+    if not verdict:
+        return found
+    try:
+        refined = lyapunov_exponents(
+            system, mesh_frequency, start=start, transient=transient, steps=2 * steps,
+            cycles=min(cycles, _FEW) if found.repeats else (cycles + 1) // 2,
+            extra_force=extra_force, verdict=False,
+        )  # fmt: skip
+    except ComputationError:
+        return replace(found, verdict="step-limited")
+    return replace(found, verdict=exponent_verdict(found, refined))
 
 
 class _Carrier:
@@ -241,7 +265,7 @@ class _Carrier:
         self.state = state[None, :]
         k = tables.size
         self.frame = np.linalg.qr(np.random.default_rng(0).standard_normal((k, k)))[0]
-        self.length = 0
+        self.length = self.elapsed = 0
         self.last: deque[Array] = deque(maxlen=_KEPT)
 
     def settle(self, cycles: int) -> None:
@@ -253,8 +277,9 @@ class _Carrier:
         frequency = self.tables.mesh_frequency
         state = march(
             self.tables.compiled, np.array([1.0 / frequency]), self.state, cycles,
-            extra_force=self.extra[None, :], record=record,
+            extra_force=self.extra[None, :], record=record, elapsed=self.elapsed,
         )  # fmt: skip
+        self.elapsed += cycles
         # The free rotation runs away and nothing depends on it.
         coordinates = self.tables.coordinates
         self.state = coordinates.expand(coordinates.reduce(state))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tribodyn.analysis.poincare import poincare
 from tribodyn.dynamics.response import Response
+from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ class PhasePortrait:
         Half of the backlash of the contact [m]; -1 for a coordinate.
     mesh_frequency : float
         Mesh frequency [Hz].
+    verdict : "physical", "step-limited", "undecided" or ""
+        What half the step says of it; empty where it was not asked.
     """
 
     name: str
@@ -48,6 +51,7 @@ class PhasePortrait:
     period: int
     gap: float = field(repr=False)
     mesh_frequency: float
+    verdict: str = ""
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the motion as an :class:`xarray.Dataset` with units.
@@ -67,7 +71,12 @@ class PhasePortrait:
             data[f"section_{name}"] = (
                 "mesh_cycle", getattr(self, f"section_{name}"), {"units": unit},
             )  # fmt: skip
-        facts = {"name": self.name, "period": self.period, "mesh_frequency": self.mesh_frequency}
+        facts = {
+            "name": self.name,
+            "period": self.period,
+            "mesh_frequency": self.mesh_frequency,
+            "verdict": self.verdict,
+        }
         return xarray.Dataset(data, attrs=facts)
 
     def plot(self) -> Any:
@@ -83,7 +92,12 @@ class PhasePortrait:
 
 
 def phase_portrait(
-    motion: Response, of: int | str = 0, *, gap: float = -1.0, transient: int = 0
+    motion: Response,
+    of: int | str = 0,
+    *,
+    gap: float = -1.0,
+    transient: int = 0,
+    system: System | None = None,
 ) -> PhasePortrait:
     """Take one coordinate or one contact of a motion into its phase plane.
 
@@ -97,6 +111,8 @@ def phase_portrait(
         Half of the backlash of the contact [m], which the figure then shows.
     transient : int
         First mesh cycles to leave out.
+    system : System, optional
+        That of the motion: it is then marched again with half the step, for the verdict.
 
     Returns
     -------
@@ -140,7 +156,7 @@ def phase_portrait(
     else:
         place = motion.deflection[rows, of]
         speed = np.asarray(np.gradient(place, motion.time[rows]))
-    period = poincare(motion, transient=transient).period
+    section = poincare(motion, transient=transient, system=system)
     mark = slice(0, None, steps)
     points = place[mark], speed[mark]
     if motion.floquet_multipliers.size:
@@ -151,7 +167,8 @@ def phase_portrait(
         velocity=speed,
         section_position=points[0],
         section_velocity=points[1],
-        period=period,
+        period=section.period,
         gap=max(gap, 0.0) if not isinstance(of, str) else -1.0,
         mesh_frequency=motion.mesh_frequency,
+        verdict=section.verdict,
     )

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.dynamics.coordinates import orbit_coordinates
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.analysis.poincare_march import (
+    alternating_rms,
+    judge_section,
+    march_section,
+    repeat_period,
+)
+from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.response import Response
 from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.start import static_start
@@ -23,13 +28,10 @@ __all__ = ["PoincareSection", "poincare", "repeat_period"]
 
 Array = NDArray[np.float64]
 
-#: Mesh cycles after which a motion may repeat.
-_PERIODS = 16
 #: Points that differ by less than this, relative to their size, are the same.
 _SAME = 1e-5
-#: Points that still approach each other are the same when this near.
-_NEARLY = 1e-3
-_CALMS_DOWN = 0.5
+#: Mesh cycles in which an orbit becomes that of shorter steps.
+_ORBIT = 100
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,9 @@ class PoincareSection:
     period : int
         Mesh cycles after which the motion repeats, 1 to 16; 0 if it is quasi-periodic, chaotic or
         not yet settled.
+    verdict : "physical", "step-limited", "undecided" or ""
+        What half the step says of it, see :func:`~tribodyn.analysis.verdict.step_verdict`; empty
+        where it was not asked.
     """
 
     position: Array = field(repr=False)
@@ -57,12 +62,14 @@ class PoincareSection:
     names: tuple[str, ...]
     mesh_frequency: float
     period: int
+    verdict: str = ""
 
     def __repr__(self) -> str:
         """One line."""
         kind = f"period {self.period}" if self.period else "no period up to 16"
         return (
-            f"PoincareSection({len(self.position)} points at {self.mesh_frequency:.6g} Hz, {kind})"
+            f"PoincareSection({len(self.position)} points at {self.mesh_frequency:.6g} Hz, {kind}"
+            f"{', ' + self.verdict if self.verdict else ''})"
         )
 
     def to_xarray(self) -> xarray.Dataset:
@@ -81,7 +88,11 @@ class PoincareSection:
             "velocity": (coordinate, self.velocity, {"units": "m/s or rad/s"}),
             "deflection": (contact, self.deflection, {"units": "m"}),
         }
-        attributes = {"mesh_frequency": self.mesh_frequency, "period": self.period}
+        attributes = {
+            "mesh_frequency": self.mesh_frequency,
+            "period": self.period,
+            "verdict": self.verdict,
+        }
         return xarray.Dataset(data, {"coordinate": list(self.names)}, attributes)
 
     def plot(self, coordinate: int | str = 0) -> Any:
@@ -102,39 +113,6 @@ class PoincareSection:
         return draw(self, coordinate=coordinate)
 
 
-def repeat_period(points: Array) -> int:
-    """Tell after how many points a sequence repeats.
-
-    Parameters
-    ----------
-    points : (m, k) array
-        Points in the order of time [any one unit].
-
-    Returns
-    -------
-    int
-        1 to 16, and at most half of the points; 0 if it does not repeat.
-
-    Notes
-    -----
-    Points are the same within 1e-5 of their size, or within 1e-3 as long as they approach each
-    other.
-
-    Examples
-    --------
-    >>> repeat_period(np.array([[1.0], [2.0]] * 8))
-    2
-    """
-    size = float(np.linalg.norm(points, axis=1).max(initial=0.0)) or 1.0
-    for period in range(1, min(_PERIODS, len(points) // 2) + 1):
-        apart = np.linalg.norm(points[period:] - points[:-period], axis=1) / size
-        third = max(1, len(apart) // 3)
-        first, last = float(apart[:third].max()), float(apart[-third:].max())
-        if last <= _SAME or (last <= _NEARLY and last <= _CALMS_DOWN * first):
-            return period
-    return 0
-
-
 def poincare(
     motion: System | Response,
     mesh_frequency: float | None = None,
@@ -144,6 +122,8 @@ def poincare(
     transient: int = 200,
     steps: int = 512,
     extra_force: ArrayLike | None = None,
+    verdict: bool = True,
+    system: System | None = None,
 ) -> PoincareSection:
     """Look at a motion once per mesh cycle, and find its period.
 
@@ -165,6 +145,10 @@ def poincare(
         Steps per mesh cycle.
     extra_force : (n,) array, optional
         Constant generalized force on top of the system's [N or N*m].
+    verdict : bool
+        Whether to march a system again with half the step and compare.
+    system : System, optional
+        That of a motion that is known already, which is then marched again with half the step.
 
     Returns
     -------
@@ -182,35 +166,62 @@ def poincare(
     >>> from tribodyn.dynamics import Contact
     >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
     >>> poincare(System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair]), 1.0)
-    PoincareSection(64 points at 1 Hz, period 1)
+    PoincareSection(64 points at 1 Hz, period 1, physical)
     """
     if isinstance(motion, Response):
-        return _section_of(motion, transient)
+        return _judged_response(motion, _section_of(motion, transient), transient, system)
     if mesh_frequency is None or cycles < 1 or transient < 0:
         what = f"mesh_frequency = {mesh_frequency}, cycles = {cycles}, transient = {transient}"
         why = "A system needs a mesh frequency, at least one mesh cycle and no negative transient"
         raise InputError(Problem(what, "argument mesh_frequency", why))
     compiled = compile_for(motion, mesh_frequency, steps)
-    coordinates = orbit_coordinates(compiled, mesh_frequency)
-    state = (static_start(compiled) if start is None else read_start(motion, start))[None, :]
+    state = static_start(compiled) if start is None else read_start(motion, start)
     force = np.zeros(motion.size) if extra_force is None else np.asarray(extra_force, dtype=float)
-    period = np.array([1.0 / mesh_frequency])
-    states = np.empty((cycles, 2 * motion.size))
-    for cycle in range(-transient, cycles):
-        if cycle >= 0:
-            states[cycle] = state[0]
-        state = march(compiled, period, state, 1, extra_force=force[None, :])
-        state = coordinates.expand(coordinates.reduce(state))
+    found = march_section(compiled, mesh_frequency, state, force, cycles, transient, verdict)
     nodes = compiled.nodes
-    position = states[:, : motion.size]
-    return PoincareSection(
+    position = found.states[:, : motion.size]
+    section = PoincareSection(
         position=position,
-        velocity=states[:, motion.size :],
+        velocity=found.states[:, motion.size :],
         deflection=position @ nodes.direction[0, 0].T - nodes.error[0, 0],
         names=tuple(motion.names),
         mesh_frequency=float(mesh_frequency),
-        period=repeat_period(coordinates.reduce(states)),
+        period=repeat_period(found.reduced),
     )
+    if not verdict:
+        return section
+    judged = judge_section(
+        motion, mesh_frequency, state, force, 2 * steps, transient, cycles,
+        (compiled.step_number, section.period, found.rms),
+    )  # fmt: skip
+    return replace(section, verdict=judged)
+
+
+def _judged_response(
+    response: Response, section: PoincareSection, transient: int, system: System | None
+) -> PoincareSection:
+    """Judge a motion that is known already, if its system is given."""
+    if system is None:
+        return section
+    orbit = bool(response.floquet_multipliers.size)
+    steps = len(response.position) // response.periods
+    skipped = transient if response.periods > transient and not orbit else 0
+    fine = response.fine
+    rows = fine.phase >= skipped
+    signal = fine.deflection if fine.deflection.shape[1] else fine.position
+    state = np.concatenate((response.position[skipped * steps], response.velocity[skipped * steps]))
+    known = (
+        response.step_number,
+        section.period,
+        alternating_rms(signal[rows, 0], fine.weight[rows]),
+    )
+    # An orbit is followed until it has become that of the shorter steps.
+    judged = judge_section(
+        system, response.mesh_frequency, state, response.extra_force, 2 * steps,
+        _ORBIT if orbit and response.stable else 0,
+        2 * response.periods if orbit else response.periods - skipped, known,
+    )  # fmt: skip
+    return replace(section, verdict=judged)
 
 
 def _section_of(response: Response, transient: int) -> PoincareSection:

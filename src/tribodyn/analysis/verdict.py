@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import math
+from typing import TYPE_CHECKING, Literal
 
 from tribodyn.dynamics.step_limit import LIMIT
 
-__all__ = ["VERDICTS", "Verdict", "step_verdict"]
+if TYPE_CHECKING:
+    from tribodyn.analysis.lyapunov import LyapunovExponents
+
+__all__ = ["VERDICTS", "Verdict", "exponent_verdict", "step_verdict"]
 
 Verdict = Literal["physical", "step-limited", "undecided"]
 
@@ -15,6 +19,9 @@ VERDICTS: tuple[Verdict, ...] = ("physical", "step-limited", "undecided")
 
 #: Rms values agree within this: of motions that repeat, and of those that do not.
 _PERIODIC, _IRREGULAR = 0.01, 0.1
+#: Largest exponents agree within this many standard errors of their difference, or this share, or
+#: this share of the mesh frequency, which is how well an exponent of zero is known.
+_ERRORS, _EXPONENT, _ZERO = 3.0, 0.05, 1e-3
 
 
 def step_verdict(
@@ -62,3 +69,30 @@ def step_verdict(
     if period != refined_period:
         return "undecided" if unsettled and agrees else "step-limited"
     return "physical" if agrees else "undecided"
+
+
+def exponent_verdict(found: LyapunovExponents, refined: LyapunovExponents) -> Verdict:
+    """Judge Lyapunov exponents by those with shorter steps.
+
+    Parameters
+    ----------
+    found, refined : LyapunovExponents
+        As asked for, and with half the step.
+
+    Returns
+    -------
+    "physical", "step-limited" or "undecided"
+        Step-limited if only one of the two motions is chaotic, or both repeat, but after different
+        numbers of mesh cycles; physical if the largest exponents agree within 5 % or three standard
+        errors of their difference; else undecided.
+    """
+    both_repeat = found.repeats > 0 and refined.repeats > 0
+    if found.chaotic != refined.chaotic or (both_repeat and found.repeats != refined.repeats):
+        return "step-limited"
+    one, other = float(found.vibrating[0]), float(refined.vibrating[0])
+    errors = (float(item.standard_error[0]) for item in (found, refined))
+    spread = math.hypot(*(0.0 if math.isnan(error) else error for error in errors))
+    allowed = max(
+        _EXPONENT * max(abs(one), abs(other)), _ERRORS * spread, _ZERO * found.mesh_frequency
+    )
+    return "physical" if abs(one - other) <= allowed else "undecided"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from tribodyn.cli.changes import changed_case
-from tribodyn.cli.ranges import GRAMMAR, read_ranges
+from tribodyn.cli.ranges import RANGE, read_ranges
 from tribodyn.cli.screen import say, say_json, tell
 
 if TYPE_CHECKING:
@@ -72,6 +72,7 @@ def bifurcation(
 
     target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
     key, (first, last, points) = _one(over)
+    _check_lengths(cycles, transient)
     ready = changed_case(case, set_ or [])
     check_target(target, force, remedy=_REPLACE)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
@@ -95,7 +96,10 @@ def bifurcation(
             f"{judged} of them judged, and being written; Ctrl-C again stops at once"
         )
     findings = Findings(ready, found)
-    _save(found, ready, findings, target, force=force)
+    with progress_bar() as progress:
+        progress.start("writing the report")
+        _save(found, ready, findings, target, force=force)
+        progress.finish()
     if json:
         say_json({**findings.figures(), "complete": complete})
     else:
@@ -111,8 +115,18 @@ def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
     ranges = read_ranges(over, lists=False)
     if len(ranges) > 1:
         what = f"{len(ranges)} keys vary: {', '.join(ranges)}"
-        raise InputError(Problem(what, "", "A diagram goes over one of them", GRAMMAR))
+        raise InputError(Problem(what, "", "A diagram goes over one of them", RANGE))
     return next(iter(ranges.items()))
+
+
+def _check_lengths(cycles: int, transient: int) -> None:
+    """Refuse mesh cycles that make no diagram."""
+    from tribodyn.errors import InputError, Problem
+
+    for name, value, least in (("cycles", cycles, 2), ("transient", transient, 0)):
+        if value < least:
+            why = f"At least {least} are needed" if least else "It is a count"
+            raise InputError(Problem(f"{value} mesh cycles", f"--{name}", why, "Give more of them"))
 
 
 def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, force: bool) -> None:

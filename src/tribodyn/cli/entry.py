@@ -104,11 +104,12 @@ def _dispatch(arguments: list[str]) -> int:
 def _remedy(arguments: list[str], what: str) -> str:
     """What to write instead of words that make no command."""
     settings = [word for word in arguments if "=" in word and not word.startswith("-")]
-    if len(settings) > arguments.count("--set"):
+    if len(settings) > arguments.count("--set") and arguments[0] not in ("sweep", "bifurcation"):
         return "Repeat --set before every KEY=VALUE"
     if arguments[0] in _EXAMPLES and "requires an argument" in what:
         return f"Write for example: tribodyn {arguments[0]} {_EXAMPLES[arguments[0]]}"
-    return "See: tribodyn --help"
+    named = arguments and arguments[0] in _EXAMPLES
+    return f"See: tribodyn {arguments[0]} --help" if named else "See: tribodyn --help"
 
 
 def _no_command(word: str, names: list[str]) -> Problem:

@@ -9,9 +9,10 @@ from typing import Any
 from tribodyn.cli.changes import read_value
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["GRAMMAR", "read_ranges"]
+__all__ = ["GRAMMAR", "RANGE", "read_ranges"]
 
-GRAMMAR = 'Write "operation.speed=400..3500 rpm:60" or "operation.torque=50,150,300 N*m"'
+RANGE = 'Write "operation.speed=400..3500 rpm:60"'
+GRAMMAR = f'{RANGE} or "operation.torque=50,150,300 N*m"'
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
@@ -43,18 +44,19 @@ def read_ranges(words: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     problems = []
+    grammar = GRAMMAR if lists else RANGE
     if not words:
-        problems.append(Problem("nothing varies", "", "", GRAMMAR))
+        problems.append(Problem("nothing varies", "", "", grammar))
     for word in words:
         key, equals, text = (part.strip() for part in word.partition("="))
         try:
             if not (key and equals and text):
-                raise _UnreadError("it is not KEY=VALUES")
+                raise _UnreadError("It is not KEY=VALUES")
             if key in found:
-                raise _UnreadError(f"{key} varies twice")
+                raise _UnreadError(f"{key} varies twice: give all its values at once")
             found[key] = _range(text) if ".." in text else _list(text, lists)
         except _UnreadError as fault:
-            problems.append(Problem(f'cannot read "{word}"', "", str(fault), GRAMMAR))
+            problems.append(Problem(f'cannot read "{word}"', "", str(fault), grammar))
     if problems:
         raise InputError(problems)
     return found
@@ -67,12 +69,14 @@ class _UnreadError(ValueError):
 def _range(text: str) -> tuple[Any, Any, int]:
     ends, colon, count = text.rpartition(":")
     if not colon:
-        raise _UnreadError("the number of points after a colon is missing")
+        raise _UnreadError("The number of points after a colon is missing")
     try:
         points = int(count)
     except ValueError:
         raise _UnreadError(f'"{count}" is no whole number of points') from None
     low, _, high = (part.strip() for part in ends.partition(".."))
+    if high.startswith("."):
+        raise _UnreadError("There are two dots between the ends of a range")
     first, last = _NUMBER.fullmatch(low), _NUMBER.fullmatch(high)
     if not (first and last):
         raise _UnreadError(f'"{high if first else low}" is no number')
@@ -82,13 +86,16 @@ def _range(text: str) -> tuple[Any, Any, int]:
 
 def _list(text: str, allowed: bool) -> list[Any]:
     if not allowed:
-        raise _UnreadError("a range LOW..HIGH with a number of points is needed")
+        raise _UnreadError("A diagram goes over a range LOW..HIGH with a number of points")
     items = [item.strip() for item in text.split(",")]
     if not all(items):
-        raise _UnreadError("a value between two commas is missing")
+        raise _UnreadError("A value between two commas is missing")
     parts = [_NUMBER.fullmatch(item) for item in items]
     last = parts[-1]
-    if last is None or not all(parts):
+    if any(parts) and not all(parts):
+        odd = items[[part is None for part in parts].index(True)]
+        raise _UnreadError(f'"{odd}" is no number')
+    if last is None:
         return [read_value(item) for item in items]
     return [_with(part.group(1), part.group(2) or last.group(2)) for part in parts if part]
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.dynamics.dormand_prince_failure import report_failure
 from tribodyn.dynamics.dormand_prince_table import PhaseTable, build_table
 from tribodyn.dynamics.dormand_prince_tolerance import (
     SMALL,
@@ -18,11 +19,12 @@ from tribodyn.dynamics.dormand_prince_tolerance import (
     static_scale,
     step_share,
 )
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.lane_parameters import LaneParameters
+from tribodyn.dynamics.march import Compiled, Member
 from tribodyn.dynamics.program import compile_system, lane_load
 from tribodyn.dynamics.step_limit import largest_rate
 from tribodyn.dynamics.system import System
-from tribodyn.errors import ComputationError, InputError, Problem, require_between
+from tribodyn.errors import InputError, Problem, require_between
 
 __all__ = ["AdaptiveEngine", "AdaptiveRun", "adaptive_engine", "march_adaptive"]
 
@@ -100,6 +102,9 @@ class AdaptiveEngine:
         room: int = 0,
         width: int | None = None,
         threads: int | None = None,
+        scales: Array | None = None,
+        numbers: NDArray[np.int64] | None = None,
+        elapsed: int = 0,
     ) -> AdaptiveRun:
         """March lanes by whole mesh cycles.
 
@@ -125,6 +130,12 @@ class AdaptiveEngine:
             Lanes per block; chosen by the number of lanes by default.
         threads : int, optional
             Blocks marched at a time; the number of processors by default.
+        scales : (lanes, 6) array, optional
+            Factors of contact stiffness, contact damping, friction, error, dead zone and force [1].
+        numbers : (lanes,) int array, optional
+            What the lanes are called where one fails; as they come by default.
+        elapsed : int
+            Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
 
         Returns
         -------
@@ -138,13 +149,12 @@ class AdaptiveEngine:
         lanes, double = state.shape
         width = width or (_WIDTHS[0] if lanes < 4 else _WIDTHS[1])
         extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
-        load = lane_load(self.table.program, self.system, extra)
+        factors = np.ones((lanes, 6)) if scales is None else scales
+        load = lane_load(self.table.program, self.system, extra, factors[:, 5])
+        load = np.hstack((load, factors))
+        called = (np.arange(lanes) if lanes > 1 else np.array([-1])) if numbers is None else numbers
         starts = range(0, lanes, width)
-        if memory is None:
-            memory = np.zeros((len(starts), 2 + double * width))
-            longest = float(np.max(period))
-            memory[:, 0] = min(0.1 * self.rtol**0.2 / max(self.rate * longest, 1e-9), 0.1)
-            memory[:, 1] = 1.0
+        memory = self._fresh(len(starts), 2 + double * width, period) if memory is None else memory
         memory, new = memory.copy(), np.empty_like(state)
         trail, reports = np.zeros((room, 2 + 3 * double)), np.zeros((len(starts), 10))
         grid = np.zeros(1) if points is None else np.ascontiguousarray(points)
@@ -160,7 +170,7 @@ class AdaptiveEngine:
                 kept = record if lanes == width else np.empty((*record.shape[:2], width))
             self._march_block(
                 period[index], load[index], part, memory[number], cycles, grid, kept, trail,
-                reports[number], index,
+                reports[number], called[index], elapsed,
             )  # fmt: skip
             new[first : first + count] = part[:count]
             if record is not None and kept is not record:
@@ -179,6 +189,14 @@ class AdaptiveEngine:
             trail[: int(reports[0, 8])], memory,
         )  # fmt: skip
 
+    def _fresh(self, blocks: int, length: int, period: Array) -> Array:
+        """Memory before the first step: how long it may be."""
+        memory = np.zeros((blocks, length))
+        longest = float(np.max(period))
+        memory[:, 0] = min(0.1 * self.rtol**0.2 / max(self.rate * longest, 1e-9), 0.1)
+        memory[:, 1] = 1.0
+        return memory
+
     def _march_block(
         self,
         period: Array,
@@ -191,6 +209,7 @@ class AdaptiveEngine:
         trail: Array,
         report: Array,
         index: NDArray[np.int64],
+        elapsed: int,
     ) -> None:
         from tribodyn.dynamics.dormand_prince_kernel import own_slots
         from tribodyn.dynamics.dormand_prince_marching import march_adaptive_block
@@ -207,53 +226,16 @@ class AdaptiveEngine:
             self.safety * self.rtol, self.safety * self.atol, cycles, points, record, trail, report,
         )  # fmt: skip
         if report[4]:
+            report[9] += elapsed
             lane = int(report[6])
             blocks = work[: slots * width].reshape(slots, width)[:, lane]
             single = work[slots * width : slots * (width + 1)]
             used = single if report[4] == 2.0 else blocks
             # The state at the failed step, and its largest sizes before.
-            self._report_failure(
-                report, float(period[lane]), used[: 2 * n], int(index[lane]), len(index)
-            )
-
-    def _report_failure(
-        self, report: Array, period: float, state: Array, lane: int, lanes: int
-    ) -> None:
-        cycle, phase = int(report[9]), float(report[5])
-        n = self.system.size
-        where = f"time {(cycle + phase) * period:.6g} s, mesh cycle {cycle + 1}, phase {phase:.6g}"
-        where += f", trajectory {lane}" if lanes > 1 else ""
-        if report[4] == 2.0:
-            raise ComputationError(
-                Problem(
-                    what=f"contact {int(report[7])} opens and closes more than 64 times in a step",
-                    where=where,
-                    why="It chatters: its damping, error or direction throws it back at once",
-                    remedy="Look for negative damping, and for an error or a gap that jumps "
-                    "at a phase that is not an event",
-                )
-            )
-        size = np.abs(state) / np.maximum(self.atol / (SMALL * self.rtol), 1e-300)
-        worst = int(np.argmax(np.where(np.isfinite(state), size, np.inf)))
-        name = self.system.names[worst % n]
-        kind = "position" if worst < n else "velocity"
-        beyond = not np.isfinite(state[worst]) or size[worst] > 1e9
-        raise ComputationError(
-            Problem(
-                what=f"the motion grew beyond all bounds: the {kind} of {name} is "
-                f"{state[worst]:.3g}"
-                if beyond
-                else f"no step meets the tolerance: {name} moves fastest, its {kind} is "
-                f"{state[worst]:.3g}",
-                where=where,
-                why="Steps are as short as accuracy needs, so the system itself is unstable"
-                if beyond
-                else "An entry is not smooth there, or rounding exceeds the tolerance",
-                remedy="Look for negative stiffness or damping, or friction that feeds energy in"
-                if beyond
-                else "Give the phase as an event, or a larger rtol or atol",
-            )
-        )
+            report_failure(
+                report, float(period[lane]), used[: 2 * n], self.atol / (SMALL * self.rtol),
+                self.system, load[lane, n:], int(index[lane]),
+            )  # fmt: skip
 
 
 def adaptive_engine(
@@ -264,6 +246,7 @@ def adaptive_engine(
     rtol: float = 1e-6,
     atol: Tolerance | None = None,
     table: PhaseTable | None = None,
+    parameters: LaneParameters | None = None,
 ) -> AdaptiveEngine:
     """Prepare a system for adaptive steps.
 
@@ -280,6 +263,8 @@ def adaptive_engine(
         Error allowed on top of that [m or rad, m/s or rad/s].
     table : PhaseTable, optional
         Of the same system, to spare building it again.
+    parameters : LaneParameters, optional
+        Factors by which lanes scale the system.
 
     Returns
     -------
@@ -299,11 +284,13 @@ def adaptive_engine(
     states that stay near zero.
 
     The error of a step is held to a fraction of the tolerance, the smaller the longer the motion
-    remembers it: 0.03, with dead zones 0.005, or 3 over the angle through which its least damped
+    remembers it: 0.015, with dead zones 0.001, or 3 over the angle through which its least damped
     mode turns while it decays or while the march lasts.
     """
     require_between("rtol", rtol, 1e-12, 1e-2)
-    table = build_table(system) if table is None else table
+    scaled = parameters is not None and parameters.scales_contacts
+    split = parameters is not None and parameters.scales_friction
+    table = build_table(system, scaled=scaled, split=split) if table is None else table
     if table.error > rtol:
         raise InputError(
             Problem(
@@ -321,8 +308,11 @@ def adaptive_engine(
         given = SMALL * rtol * static_scale(compiled, slowest)
     else:
         given = read_atol(atol, system.size)
-    safety = step_share(compiled, cycles / slowest)
-    return AdaptiveEngine(system, table, float(rtol), given, largest_rate(system, nodes), safety)
+    factors = np.ones((1, 6)) if parameters is None else parameters.table(parameters.count)
+    most, least = factors.max(axis=0), factors.min(axis=0)
+    safety = step_share(compiled, cycles / slowest, float(most[0]), float(least[1]))
+    rate = largest_rate(system, nodes, tuple(most[:3]))
+    return AdaptiveEngine(system, table, float(rtol), given, rate, safety)
 
 
 def march_adaptive(
@@ -334,6 +324,7 @@ def march_adaptive(
     rtol: float = 1e-6,
     atol: Tolerance | None = None,
     extra_force: Array | None = None,
+    parameters: LaneParameters | None = None,
     record: Array | None = None,
     threads: int | None = None,
 ) -> Array:
@@ -355,6 +346,8 @@ def march_adaptive(
         Error allowed on top of that [m or rad, m/s or rad/s].
     extra_force : (lanes, n) array, optional
         Constant generalized force on top of the system's [N or N*m].
+    parameters : LaneParameters, optional
+        Factors by which each lane scales its system.
     record : (steps * cycles + 1, 2 n, lanes) array, optional
         Receives every state on the grid.
     threads : int, optional
@@ -371,10 +364,23 @@ def march_adaptive(
     ComputationError
         If a step falls below all bounds, or a contact chatters.
     """
-    engine = adaptive_engine(
-        compiled.system, 1.0 / np.asarray(period), cycles, rtol=rtol, atol=atol
-    )
-    return engine.march(
-        period, state, cycles, extra_force=extra_force, points=compiled.grid.left, record=record,
-        threads=threads,
-    ).state  # fmt: skip
+    period = np.asarray(period, dtype=float)
+    scales = None if parameters is None else parameters.table(period.size)
+    everyone = np.arange(period.size)
+    whole = Member(compiled.system, compiled.nodes, everyone)
+    new = np.empty_like(state)
+    for one in compiled.members or (whole,):
+        own = one.lanes
+        engine = adaptive_engine(
+            one.system, 1.0 / period[own], cycles, rtol=rtol, atol=atol, parameters=parameters
+        )
+        kept = record if record is None or not compiled.members else record[:, :, own]
+        new[own] = engine.march(
+            period[own], state[own], cycles, points=compiled.grid.left, record=kept,
+            extra_force=None if extra_force is None else extra_force[own], threads=threads,
+            scales=None if scales is None else scales[own],
+            numbers=everyone[own] if period.size > 1 else None,
+        ).state  # fmt: skip
+        if record is not None and kept is not None and kept is not record:
+            record[:, :, own] = kept
+    return new

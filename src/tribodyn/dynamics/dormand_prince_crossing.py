@@ -30,9 +30,8 @@ __all__ = ["MAX_CHANGES", "NARROWEST", "advance_lane", "growth", "keep_points", 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-#: Changes of side of one lane within one step of its block; more is chatter, which no contact law
-#: of this kernel has, and is reported.
-MAX_CHANGES = 64
+#: Changes of side of one lane within this much mesh phase; more is chatter, and is reported.
+MAX_CHANGES, CHATTER = 64, 1e-6
 #: Narrowest step in phase that may be rejected.
 NARROWEST = 1e-13
 #: Halvings in the search for a point on the new side of a contact that has just changed.
@@ -273,7 +272,7 @@ def advance_lane(
     one = (0.0,)
     n, contacts = code[0], code[1]
     fresh = own + 19 * n + 2 + 10 * contacts
-    phase, width, before, changes = start, end - start, 1.0, 0
+    phase, width, before, changes, counted = start, end - start, 1.0, 0, start
     for j in range(contacts):
         w[fresh + j] = 0.0
     cut, plan, crossing = False, width, I64(-1)
@@ -296,6 +295,8 @@ def advance_lane(
                 code, reads, cells, count, cell, last, phase, width, row, own, w
             )
             if item >= 0:
+                if phase - counted > CHATTER:
+                    counted, changes = phase, 0
                 changes += 1
                 report[2] += 1.0
                 if changes > MAX_CHANGES:

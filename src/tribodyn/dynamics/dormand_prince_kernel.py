@@ -22,7 +22,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.kernel import I64, INNER, acceleration, compression
+from tribodyn.dynamics.kernel import I64, INNER, acceleration, compression, dead_zone
 from tribodyn.dynamics.lanes import any_negative, greatest, load, store
 
 __all__ = [
@@ -219,7 +219,7 @@ def clearances(
     for j in range(contacts):
         if code[at + 2] != 0:
             d = compression(lanes, code, reads, row, at, read, here, w)
-            gap = row[here + 4]
+            gap = dead_zone(lanes, code, row, here, w)
             sign = load(lanes, w, 8 * n + contacts + j)
             touch = sign * sign
             inside, free = touch * (sign * d - gap), 1.0 - touch

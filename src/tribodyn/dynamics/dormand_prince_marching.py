@@ -84,9 +84,13 @@ def _set_up(
             w[(steady + i) * width + lane] = load[lane, i]
         for j in range(contacts):
             w[(8 * n + contacts + j) * width + lane] = 1.0
-        w[(steady + n) * width + lane] = 1.0
         w[(steady + n + 2) * width + lane] = 1.0 / period[lane]
         w[(own + 19 * n + 1) * width + lane] = period[lane]
+        # Factors of stiffness, damping, friction, error, gap and load: see `Slots`.
+        for slot, item in ((6, 0), (7, 1), (8, 2), (5, 4)):
+            w[(steady + n + slot) * width + lane] = load[lane, n + item] - 1.0
+        w[(steady + n + 3) * width + lane] = 1.0 - load[lane, n + 3]
+        w[(steady + n) * width + lane] = load[lane, n + 5]
 
 
 @nb.njit(**INNER)
@@ -147,8 +151,9 @@ def _build(digest: str) -> Any:
             First slot that the program does not use, and slots in all.
         period : (lanes,) array
             Mesh period [s].
-        load : (lanes, n) array
-            Constant acceleration.
+        load : (lanes, n + 6) array
+            Constant acceleration; factors of contact stiffness, contact damping, friction, error,
+            dead zone and load.
         state : (lanes, 2 n) array
             Position and velocity; overwritten.
         memory : (2 + 2 n * lanes,) array

@@ -241,7 +241,13 @@ def solve_adaptive(
     for cycle in range(cycles):
         while True:
             run = engine.march(
-                period, state, 1, extra_force=extra[None, :], memory=memory, room=room
+                period,
+                state,
+                1,
+                extra_force=extra[None, :],
+                memory=memory,
+                room=room,
+                elapsed=cycle,
             )
             if run.steps <= room:
                 break

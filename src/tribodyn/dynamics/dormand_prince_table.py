@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid, build_grid, system_events
-from tribodyn.dynamics.program import Nodes, Program, compile_on
+from tribodyn.dynamics.program import Nodes, Program, build_program, compile_on
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 
@@ -90,14 +90,21 @@ class PhaseTable(NamedTuple):
 class _Rows:
     """Rows of a program at chosen points, with the same terms each time."""
 
-    def __init__(self, system: System, events: Array) -> None:
-        self.system = system
+    def __init__(self, system: System, events: Array, scaled: bool, split: bool) -> None:
+        self.system, self.scaled, self.split = system, scaled, split
         self.sample = build_grid(tuple(events[:-1]), max(_SAMPLE, 8 * events.size))
-        self.nodes, self.program = compile_on(system, self.sample)
+        self.nodes, self.program = self.compile(self.sample)
         self.columns = int(self.program.code[2])
         rows = self.program.rows.reshape(-1, self.columns)
         self.scale = np.abs(rows).max(axis=0)
         self.noise = _noise(system, self.nodes, self.program)
+
+    def compile(self, grid: Grid) -> tuple[Nodes, Program]:
+        """Program on a grid, with what lanes scale."""
+        nodes, program = compile_on(self.system, grid)
+        if self.scaled or self.split:
+            program = build_program(self.system, grid, nodes, scaled=self.scaled, split=self.split)
+        return nodes, program
 
     def at(self, middle: Array, half: Array, low: Array, high: Array) -> Array:
         """Rows at ``middle - half``, ``middle`` and ``middle + half``: (points, 3, columns)."""
@@ -109,11 +116,11 @@ class _Rows:
             np.concatenate((first.segment_left, low)),
             np.concatenate((first.segment_right, high)),
         )
-        _, program = compile_on(self.system, grid)
+        _, program = self.compile(grid)
         if not np.array_equal(program.code, self.program.code):
             # A term that is zero on the sample is not zero elsewhere: the sample grows.
             self.sample = grid
-            self.nodes, self.program = compile_on(self.system, grid)
+            self.nodes, self.program = self.compile(grid)
             raise _MoreTermsError
         rows = program.rows.reshape(-1, 3, self.columns)[first.steps :]
         self.scale = np.maximum(self.scale, np.abs(rows).max(axis=(0, 1)))
@@ -135,8 +142,7 @@ def _noise(system: System, nodes: Nodes, program: Program) -> Array:
     noise = np.zeros(rows.shape[-1])
     inverse = np.linalg.inv(np.asarray(system.mass))
     size = np.abs(inverse)
-    reaction = -np.einsum("ik,rsjk->rsji", inverse, nodes.force_direction)
-    reaction_size = np.einsum("ik,rsjk->rsji", size, np.abs(nodes.force_direction))
+    pushes = (nodes.force_direction, nodes.direction, nodes.force_direction - nodes.direction)
     parts = [
         (np.einsum("ik,rsk->rsi", inverse, nodes.force), _CANCELLED,
          np.einsum("ik,rsk->rsi", size, np.abs(nodes.force)))
@@ -145,7 +151,14 @@ def _noise(system: System, nodes: Nodes, program: Program) -> Array:
         parts += [
             (nodes.error_slope[:, :, j, None], _NOISE, nodes.error[:, :, j, None]),
             (nodes.direction_slope[:, :, j], _NOISE, nodes.direction[:, :, j]),
-            (reaction[:, :, j], _CANCELLED, reaction_size[:, :, j]),
+            *(
+                (
+                    -np.einsum("ik,rsk->rsi", inverse, push[:, :, j]),
+                    _CANCELLED,
+                    np.einsum("ik,rsk->rsi", size, np.abs(push[:, :, j])),
+                )
+                for push in pushes
+            ),
         ]
     for values, share, sizes in parts:
         for i in range(values.shape[-1]):
@@ -154,12 +167,16 @@ def _noise(system: System, nodes: Nodes, program: Program) -> Array:
     return noise
 
 
-def build_table(system: System) -> PhaseTable:
+def build_table(system: System, *, scaled: bool = False, split: bool = False) -> PhaseTable:
     """Turn the entries of a system into polynomials of the mesh phase.
 
     Parameters
     ----------
     system : System
+    scaled : bool
+        Whether lanes scale stiffness, damping or dead zone of the contacts.
+    split : bool
+        Whether lanes scale the friction of the contacts.
 
     Returns
     -------
@@ -179,7 +196,7 @@ def build_table(system: System) -> PhaseTable:
     True
     """
     events = np.array([*system_events(system), 1.0])
-    rows = _Rows(system, events)
+    rows = _Rows(system, events, scaled, split)
     for _ in range(8):
         try:
             return _refine(rows, events)

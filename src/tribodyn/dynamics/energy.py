@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.dynamics.grid import Grid, RowEvaluator
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import compile_for
-from tribodyn.dynamics.response import Response
+from tribodyn.dynamics.response import Response, on_the_steps
 from tribodyn.dynamics.system import System
 
 __all__ = ["EnergyAudit", "energy_audit"]
@@ -84,8 +84,9 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
     >>> audit.imbalance < 1e-9, audit.dissipated > 0.0
     (True, True)
     """
-    fine, steps = response.fine, response.time.size // response.periods
+    steps = response.time.size // response.periods
     compiled = compile_for(system, response.mesh_frequency, steps)
+    fine = on_the_steps(compiled, response)
     nodes, beat = compiled.nodes, response.mesh_frequency
     shape = (response.periods, steps, 3)
     q, v, d, n = (

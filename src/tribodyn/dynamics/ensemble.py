@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.dynamics.dormand_prince_tolerance import Tolerance
+from tribodyn.dynamics.ensemble_engines import (
+    Block,
+    adaptive_blocks,
+    march_blocks,
+    moments_taker,
+    newmark_blocks,
+)
 from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.lane_tables import compile_lanes
 from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics.newmark import newmark_law
+from tribodyn.dynamics.simulate import Method, refuse_foreign
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
@@ -108,6 +118,12 @@ def simulate_ensemble(
     outputs: ArrayLike | None = None,
     threads: int | None = None,
     progress: Progress = SILENT,
+    method: Method = "rk4",
+    rtol: float | None = None,
+    atol: Tolerance | None = None,
+    gamma: float | None = None,
+    beta: float | None = None,
+    preset: str | None = None,
 ) -> Ensemble:
     """March many trajectories and gather their statistics without storing a series.
 
@@ -139,6 +155,17 @@ def simulate_ensemble(
         Blocks of lanes marched at a time; the number of processors by default.
     progress : Progress
         Told about the mesh cycles.
+    method : "rk4", "dormand-prince" or "newmark"
+        Classical Runge-Kutta steps; adaptive steps of Dormand and Prince; Newmark's scheme.
+    rtol : float, optional
+        Of "dormand-prince": error over the largest size so far of each state, 1e-6 by default [-].
+    atol : float, (position, velocity) or (2 n,) array, optional
+        Of "dormand-prince": error allowed on top of that [m or rad, m/s or rad/s].
+    gamma, beta : float, optional
+        Of "newmark": its parameters, 1/2 and 1/4 (average acceleration) by default [-].
+    preset : str, optional
+        Of "newmark": "average acceleration", "linear acceleration", "central difference" or "seed"
+        (1/2, 1/2) instead of the two numbers.
 
     Returns
     -------
@@ -147,7 +174,8 @@ def simulate_ensemble(
     Raises
     ------
     InputError
-        If shapes disagree, an argument is out of range or the step is too long.
+        If shapes disagree, an argument is out of range or belongs to another method, or the step is
+        too long.
     ComputationError
         If a motion grows beyond all bounds.
 
@@ -166,30 +194,70 @@ def simulate_ensemble(
                 why="Statistics cover some of the last mesh cycles",
             )
         )
-    compiled = compile_lanes(system, frequency, steps, parameters)
+    refuse_foreign(method, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
+    compiled = compile_lanes(system, frequency, steps, parameters, any_step=method != "rk4")
     lanes, size = frequency.size, compiled.system.size
     state = _states(start, lanes, size)
     extra = np.zeros((lanes, size)) if extra_force is None else np.asarray(extra_force, float)
     extra = np.ascontiguousarray(np.broadcast_to(extra, (lanes, size)))
     linear = np.zeros((0, 2 * size)) if outputs is None else np.asarray(outputs, float)
-    progress.start("Marching the ensemble", cycles)
-    period = 1.0 / frequency
-    if cycles > averaged:
-        state = march(
-            compiled, period, state, cycles - averaged, extra_force=extra,
-            parameters=parameters, threads=threads,
-        )  # fmt: skip
-        progress.advance(cycles - averaged)
     contacts = len(compiled.system.contacts)
     moments = _fresh_moments(contacts, size + len(linear), harmonics, lanes)
-    if averaged:
-        state = march(
-            compiled, period, state, averaged, extra_force=extra, parameters=parameters,
-            outputs=linear, waves=_waves(compiled, harmonics), moments=moments, threads=threads,
-        )  # fmt: skip
-        progress.advance(averaged)
+    waves, period = _waves(compiled, harmonics), 1.0 / frequency
+    if method == "rk4":
+        advance = _runge_kutta(compiled, period, extra, parameters, linear, waves, threads)
+    else:
+        if method == "newmark":
+            law = newmark_law(gamma, beta, preset)
+            blocks = newmark_blocks(compiled, period, extra, parameters, *law)
+        else:
+            tolerance = 1e-6 if rtol is None else rtol
+            blocks = adaptive_blocks(compiled, period, cycles, extra, parameters, tolerance, atol)
+        share = 1.0 / max(averaged, 1)
+        take = moments_taker(compiled, period, extra, parameters, linear, waves, share, moments)
+        advance = _in_blocks(compiled, blocks, take, threads)
+    progress.start("Marching the ensemble", cycles)
+    early = cycles - averaged
+    for count, gathered, elapsed in ((early, None, 0), (averaged, moments, early)):
+        if count:
+            state = advance(state, count, gathered, elapsed)
+            progress.advance(count)
     progress.finish()
     return _collect(frequency, state, moments, contacts, size, harmonics, averaged)
+
+
+def _in_blocks(
+    compiled: Compiled,
+    blocks: list[Block],
+    take: Callable[[Block, Array], None],
+    threads: int | None,
+) -> Callable[[Array, int, Array | None, int], Array]:
+    def advance(state: Array, count: int, moments: Array | None, elapsed: int) -> Array:
+        taker = None if moments is None else take
+        return march_blocks(compiled, blocks, state, count, taker, threads, elapsed)
+
+    return advance
+
+
+def _runge_kutta(
+    compiled: Compiled,
+    period: Array,
+    extra: Array,
+    parameters: LaneParameters | None,
+    outputs: Array,
+    waves: Array,
+    threads: int | None,
+) -> Callable[[Array, int, Array | None, int], Array]:
+    def advance(state: Array, count: int, moments: Array | None, elapsed: int) -> Array:
+        statistics: dict[str, Any] = {}
+        if moments is not None:
+            statistics = {"outputs": outputs, "waves": waves}
+        return march(
+            compiled, period, state, count, extra_force=extra, parameters=parameters,
+            moments=moments, threads=threads, elapsed=elapsed, **statistics,
+        )  # fmt: skip
+
+    return advance
 
 
 def _frequencies(

@@ -105,5 +105,5 @@ def _directions(names: tuple[str, ...]) -> dict[str, Array]:
     return {
         "friction_sum": across,
         "friction_moment_pinion": unit["pinion_theta"],
-        "friction_moment_wheel": -unit["wheel_theta"],
+        "friction_moment_wheel": nothing - unit["wheel_theta"],
     }

@@ -24,6 +24,8 @@ def compile_lanes(
     mesh_frequency: ArrayLike,
     steps: int,
     parameters: LaneParameters | None = None,
+    *,
+    any_step: bool = False,
 ) -> Compiled:
     """Compile the systems of all lanes on one grid with the events of all.
 
@@ -37,6 +39,8 @@ def compile_lanes(
         Steps per mesh cycle.
     parameters : LaneParameters, optional
         Factors by which each lane scales its system.
+    any_step : bool
+        Whether to take steps of any length, for engines that the step limit does not concern.
 
     Returns
     -------
@@ -51,28 +55,33 @@ def compile_lanes(
     Examples
     --------
     >>> one, two = (System([[mass]], [[0.0]], [[4.0]], [0.0]) for mass in (1.0, 4.0))
-    >>> compile_lanes([one, two, one], 1.0, 64).step_number
+    >>> round(compile_lanes([one, two, one], 1.0, 64).step_number, 6)
     0.03125
     """
-    if isinstance(systems, System):
-        return compile_for(systems, mesh_frequency, steps, parameters)
-    given = list(systems)
+    given = [systems] if isinstance(systems, System) else list(systems)
     distinct = list({id(one): one for one in given}.values())
-    if len(distinct) == 1:
+    if len(distinct) == 1 and not any_step:
         return compile_for(distinct[0], mesh_frequency, steps, parameters)
     _refuse_different(given)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
+    if int(steps) != steps or steps < 1:
+        raise InputError(
+            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
+        )
+    if len(distinct) == 1:
+        parts = compile_system(distinct[0], int(steps))
+        return Compiled(distinct[0], *parts, step_number=float("nan"), parameters=parameters)
     beat = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (len(given),))
     events = system_events(*distinct)
     places = {id(one): number for number, one in enumerate(distinct)}
     which = np.array([places[id(one)] for one in given])
-    members, number = [], 0.0
+    members, number = [], float("nan") if any_step else 0.0
     for place, system in enumerate(distinct):
         lanes = np.flatnonzero(which == place)
         grid, nodes, program = compile_system(system, steps, events)
-        number = max(
-            number, refuse_unstable_lanes(system, nodes, grid, beat, parameters, lanes=lanes)
-        )
+        if not any_step:
+            own = refuse_unstable_lanes(system, nodes, grid, beat, parameters, lanes=lanes)
+            number = max(number, own)
         members.append(Member(system, nodes, lanes))
         if place == 0:
             first = program

@@ -170,6 +170,7 @@ def march(
     width: int | None = None,
     threads: int | None = None,
     any_step: bool = False,
+    elapsed: int = 0,
 ) -> Array:
     """March lanes by whole mesh cycles; returns their new state.
 
@@ -200,6 +201,8 @@ def march(
         Blocks marched at a time; the number of processors by default.
     any_step : bool
         Take the step of every lane as it is: the caller knows it, and judges what comes of it.
+    elapsed : int
+        Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
 
     Returns
     -------
@@ -241,7 +244,7 @@ def march(
             failures = list(pool.map(block, starts))
     if max(failures) >= 0:
         first = starts[int(np.argmax(failures))]
-        _report(run, np.arange(first, min(first + width, lanes)), max(failures))
+        _report(run, np.arange(first, min(first + width, lanes)), max(failures), elapsed)
     return new
 
 
@@ -317,7 +320,7 @@ class _Run:
         )  # fmt: skip
 
 
-def _report(run: _Run, lanes: NDArray[np.int64], step: int) -> None:
+def _report(run: _Run, lanes: NDArray[np.int64], step: int, elapsed: int) -> None:
     """Find the lane that ran away, march it once more and tell how it did."""
     compiled, steps = run.compiled, run.compiled.grid.steps
     # The step counted from the start is at the end of a mesh cycle. A lane marched by itself is
@@ -344,6 +347,6 @@ def _report(run: _Run, lanes: NDArray[np.int64], step: int) -> None:
     member = compiled.members[run.member[lane]] if compiled.members else compiled
     report_divergence(
         member.system, member.nodes, compiled.grid, compiled.step_number, record[:, :, 0],
-        1.0 / float(run.period[lane]), before, int(lane) if run.period.size > 1 else None,
+        1.0 / float(run.period[lane]), before + elapsed, int(lane) if run.period.size > 1 else None,
         run.scales[lane],
     )  # fmt: skip

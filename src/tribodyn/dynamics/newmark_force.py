@@ -18,6 +18,7 @@ from tribodyn.dynamics.lanes import least, load, store
 from tribodyn.dynamics.newmark_lanes import below, magnitude
 
 __all__ = [
+    "SINGLE",
     "compression",
     "contact_law",
     "friction_law",
@@ -28,6 +29,9 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
+
+#: Single slots of a lane; its factors begin at the third.
+SINGLE = 9
 
 
 @nb.njit(**INNER)
@@ -40,7 +44,9 @@ def slots(
     a sum at 6n, the constant load at 7n, then the slots returned: sides of the dead zones, contact
     forces, compressions and rates without them, frictions with their slopes, accelerations
     per unit of each force, their effect on compressions and on rates, Newton's matrix, its right
-    side, single slots (step, mesh frequency, zero) and, three further on, the inverse matrices.
+    side, single slots (step, mesh frequency, zero, then the lane's factors of contact stiffness,
+    contact damping, friction, error, dead zone and force) and, :data:`SINGLE` further on, the
+    inverse matrices.
     """
     n, m, frictions, _ = shape
     side = 8 * n
@@ -62,9 +68,12 @@ def row_length(shape: tuple[int, int, int, int]) -> int:
 
 
 @nb.njit(**INNER)
-def compression(lanes: Any, n: int, rows: Array, at: int, q: int, zero: Any, w: Array) -> Any:
-    """Compression of the contact whose row begins at ``at``, from the positions at slot ``q``."""
-    d = zero - rows[at + 2]
+def compression(lanes: Any, n: int, rows: Array, at: int, q: int, error: Any, w: Array) -> Any:
+    """Compression of the contact whose row begins at ``at``, from the positions at slot ``q``.
+
+    ``error`` is the lane's factor of the error.
+    """
+    d = error * (0.0 - rows[at + 2])
     for i in range(n):
         d = d + rows[at + 5 + i] * load(lanes, w, q + i)
     return d
@@ -72,11 +81,11 @@ def compression(lanes: Any, n: int, rows: Array, at: int, q: int, zero: Any, w: 
 
 @nb.njit(**INNER)
 def rate_of(
-    lanes: Any, n: int, rows: Array, at: int, q: int, beat: Any, zero: Any, w: Array
+    lanes: Any, n: int, rows: Array, at: int, q: int, beat: Any, error: Any, w: Array
 ) -> Any:
     """Find the rate of a compression, from positions at slot ``q`` and velocities at ``q + n``."""
-    moved = zero - rows[at + 3]
-    along = zero
+    moved = error * (0.0 - rows[at + 3])
+    along = error * 0.0
     for i in range(n):
         moved = moved + rows[at + 5 + n + i] * load(lanes, w, q + i)
         along = along + rows[at + 5 + i] * load(lanes, w, q + n + i)
@@ -85,7 +94,7 @@ def rate_of(
 
 @nb.njit(**INNER)
 def contact_law(
-    sign: Any, stiffness: float, damping: float, gap: float, in_gap: float, d: Any, rate: Any
+    sign: Any, stiffness: Any, damping: Any, gap: Any, in_gap: float, d: Any, rate: Any
 ) -> tuple[Any, Any, Any]:
     """Force of a contact on side ``sign``, and its derivatives by compression and rate."""
     touch = sign * sign
@@ -127,7 +136,7 @@ def frictions_of(
     """
     n, m, frictions, coefficients = shape
     _, forces, _, _, place, _, _, _, _, single = slots(shape)
-    zero = load(lanes, w, single + 2)
+    zero, scale = load(lanes, w, single + 2), load(lanes, w, single + 5)
     for f in range(frictions):
         own = m + f * (2 + m)
         carried = zero
@@ -137,5 +146,5 @@ def frictions_of(
         force, slope = friction_law(
             rows, at, coefficients, facts[own], facts[own + 1], carried, zero
         )
-        store(w, place + f, force)
-        store(w, place + frictions + f, slope)
+        store(w, place + f, scale * force)
+        store(w, place + frictions + f, scale * slope)

@@ -58,8 +58,9 @@ def _balance(
     n = shape[0]
     first, columns, factors, _ = structure
     force = row + row_length(shape) - n
+    scale = load(lanes, w, slots(shape)[9] + 8)
     for i in range(n):
-        total = load(lanes, w, 7 * n + i) + rows[force + i]
+        total = load(lanes, w, 7 * n + i) + scale * rows[force + i]
         for item in range(first[i], first[i + 1]):
             total = total - factors[item] * load(lanes, w, q + columns[item])
         store(w, 6 * n + i, total)
@@ -79,14 +80,17 @@ def start_acceleration(
     n, m, frictions, coefficients = shape
     side, forces, _, _, place, _, _, _, _, single = slots(shape)
     beat, zero = load(lanes, w, single + 1), load(lanes, w, single + 2)
+    stiff, damp = load(lanes, w, single + 3), load(lanes, w, single + 4)
+    error, wide = load(lanes, w, single + 6), load(lanes, w, single + 7)
     _balance(lanes, shape, structure, rows, row, 0, w)
     for j in range(m):
         at = row + j * (5 + 3 * n)
-        d = compression(lanes, n, rows, at, 0, zero, w)
-        rate = rate_of(lanes, n, rows, at, 0, beat, zero, w)
+        d = compression(lanes, n, rows, at, 0, error, w)
+        rate = rate_of(lanes, n, rows, at, 0, beat, error, w)
         force, _, _ = contact_law(
-            load(lanes, w, side + j), rows[at], rows[at + 1], rows[at + 4], facts[j], d, rate
-        )
+            load(lanes, w, side + j), stiff * rows[at], damp * rows[at + 1], wide * rows[at + 4],
+            facts[j], d, rate,
+        )  # fmt: skip
         store(w, forces + j, force)
         for i in range(n):
             store(w, 6 * n + i, load(lanes, w, 6 * n + i) - rows[at + 5 + 2 * n + i] * force)
@@ -118,7 +122,7 @@ def _without_contacts(
     n, m, _, _ = shape
     _, _, plain, rates, _, _, _, _, _, single = slots(shape)
     h, beat = load(lanes, w, single), load(lanes, w, single + 1)
-    zero = load(lanes, w, single + 2)
+    zero, error = load(lanes, w, single + 2), load(lanes, w, single + 6)
     early, slow = (0.5 - law[1]) * h * h, (1.0 - law[0]) * h
     for i in range(n):
         v, a = load(lanes, w, n + i), load(lanes, w, 2 * n + i)
@@ -137,8 +141,8 @@ def _without_contacts(
         store(w, 4 * n + i, load(lanes, w, 4 * n + i) + fast * a)
     for j in range(m):
         at = row + j * (5 + 3 * n)
-        store(w, plain + j, compression(lanes, n, rows, at, 3 * n, zero, w))
-        store(w, rates + j, rate_of(lanes, n, rows, at, 3 * n, beat, zero, w))
+        store(w, plain + j, compression(lanes, n, rows, at, 3 * n, error, w))
+        store(w, rates + j, rate_of(lanes, n, rows, at, 3 * n, beat, error, w))
 
 
 @nb.njit(**INNER)
@@ -212,6 +216,8 @@ def _iterate(
     n, m, frictions, _ = shape
     side, forces, plain, rates, place, _, effect, matrix, right, single = slots(shape)
     zero = load(lanes, w, single + 2)
+    stiff, damp = load(lanes, w, single + 3), load(lanes, w, single + 4)
+    wide = load(lanes, w, single + 7)
     sources = m + frictions
     for _ in range(PASSES):
         size = zero
@@ -225,8 +231,9 @@ def _iterate(
                 d = d + load(lanes, w, effect + i * sources + j) * force
                 rate = rate + load(lanes, w, effect + (m + i) * sources + j) * force
             force, by_compression, by_rate = contact_law(
-                load(lanes, w, side + i), rows[at], rows[at + 1], rows[at + 4], facts[i], d, rate
-            )
+                load(lanes, w, side + i), stiff * rows[at], damp * rows[at + 1],
+                wide * rows[at + 4], facts[i], d, rate,
+            )  # fmt: skip
             old = load(lanes, w, forces + i)
             store(w, right + i, force - old)
             size = greatest(size, magnitude(old) + magnitude(force))
@@ -296,12 +303,12 @@ def beyond(
     """Tell whether a lane's new state is off the side of a dead zone that it was on."""
     n, m, _, _ = shape
     side, _, _, _, _, _, _, _, _, single = slots(shape)
-    zero = load(lanes, w, single + 2)
+    error, wide = load(lanes, w, single + 6), load(lanes, w, single + 7)
     for j in range(m):
         if dead[j] != 0:
             at = row + j * (5 + 3 * n)
-            d = compression(lanes, n, rows, at, 3 * n, zero, w)
-            gap, sign = rows[at + 4], load(lanes, w, side + j)
+            d = compression(lanes, n, rows, at, 3 * n, error, w)
+            gap, sign = wide * rows[at + 4], load(lanes, w, side + j)
             touch = sign * sign
             inside, free = touch * (sign * d - gap), 1.0 - touch
             if any_negative(inside + free * (gap - d)) or any_negative(inside + free * (gap + d)):

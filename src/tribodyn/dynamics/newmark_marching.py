@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tribodyn.compiled import source_digest
 from tribodyn.dynamics.kernel import I64, INNER, JIT
 from tribodyn.dynamics.lanes import address, first_lane, load
-from tribodyn.dynamics.newmark_force import compression, row_length, slots
+from tribodyn.dynamics.newmark_force import SINGLE, compression, row_length, slots
 from tribodyn.dynamics.newmark_kernel import beyond, newmark_step, start_acceleration
 
 __all__ = ["MAX_SPLITS", "newmark_block"]
@@ -82,8 +82,9 @@ def _find_sides(
         w[side + j] = 1.0
         if dead[j] != 0:
             at = row + j * (5 + 3 * n)
-            zero = load((0.0,), w, single + 2)
-            d, gap = first_lane(compression((0.0,), n, rows, at, q, zero, w)), rows[at + 4]
+            error = load((0.0,), w, single + 6)
+            d = first_lane(compression((0.0,), n, rows, at, q, error, w))
+            gap = w[single + 7] * rows[at + 4]
             w[side + j] = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
 
 
@@ -105,9 +106,9 @@ def _clearance(
     n: int, part: Array, at: int, q: int, side: float, leaving: float, single: int, w: Array
 ) -> float:
     """Distance to the boundary of a side; in the gap, to the boundary in direction ``leaving``."""
-    zero = load((0.0,), w, single + 2)
-    d = first_lane(compression((0.0,), n, part, at, q, zero, w))
-    away: float = side * d - part[at + 4] if side != 0.0 else part[at + 4] - leaving * d
+    error, gap = load((0.0,), w, single + 6), w[single + 7] * part[at + 4]
+    d = first_lane(compression((0.0,), n, part, at, q, error, w))
+    away: float = side * d - gap if side != 0.0 else gap - leaving * d
     return away
 
 
@@ -128,8 +129,8 @@ def _first_beyond(
         if j == known or dead[j] == 0:
             continue
         at, side = j * (5 + 3 * n), w[sides + j]
-        zero = load((0.0,), w, single + 2)
-        d = first_lane(compression((0.0,), n, part, right + at, 3 * n, zero, w))
+        error = load((0.0,), w, single + 6)
+        d = first_lane(compression((0.0,), n, part, right + at, 3 * n, error, w))
         leaving = 1.0 if d > 0.0 else -1.0
         after = _clearance(n, part, right + at, 3 * n, side, leaving, single, w)
         if after < 0.0:
@@ -163,7 +164,7 @@ def _split_step(
     n = shape[0]
     columns = row_length(shape)
     sides, _, _, _, _, _, _, _, _, single = slots(shape)
-    inverse = single + 3
+    inverse = single + SINGLE
     spare = inverse + n * n
     start, target, contact, splits, probe = 0.0, 1.0, I64(-1), 0, 0
     low = high = g_low = g_high = leaving = scale = 0.0
@@ -282,8 +283,9 @@ def _build(digest: str) -> Any:
             rows.
         period : (width,) array
             Mesh period [s].
-        load_ : (width, n) array
-            Constant extra force.
+        load_ : (width, n + 6) array
+            Constant extra force; factors of contact stiffness, contact damping, friction, error,
+            dead zone and force.
         state : (width, 2 n) array
             Position and velocity; overwritten.
         cycles : int
@@ -303,7 +305,7 @@ def _build(digest: str) -> Any:
         n, m = shape[0], shape[1]
         width = len(lanes)
         side, _, _, _, _, _, _, _, _, single = slots(shape)
-        inverse = single + 3
+        inverse = single + SINGLE
         length = row_length(shape)
         kinds = 0
         for r in range(kind.size):
@@ -331,6 +333,8 @@ def _build(digest: str) -> Any:
                 w[(side + j) * width + lane] = 1.0
             w[(single + 1) * width + lane] = 1.0 / period[lane]
             w[(single + 2) * width + lane] = 0.0
+            for item in range(SINGLE - 3):
+                w[(single + 3 + item) * width + lane] = load_[lane, n + item]
         keep = record.shape[0] > 0
         point = 0
         for cycle in range(cycles):

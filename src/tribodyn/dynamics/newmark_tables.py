@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.system import System
 
@@ -52,18 +52,23 @@ class NewmarkTables:
     facts: Array
 
 
-def newmark_tables(compiled: Compiled) -> NewmarkTables:
-    """Lay out a compiled system for Newmark's scheme.
+def newmark_tables(
+    system: System, nodes: Nodes, grid: Grid, *, split: bool = False
+) -> NewmarkTables:
+    """Lay out a system on its grid for Newmark's scheme.
 
     Parameters
     ----------
-    compiled : Compiled
+    system : System
+    nodes : Nodes
+    grid : Grid
+    split : bool
+        Whether lanes scale the friction of the contacts, which is then a force of its own.
 
     Returns
     -------
     NewmarkTables
     """
-    system, nodes = compiled.system, compiled.nodes
     n, contacts = system.size, len(system.contacts)
     mass, damping, stiffness = (np.asarray(getattr(system, name)) for name in _MATRICES)
     both = np.hstack((stiffness, damping))
@@ -75,13 +80,13 @@ def newmark_tables(compiled: Compiled) -> NewmarkTables:
             np.stack(numbers, axis=-1),
             nodes.direction,
             nodes.direction_slope,
-            nodes.force_direction,
+            nodes.direction if split else nodes.force_direction,
         ),
         axis=-1,
     )
     flat = per_contact.reshape(*nodes.phase.shape, contacts * (5 + 3 * n))
-    rubbing, (frictions, coefficients), facts = _frictions(system, nodes)
-    widths, kind = np.unique(compiled.grid.width, return_inverse=True)
+    rubbing, (frictions, coefficients), facts = _frictions(system, nodes, split)
+    widths, kind = np.unique(grid.width, return_inverse=True)
     inverse = np.linalg.inv(mass)
     return NewmarkTables(
         shape=(n, contacts, frictions, coefficients),
@@ -97,15 +102,27 @@ def newmark_tables(compiled: Compiled) -> NewmarkTables:
     )
 
 
-def _frictions(system: System, nodes: Nodes) -> tuple[Array, tuple[int, int], list[float]]:
+def _frictions(
+    system: System, nodes: Nodes, split: bool
+) -> tuple[Array, tuple[int, int], list[float]]:
     """Rows, numbers and facts of the frictions that follow their load."""
-    if not system.frictions:
+    contacts = len(system.contacts)
+    if not (system.frictions or split):
         return np.zeros((*nodes.phase.shape, 0)), (0, 0), []
     direction, coefficients = nodes.friction_direction, nodes.friction_coefficients
-    both = np.concatenate((direction, coefficients), axis=-1)
     facts: list[float] = []
     for one in system.frictions:
         facts += [1.0 / float(one.load), float(one.limit)]
-        facts += [float(j in one.contacts) for j in range(len(system.contacts))]
-    shape = len(system.frictions), int(coefficients.shape[-1])
+        facts += [float(j in one.contacts) for j in range(contacts)]
+    if split:
+        # The friction of a contact as one with the coefficient 1, to be scaled by itself.
+        own = np.zeros((*nodes.phase.shape, contacts, coefficients.shape[-1]))
+        own[..., 0] = 1.0
+        rub = nodes.force_direction - nodes.direction
+        direction = np.concatenate((direction, rub), axis=2)
+        coefficients = np.concatenate((coefficients, own), axis=2)
+        for j in range(contacts):
+            facts += [0.0, 1.0, *(float(j == other) for other in range(contacts))]
+    both = np.concatenate((direction, coefficients), axis=-1)
+    shape = int(direction.shape[2]), int(coefficients.shape[-1])
     return both.reshape(*nodes.phase.shape, -1), shape, facts

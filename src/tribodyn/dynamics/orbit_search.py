@@ -37,7 +37,7 @@ _NEWTON_LIMIT = 8
 #: Plain periods of each further attempt.
 PATIENCE = (150, 400)
 #: Size of the disturbances of the monodromy matrix relative to the orbit.
-_DISTURBANCE = 1e-6
+_DISTURBANCE = 1e-7
 
 
 @dataclass
@@ -237,6 +237,8 @@ def _attempt(
     return finish_orbit(mapping, near, tolerance)
 
 
+# A motion on its way beyond all bounds overflows in norms before it is reported.
+@np.errstate(over="ignore", invalid="ignore")
 def find_orbit(
     mapping: OrbitMap, y: Array, tolerance: float, patience: Sequence[int] = PATIENCE
 ) -> OrbitPoint:

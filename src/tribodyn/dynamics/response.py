@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.response_crossings import resample_crossings
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["FineSamples", "Response", "build_response"]
+__all__ = ["FineSamples", "Response", "build_response", "on_the_steps"]
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,8 @@ class FineSamples:
     """Both ends and the middle of every step, with weights of Simpson's rule.
 
     At events the left and the right value are separate samples, so that means, mean squares and
-    harmonics keep the fourth order of the integrator.
+    harmonics keep the fourth order of the integrator. Where a contact opens or closes, two
+    neighbouring steps are sampled as the part before and the part after that.
 
     Parameters
     ----------
@@ -221,19 +223,20 @@ def build_response(
     nodes, steps = compiled.nodes, compiled.grid.steps
     cycles = (states.shape[0] - 1) // steps
     size = compiled.system.size
-    fine = _fine_samples(compiled, mesh_frequency, states, extra_force)
+    whole = _step_samples(compiled, mesh_frequency, states, extra_force)
+    fine = _without_jumps(whole, compiled, mesh_frequency, states, extra_force)
 
     def left(values: Array) -> Array:
         return values.reshape(cycles * steps, 3, values.shape[-1])[:, 0]
 
     return Response(
-        time=fine.time.reshape(-1, 3)[:, 0],
+        time=whole.time.reshape(-1, 3)[:, 0],
         phase=np.tile(nodes.phase[:, 0], cycles),
         position=states[:-1, :size].copy(),
         velocity=states[:-1, size:].copy(),
-        acceleration=left(fine.acceleration),
-        deflection=left(fine.deflection),
-        contact_force=left(fine.contact_force),
+        acceleration=left(whole.acceleration),
+        deflection=left(whole.deflection),
+        contact_force=left(whole.contact_force),
         names=tuple(compiled.system.names),
         mesh_frequency=mesh_frequency,
         periods=cycles,
@@ -244,7 +247,26 @@ def build_response(
     )
 
 
-def _fine_samples(
+def on_the_steps(compiled: Compiled, response: Response) -> FineSamples:
+    """Samples of a response in every step as it was marched, even across a contact's opening.
+
+    Parameters
+    ----------
+    compiled : Compiled
+        The system on the grid of the response.
+    response : Response
+
+    Returns
+    -------
+    FineSamples
+    """
+    place = np.vstack((response.position, response.fine.position[-1:]))
+    speed = np.vstack((response.velocity, response.fine.velocity[-1:]))
+    states = np.hstack((place, speed))
+    return _step_samples(compiled, response.mesh_frequency, states, response.extra_force)
+
+
+def _step_samples(
     compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array
 ) -> FineSamples:
     nodes, system, grid = compiled.nodes, compiled.system, compiled.grid
@@ -281,6 +303,38 @@ def _fine_samples(
     )
 
 
+def _without_jumps(
+    whole: FineSamples, compiled: Compiled, mesh_frequency: float, states: Array, extra: Array
+) -> FineSamples:
+    """Part the samples where a contact opens or closes instead of at the nearest step."""
+    nodes, steps = compiled.nodes, compiled.grid.steps
+    dead = np.any(nodes.gap > 0.0, axis=(0, 1))
+    if not dead.any():
+        return whole
+    ends = whole.deflection.reshape(-1, steps, 3, dead.size)[:, :, ::2]
+    sides = _sides(dead, nodes.gap[:, ::2], ends).reshape(-1, 2, dead.size)
+    new = resample_crossings(compiled, mesh_frequency, states, extra, sides)
+    if new is None:
+        return whole
+
+    def replaced(values: Array, by: Array) -> Array:
+        out = values.reshape(-1, 3, *values.shape[1:]).copy()
+        out[new.step] = by
+        return out.reshape(values.shape)
+
+    phase = replaced(whole.phase, new.phase)
+    return FineSamples(
+        phase=phase,
+        time=phase / mesh_frequency,
+        weight=replaced(whole.weight, new.weight),
+        position=replaced(whole.position, new.position),
+        velocity=replaced(whole.velocity, new.velocity),
+        acceleration=replaced(whole.acceleration, new.acceleration),
+        deflection=replaced(whole.deflection, new.deflection),
+        contact_force=replaced(whole.contact_force, new.force),
+    )
+
+
 def _hermite(states: Array, size: int, width: Array, mesh_frequency: float) -> tuple[Array, Array]:
     """States at both ends and in the middle of every step, from the cubic Hermite interpolant."""
     cycles = (states.shape[0] - 1) // width.size
@@ -296,8 +350,14 @@ def _contact_force(compiled: Compiled, d: Array, rate: Array) -> Array:
     nodes = compiled.nodes
     gap = np.broadcast_to(nodes.gap, d.shape)
     dead = np.any(nodes.gap > 0.0, axis=(0, 1))
-    side = np.where(dead, np.where(d > gap, 1.0, np.where(d < -gap, -1.0, 0.0)), 1.0)
+    side = _sides(dead, gap, d)
     free = np.array([contact.damping_in_gap for contact in compiled.system.contacts])
     damped = (side != 0.0) | free if free.size else side != 0.0
     spring = np.abs(side) * nodes.stiffness * (d - side * gap)
     return np.asarray(spring + damped * nodes.damping * rate)
+
+
+def _sides(dead: NDArray[np.bool_], gap: Array, d: Array) -> Array:
+    """Side of the dead zone on which every contact is; 1 where it has none."""
+    beyond = np.where(d > gap, 1.0, np.where(d < -gap, -1.0, 0.0))
+    return np.where(dead, beyond, 1.0)

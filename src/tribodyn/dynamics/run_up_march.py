@@ -252,9 +252,12 @@ class CycleMarcher:
             lane, 1, record, self.outputs, np.zeros(0), 0, moments,
         )  # fmt: skip
         if failed >= 0:
-            moving = record[max(failed - 2, 0), self.size :, 0]
-            energy = np.diag(np.asarray(self.systems[0].mass)) * moving**2
-            name = self.systems[0].names[int(np.argmax(np.nan_to_num(energy)))]
+            finite = np.isfinite(record[:failed, :, 0]).all(axis=1)
+            last = max((failed if finite.all() else int(np.argmin(finite))) - 1, 0)
+            weight = np.sqrt(np.diag(np.asarray(self.systems[0].mass)))
+            with np.errstate(all="ignore"):
+                speed = np.nan_to_num(np.abs(record[last, self.size :, 0]) * weight, nan=np.inf)
+            name = self.systems[0].names[int(np.argmax(speed))]
             raise ComputationError(
                 Problem(
                     what=f"the motion grew beyond all bounds after {self.time:.5g} s, at "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,21 +12,22 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.dynamics.dormand_prince import adaptive_engine
 from tribodyn.dynamics.dormand_prince_tolerance import Tolerance
 from tribodyn.dynamics.march import Compiled, compile_for, march
+from tribodyn.dynamics.newmark import compile_newmark, march_newmark, newmark_law
 from tribodyn.dynamics.program import compile_system
 from tribodyn.dynamics.response import Response, build_response
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
 
-__all__ = ["Method", "read_start", "require_cycles", "simulate"]
+__all__ = ["Method", "read_start", "refuse_foreign", "require_cycles", "simulate"]
 
 Array = NDArray[np.float64]
 
 #: Ways to march over time.
 Method = Literal["rk4", "dormand-prince", "newmark"]
 
-#: Marches a state by some mesh cycles, records it, and returns the new one.
-_March = Callable[[Array, int, Array], Array]
+#: Marches a state by some mesh cycles, after others, records it, and returns the new one.
+_March = Callable[[Array, int, Array, int], Array]
 
 #: Mesh cycles marched between two reports of progress.
 _CHUNK = 64
@@ -110,6 +111,7 @@ def simulate(
     atol: Tolerance | None = None,
     gamma: float | None = None,
     beta: float | None = None,
+    preset: str | None = None,
 ) -> Response:
     """March a system over time, every force held as given.
 
@@ -137,6 +139,9 @@ def simulate(
         0.001 ``rtol`` times the size of the static state.
     gamma, beta : float, optional
         Of "newmark": its parameters, 1/2 and 1/4 (average acceleration) by default [-].
+    preset : str, optional
+        Of "newmark": "average acceleration", "linear acceleration", "central difference" or "seed"
+        (1/2, 1/2) instead of the two numbers.
 
     Returns
     -------
@@ -165,7 +170,7 @@ def simulate(
     """
     require_cycles(cycles)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    _refuse_foreign(method, rtol=rtol, atol=atol, gamma=gamma, beta=beta)
+    refuse_foreign(method, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     state = read_start(system, start)[None, :]
     period = np.array([1.0 / mesh_frequency])
@@ -174,7 +179,8 @@ def simulate(
         compiled = _compile_samples(system, steps)
         advance, rate = _adaptive(compiled, period, cycles, extra, rtol, atol, widest)
     elif method == "newmark":
-        compiled, advance = _newmark(system, mesh_frequency, steps, period, extra, gamma, beta)
+        law = newmark_law(gamma, beta, preset)
+        compiled, advance = _newmark(system, mesh_frequency, steps, period, extra, law)
     else:
         compiled = compile_for(system, mesh_frequency, steps)
         advance = _runge_kutta(compiled, period, extra)
@@ -183,7 +189,7 @@ def simulate(
     for first in range(0, cycles, _CHUNK):
         count = min(_CHUNK, cycles - first)
         part = record[first * steps : (first + count) * steps + 1]
-        state = advance(state, count, part)
+        state = advance(state, count, part, first)
         progress.advance(count)
     progress.finish()
     if method == "dormand-prince":
@@ -197,10 +203,25 @@ _OWNERS = {
     "atol": "dormand-prince",
     "gamma": "newmark",
     "beta": "newmark",
+    "preset": "newmark",
 }
 
 
-def _refuse_foreign(method: str, **options: object) -> None:
+def refuse_foreign(method: str, **options: object) -> None:
+    """Refuse options of an engine that is not the one asked for.
+
+    Parameters
+    ----------
+    method : str
+        Name of the engine.
+    **options
+        Values by name; None where nothing was given.
+
+    Raises
+    ------
+    InputError
+        If there is no such engine or an option belongs to another one.
+    """
     methods = get_args(Method)
     if method not in methods:
         raise InputError(
@@ -223,8 +244,11 @@ def _refuse_foreign(method: str, **options: object) -> None:
 
 
 def _runge_kutta(compiled: Compiled, period: Array, extra: Array) -> _March:
-    def advance(state: Array, count: int, part: Array) -> Array:
-        return march(compiled, period, state, count, extra_force=extra[None, :], record=part)
+    def advance(state: Array, count: int, part: Array, elapsed: int) -> Array:
+        return march(
+            compiled, period, state, count, extra_force=extra[None, :], record=part,
+            elapsed=elapsed,
+        )  # fmt: skip
 
     return advance
 
@@ -252,10 +276,10 @@ def _adaptive(
     )
     memory: list[Array | None] = [None]
 
-    def advance(state: Array, count: int, part: Array) -> Array:
+    def advance(state: Array, count: int, part: Array, elapsed: int) -> Array:
         run = engine.march(
             period, state, count, extra_force=extra[None, :], points=compiled.grid.left,
-            record=part, memory=memory[0],
+            record=part, memory=memory[0], elapsed=elapsed,
         )  # fmt: skip
         memory[0], widest[0] = run.memory, max(widest[0], run.widest)
         return run.state
@@ -269,18 +293,15 @@ def _newmark(
     steps: int,
     period: Array,
     extra: Array,
-    gamma: float | None,
-    beta: float | None,
+    law: tuple[float, float],
 ) -> tuple[Compiled, _March]:
-    from tribodyn.dynamics.newmark import compile_newmark, march_newmark
+    gamma, beta = law
+    compiled = compile_newmark(system, mesh_frequency, steps, gamma=gamma, beta=beta)
 
-    given = {"gamma": gamma, "beta": beta}
-    options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
-    compiled = compile_newmark(system, mesh_frequency, steps, **options)
-
-    def advance(state: Array, count: int, part: Array) -> Array:
+    def advance(state: Array, count: int, part: Array, elapsed: int) -> Array:
         return march_newmark(
-            compiled, period, state, count, extra_force=extra[None, :], record=part, **options
-        )
+            compiled, period, state, count, gamma=gamma, beta=beta, elapsed=elapsed,
+            extra_force=extra[None, :], record=part,
+        )  # fmt: skip
 
     return compiled, advance

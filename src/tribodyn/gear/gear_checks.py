@@ -105,8 +105,8 @@ def shape_warnings(form: ToothForm) -> list[tuple[str, str]]:
         found.append(
             (
                 "thin-tip",
-                f"z {form.teeth}: the tip is {thickness:.3g} modules thick, less than "
-                f"{THIN_TIP:g}; reduce the tip diameter or the profile shift",
+                f"gear with {form.teeth} teeth: the tip is {thickness:.3g} modules thick, less "
+                f"than {THIN_TIP:g}; reduce the tip diameter or the profile shift",
             )
         )
     given = form.rack.tip_radius_coefficient
@@ -115,9 +115,9 @@ def shape_warnings(form: ToothForm) -> list[tuple[str, str]]:
         found.append(
             (
                 "full-fillet",
-                f"z {form.teeth}: a rack tip radius of {given:.4g} modules does not fit between "
-                f"the flanks; the full round of {fitting:.4g} modules is cut. Give a tip radius of "
-                "at most this value, or a smaller dedendum",
+                f"gear with {form.teeth} teeth: a rack tip radius of {given:.4g} modules does not "
+                f"fit between the flanks; the full round of {fitting:.4g} modules is cut. Give a "
+                "tip radius of at most this value, or a smaller dedendum",
             )
         )
     return found

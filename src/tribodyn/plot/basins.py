@@ -125,5 +125,9 @@ def _title(found: Any) -> str:
         return "No start comes to a motion that repeats"
     if count == 1:
         return "All starts come to the same motion"
-    largest = 100.0 * found.attractors[0].share
-    return f"{count} motions are possible; {largest:.0f} % of the starts come to the first"
+    first = found.attractors[0]
+    factor, unit = scaled([each.rms for each in found.attractors], unit_of(found.signal))
+    return (
+        f"{count} motions are possible; {100.0 * first.share:.0f} % of the starts come to the one "
+        f"of {significant(factor * first.rms)} {unit} rms"
+    )

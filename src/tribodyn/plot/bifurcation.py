@@ -19,6 +19,10 @@ _WORDS = {"up": "upwards", "down": "downwards", "independent": "from rest"}
 #: What a point that is not physics looks like.
 _STEP_LIMITED = "#b8c0c8"
 _PERIODS = 16
+#: Difference of two motions over the largest rms from which they count as two.
+_APART = 0.05
+#: Part of the motions up to which those that the step made are told last.
+_FEW = 0.05
 
 
 def _missing(result: Any) -> str:
@@ -67,7 +71,8 @@ def _section(found: Any, parameter: Any, factor: float, unit: str) -> list[dict[
             color = _STEP_LIMITED if grey else _COLORS[branch]
             x = np.repeat(parameter[chosen], rows.shape[1])
             trace = line(x, factor * rows.ravel(), name, color, unit=unit)
-            size = 4 if branch != "down" else 2.5
+            # Of two motions at one place both are seen: small points lie on large ones.
+            size = 5 if branch != "down" else 3
             traces.append({**trace, "mode": "markers", "marker": {"size": size, "color": color}})
     return traces
 
@@ -85,18 +90,38 @@ def _curves(found: Any, parameter: Any, values: Any, unit: str) -> list[dict[str
     ]  # fmt: skip
 
 
-def _title(found: Any) -> str:
-    counted = found.verdicts()
-    limited = counted.get("step-limited", 0)
-    if limited:
-        return f"{limited} of {found.verdict.size} motions are made by the step, not by physics"
-    wild = int(np.count_nonzero(found.period == 0))
-    longest = int(found.period.max())
+def _two_motions(found: Any, parameter: Any, label: str) -> str:
+    """Where the motion depends on the direction of the sweep."""
+    if not {"up", "down"} <= set(found.branches):
+        return ""
+    up, down = (found.rms[found.branches.index(name)] for name in ("up", "down"))
+    apart = np.abs(up - down) > _APART * np.nanmax(found.rms, initial=0.0)
+    if not apart.any():
+        return ""
+    unit = label.rpartition("[")[2].rstrip("]") if "[" in label else ""
+    low, high = (f"{edge(parameter[apart]):.4g} {unit}".rstrip() for edge in (np.min, np.max))
+    return f"Two motions are possible from {low} to {high}"
+
+
+def _title(found: Any, parameter: Any, label: str) -> str:
+    count, done = found.verdict.size, found.finished & (found.verdict != "step-limited")
+    limited = found.verdicts().get("step-limited", 0)
+    if limited > _FEW * count:
+        return f"{limited} of {count} motions are made by the step, not by physics"
+    wild = int(np.count_nonzero((found.period == 0) & done))
+    longest = int(np.max(found.period, where=done, initial=0))
+    two = _two_motions(found, parameter, label)
+    parts = [two] if two else []
     if wild:
-        return f"{wild} of {found.period.size} motions do not repeat within {_PERIODS} mesh cycles"
-    if longest > 1:
-        return f"The motion repeats after up to {longest} mesh cycles"
-    return "Every motion repeats after one mesh cycle"
+        within = "" if two else f" within {_PERIODS} mesh cycles"
+        parts.append(f"{wild} of {count} motions do not repeat{within}")
+    elif longest > 1:
+        parts.append(f"{'the' if two else 'The'} motion repeats after up to {longest} mesh cycles")
+    if not parts:
+        parts.append("Every motion repeats after one mesh cycle")
+    if limited:
+        parts.append(f"{limited} of {count} made by the step")
+    return "; ".join(parts[:2])  # what has no room shows in the picture
 
 
 @drawing(
@@ -131,4 +156,4 @@ def bifurcation(found: Any) -> Any:
         zero = {**line(parameter[[0, -1]], [0.0, 0.0], "zero", MUTED), "showlegend": False}
         curves = [zero, *_curves(found, parameter, found.largest_exponent, "1/s")]
         panels.append(Panel("Largest exponent [1/s]", curves))
-    return stack(_title(found), label, panels)
+    return stack(_title(found, parameter, label), label, panels)

@@ -21,6 +21,8 @@ _PANELS = (
     ("tooth_stiffness", "tooth_stiffness", "Teeth K<sub>m</sub>"),
     ("pair_stiffness", "pair_stiffness", "Both in series K"),
 )
+#: Values that differ by more than this factor are drawn over a logarithmic axis.
+_WIDE = 20.0
 _DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
 
@@ -58,7 +60,10 @@ def _panel(study: Any, number: int, looks: list[tuple[int, int, str, str, str]])
         # One legend for all panels, beside the first.
         more = {"legendgroup": name, "showlegend": number == 0 and len(looks) > 1}
         traces.append({**trace, **more})
-    return Panel(axis_label(quantity, words), traces)
+    sizes = displayed(quantity, getattr(study, column))
+    sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
+    wide = sizes.size > 0 and float(sizes.max()) > _WIDE * float(sizes.min())
+    return Panel(axis_label(quantity, words), traces, {"type": "log"} if wide else {})
 
 
 def _caption(study: Any) -> str:
@@ -96,10 +101,14 @@ def comprehensive_stiffness(study: Any) -> Any:
     teeth = float(np.mean(study.mean_tooth_stiffness))
     layout = event_lines(pair_letters(pair))
     layout["xaxis"] = {"range": displayed("roll_angle", study.roll_angle[[0, -1]]).tolist()}
-    return stack(
+    figure = stack(
         f"The film lowers the mean mesh stiffness from {rounded('mesh_stiffness', teeth)} to "
         f"{rounded('mesh_stiffness', with_film)}",
         roll_label(pair),
         [_panel(study, number, looks) for number in range(len(_PANELS))],
         layout,
     )
+    words = "Pinion torque" if len(study.pinion_torque) > 1 else "Pinion speed"
+    both = len(study.pinion_torque) > 1 and len(study.pinion_speed) > 1
+    title = {"text": f"{words}, speed" if both else words, "font": {"size": 13}}
+    return figure.update_layout(legend={"title": title})

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.labels import axis_label, displayed, rounded, significant
 from tribodyn.plot.registry import drawing
+from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 
 __all__ = ["continuation"]
@@ -41,11 +42,11 @@ def _parameter(branch: Any, values: Any) -> Array:
     return displayed(branch.name, values) if known else np.asarray(values, dtype=float)
 
 
-def _signal(branch: Any, values: Any) -> tuple[Array, str]:
-    """First signal in display units, and its unit."""
-    if branch.signals[0].startswith("deflection"):
-        return displayed("deflection", values), display_unit("deflection")
-    return np.asarray(values, dtype=float), "m or rad"
+def _signal(branch: Any) -> tuple[Array, list[float], str]:
+    """Rms of the first signal and at the special points as they are drawn, and their unit."""
+    factor, unit = scaled(branch.rms[:, 0], unit_of(branch.signals[0]))
+    special = [float(factor * point.rms[0]) for point in branch.special_points]
+    return factor * np.asarray(branch.rms[:, 0], dtype=float), special, unit
 
 
 def _part(values: Array, keep: NDArray[np.bool_]) -> Array:
@@ -115,8 +116,7 @@ def continuation(branch: Any) -> Any:
     plotly.graph_objects.Figure
     """
     x = _parameter(branch, branch.parameter)
-    rms, unit = _signal(branch, branch.rms[:, 0])
-    special = [float(_signal(branch, point.rms[0])[0]) for point in branch.special_points]
+    rms, special, unit = _signal(branch)
     largest = np.abs(branch.floquet_multipliers[:, 0])
     critical = [float(np.abs(p.floquet_multipliers[0])) for p in branch.special_points]
     known = branch.name in QUANTITIES

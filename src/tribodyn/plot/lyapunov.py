@@ -30,6 +30,8 @@ def _missing(result: Any) -> str:
 def _title(found: Any) -> str:
     value, error = found.vibrating[0], found.standard_error[0]
     words = f"{value:.4g} 1/s, standard error {error:.1g} 1/s"
+    if found.verdict == "step-limited":
+        return f"Made by the step, not by physics: the largest exponent is {words}"
     if found.chaotic:
         return f"Chaotic: the largest exponent is {words}"
     return f"Not chaotic: the largest exponent is {words}"

@@ -21,6 +21,9 @@ _PERIODS = (
 #: From little to much.
 _SCALE = [[0.0, "#f7fbff"], [0.35, "#9ecae1"], [0.7, "#3182bd"], [1.0, "#08306b"]]
 
+#: Part of the motions whose rms the colours tell apart where the rest lies far beyond.
+_USUAL = 0.98
+
 
 def _missing(result: Any) -> str:
     if hasattr(result, "contact_loss_share") and hasattr(result, "units"):
@@ -48,6 +51,15 @@ def _heat(x: Any, y: Any, z: Any, words: str, **more: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _range(rms: Any) -> dict[str, float]:
+    """Ends of the colours: a few motions far beyond the others do not take them all."""
+    seen = rms[np.isfinite(rms)]
+    if not seen.size:
+        return {}
+    most, usual = float(seen.max()), float(np.quantile(seen, _USUAL))
+    return {"zmin": 0.0, "zmax": usual} if 0.0 < 2.0 * usual < most else {}
+
+
 def _periods(found: Any, x: Any, y: Any) -> dict[str, Any]:
     edges = np.linspace(0.0, 1.0, len(_PERIODS) + 1)
     scale = [[float(e), c] for n, (_, c) in enumerate(_PERIODS) for e in edges[n : n + 2]]
@@ -67,8 +79,10 @@ def _title(found: Any) -> str:
     loss = float(np.mean(found.contact_loss_share[seen] > 0.0))
     if irregular == 0.0 and loss == 0.0:
         return "Every motion repeats with the mesh, and the teeth never part"
+    if irregular == 0.0:
+        return f"The teeth part in {100.0 * loss:.0f} % of the map; all of it repeats with the mesh"
     return (
-        f"The teeth part in {100.0 * loss:.0f} % of the map, and {100.0 * irregular:.1f} % does "
+        f"The teeth part in {100.0 * loss:.0f} % of the map, and {100.0 * irregular:.0f} % does "
         "not repeat with the mesh"
     )
 
@@ -96,10 +110,10 @@ def parameter_map(found: Any) -> Any:
     x, x_label = parameter_axis(found.names[0], found.first, found.units[0])
     y, y_label = parameter_axis(found.names[1], found.second, found.units[1])
     factor, unit = scaled(found.rms, unit_of(found.signal))
-    loss = 100.0 * found.contact_loss_share
+    loss, rms = 100.0 * found.contact_loss_share, factor * found.rms
     maps = [
         ("Period [mesh cycles]", _periods(found, x, y)),
-        (f"Rms [{unit}]", _heat(x, y, factor * found.rms, f"rms %{{z:.4g}} {unit}")),
+        (f"Rms [{unit}]", _heat(x, y, rms, f"rms %{{z:.4g}} {unit}", **_range(rms))),
         ("Contact loss [%]", _heat(x, y, loss, "apart for %{z:.3g} % of the time")),
     ]
     rows = [Row(x_label, Panel(y_label, [trace], height=1.25)) for _, trace in maps]

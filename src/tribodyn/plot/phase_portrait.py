@@ -63,7 +63,7 @@ def phase_portrait(portrait: Any) -> Any:
     lines = [
         {
             "type": "line", "x0": x_factor * end, "x1": x_factor * end, "y0": 0, "y1": 1,
-            "yref": "paper", "line": dashed,
+            "yref": "paper", "line": dashed, "name": "the flanks part", "showlegend": end > 0.0,
         }
         for end in ends
         if portrait.gap > 0.0 and (end > 0.0 or portrait.position.min() < 0.0)
@@ -91,6 +91,8 @@ def _around(values: Any) -> list[float]:
 
 
 def _title(portrait: Any) -> str:
+    if portrait.verdict == "step-limited":
+        return "The motion is made by the step, not by physics"
     if portrait.period == 1:
         return "The motion closes after one mesh cycle"
     if portrait.period:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.errors import InputError, Problem
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import PINION, TOTAL, figure
@@ -20,6 +21,8 @@ def _missing(result: Any) -> str:
 
 
 def _title(section: Any) -> str:
+    if section.verdict == "step-limited":
+        return "The motion is made by the step, not by physics"
     if section.period == 1:
         return "The motion repeats with the mesh: one point"
     if section.period:
@@ -55,8 +58,16 @@ def poincare(section: Any, coordinate: int | str = 0) -> Any:
     Returns
     -------
     plotly.graph_objects.Figure
+
+    Raises
+    ------
+    InputError
+        If no coordinate has this name.
     """
     names = tuple(section.names)
+    if isinstance(coordinate, str) and coordinate not in names:
+        what, remedy = f'no coordinate is called "{coordinate}"', f"Choose from: {', '.join(names)}"
+        raise InputError(Problem(what, "argument coordinate", "", remedy))
     column = names.index(coordinate) if isinstance(coordinate, str) else coordinate
     name, place, speed = names[column], section.position[:, column], section.velocity[:, column]
     x_factor, x_unit = scaled(place, unit_of(name))

@@ -40,6 +40,14 @@ def _axis_text(axis: Any) -> str:
     return f"{_words(axis.name)} [{unit}]" if unit else _words(axis.name)
 
 
+def _told(axis: Any, value: Any) -> str:
+    """A value as a title or a legend tells it."""
+    number, _, unit = axis.show(value).partition(" ")
+    if not axis.numeric:
+        return str(axis.show(value))
+    return f"{float(number):.4g} {readable(unit)}".rstrip()
+
+
 def _values(found: Any, name: str) -> tuple[Any, str]:
     """Figure in its display unit, and that unit."""
     shown = SUMMARY[name]
@@ -53,7 +61,7 @@ def _title(found: Any, name: str, values: Any, unit: str) -> str:
         return f"No value has this figure; {failed} failed"
     place = np.unravel_index(int(np.nanargmax(values)), values.shape)
     where = ", ".join(
-        f"{axis.show(axis.values[at])}" for axis, at in zip(found.axes, place, strict=True)
+        _told(axis, axis.values[at]) for axis, at in zip(found.axes, place, strict=True)
     )
     lost = f"; {failed} of {values.size} failed" if failed else ""
     return f"Greatest {_words(name).lower()}: {np.nanmax(values):.4g} {unit}".rstrip() + (
@@ -83,18 +91,18 @@ def _curves(found: Any, values: Any, unit: str) -> list[dict[str, Any]]:
     others = list(product(*(range(len(axis.values)) for axis in found.axes[1:])))
     for number, place in enumerate(others):
         pairs = zip(found.axes[1:], place, strict=True)
-        name = ", ".join(axis.show(axis.values[at]) for axis, at in pairs) or "figure"
+        name = ", ".join(_told(axis, axis.values[at]) for axis, at in pairs) or "figure"
         column = (slice(None), *place)
         color = _COLORS[number % len(_COLORS)]
         traces += _marked(x, values[column], found.failed[column], name, color, unit)
     return traces
 
 
-def _map(found: Any, values: Any, unit: str, title: str) -> Any:
+def _map(found: Any, values: Any, label: str, unit: str, title: str) -> Any:
     first, second = found.axes
     heat = {
         "type": "heatmap", "x": first.shown(), "y": second.shown(), "z": values.T,
-        "colorscale": "Viridis", "colorbar": {"title": {"text": unit}},
+        "colorscale": "Viridis", "colorbar": {"title": {"text": label, "side": "right"}},
         "text": found.failed.T, "hoverongaps": True,
         "hovertemplate": f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}<extra></extra>",
     }  # fmt: skip
@@ -131,8 +139,10 @@ def sweep(found: Any, figure: str = "rms_mesh_force") -> Any:
     values, unit = _values(found, figure)
     title = _title(found, figure, values, unit)
     curves = int(np.prod(values.shape[1:]))
-    if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in found.axes):
-        return _map(found, values, unit, title)
     label = f"{_words(figure)} [{unit}]" if unit else _words(figure)
+    if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in found.axes):
+        return _map(found, values, label, unit, title)
     panel = Panel(label, _curves(found, values, unit), height=1.6)
-    return stack(title, _axis_text(found.axes[0]), [panel])
+    drawn = stack(title, _axis_text(found.axes[0]), [panel])
+    varied = ", ".join(_words(axis.name) for axis in found.axes[1:])
+    return drawn.update_layout(legend={"title": {"text": varied, "font": {"size": 13}}})

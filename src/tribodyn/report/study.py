@@ -127,7 +127,7 @@ def write_bifurcation_report(
         Path(path), case, kind="bifurcation diagram", lead=lead,
         varied=[found.parameter_name], notice_heading="What it says",
         blocks=[_block("bifurcation", "Motion once per mesh cycle", found.plot(), caption)],
-        cards=[("Values", str(found.parameter.size)), *counts], notices=list(told), head=head,
+        cards=[("Motions", str(int(found.finished.sum()))), *counts], notices=list(told), head=head,
         rows=rows, more="",
     )  # fmt: skip
 

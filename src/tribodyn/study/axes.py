@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,8 @@ __all__ = ["Axis", "ends_of", "read_axes"]
 
 _EXAMPLE = 'Write, for example, {"operation.speed": ("400 rpm", "3500 rpm", 60)}'
 _WORD = 'Write, for example, "operation.speed=400..3500 rpm:60"'
+#: Values of a study: more are a slip of the keyboard, since each is a computation.
+_MOST = 100_000
 
 
 @dataclass(frozen=True)
@@ -114,8 +117,11 @@ def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple
     """
     found = [_one(case, key, end, by) for end in ends]
     if not all(isinstance(value, float) for value in found):
-        what = f"{key} is not a number that can vary"
-        raise InputError(Problem(what, "argument over", "", 'For example "operation.speed"'))
+        what, why = f"{key} goes from {ends[0]} to {ends[-1]}", "It has no values in between"
+        remedy = 'Take a number such as "operation.speed", or list the values for a sweep'
+        if by == "sweep":
+            remedy = f'List the values that it shall take, as in "{key}=A,B,C"'
+        raise InputError(Problem(what, _place(by), why, remedy))
     return tuple(float(value) for value in found)
 
 
@@ -124,16 +130,22 @@ def _one(case: Case, key: str, value: Any, by: str) -> Any:
     spec = spec_of(case, key)
     if spec is None and section_at(type(case), tuple(key.split("."))) is not None:
         remedy = f"Name one of its keys, such as {key}.{_first_key(case, key)}"
-        raise InputError(Problem(f"{key} is a table", "argument over", "", remedy))
+        raise InputError(Problem(f"{key} is a table", _place(by), "", remedy))
     if spec is None:
         case.replace({key: value}, by=by or "over")  # tells which keys there are
-        raise InputError(Problem(f'there is no key "{key}"', "argument over"))
+        raise InputError(Problem(f'there is no key "{key}"', _place(by)))
     try:
         return read_value(spec, key.rpartition(".")[2], value if by else Plain(value))
     except PydanticCustomError as error:
         told = error.context or {}
-        where = f"{by} {key}".strip()
-        raise InputError(Problem(told["what"], where, told["why"], told["remedy"])) from None
+        where, remedy = f"{by} {key}".strip(), told["remedy"]
+        if by and spec.unit and isinstance(value, int | float):
+            remedy = f"Write the unit behind the last number. {_WORD}"
+        raise InputError(Problem(told["what"], where, told["why"], remedy)) from None
+
+
+def _place(by: str) -> str:
+    return by or "argument over"
 
 
 def _first_key(case: Case, key: str) -> str:
@@ -164,7 +176,15 @@ def read_axes(case: Case, over: Mapping[str, Any], *, by: str = "") -> tuple[Axi
     """
     if not over:
         raise InputError(Problem("nothing varies", "argument over", "", _EXAMPLE))
-    return tuple(_axis(case, key, values, by) for key, values in over.items())
+    axes = tuple(_axis(case, key, values, by) for key, values in over.items())
+    _check_number(math.prod(len(axis.values) for axis in axes), by)
+    return axes
+
+
+def _check_number(points: int, by: str) -> None:
+    if points > _MOST:
+        why = f"Each is a computation by itself; at most {_MOST} are taken in one go"
+        raise InputError(Problem(f"{points} values", _place(by), why, "Take fewer points"))
 
 
 def _axis(case: Case, key: str, given: Any, by: str) -> Axis:
@@ -174,11 +194,11 @@ def _axis(case: Case, key: str, given: Any, by: str) -> Axis:
         values = tuple(_one(case, key, value, by) for value in given)
     else:
         why = "It is (first, last, points), a tuple, or a list of values"
-        raise InputError(Problem(f"{key} = {given!r}", "argument over", why, _EXAMPLE))
+        raise InputError(Problem(f"{key} = {given!r}", _place(by), why, _EXAMPLE))
     if len(values) < 2:
         what = f"{key} has {len(values)} value{'s' if not values else ''}"
         remedy = "Give more values, or change the one in the case itself"
-        raise InputError(Problem(what, "argument over", "A sweep needs at least two", remedy))
+        raise InputError(Problem(what, _place(by), "A sweep needs at least two", remedy))
     spec = spec_of(case, key)
     unit, shown = (spec.unit, spec.display_unit) if spec else ("", "")
     return Axis(key, values, unit, shown)
@@ -189,10 +209,11 @@ def _range(case: Case, key: str, given: tuple[Any, ...], by: str) -> tuple[float
     if isinstance(points, bool) or int(points) != points or points < 2:
         why = "A range has at least two points, both ends included"
         what = f"{key} has {points} point{'s' if points != 1 else ''}"
-        raise InputError(Problem(what, "argument over", why, _WORD if by else _EXAMPLE))
+        raise InputError(Problem(what, _place(by), why, _WORD if by else _EXAMPLE))
+    _check_number(int(points), by)
     low, high = ends_of(case, key, (first, last), by=by)
     if not low < high:
         why, remedy = "A range goes from the smaller value to the larger", "Exchange the two ends"
         what = f"{key} goes from {first} to {last}"
-        raise InputError(Problem(what, "argument over", why, remedy))
+        raise InputError(Problem(what, _place(by), why, remedy))
     return tuple(np.linspace(low, high, int(points)).tolist())

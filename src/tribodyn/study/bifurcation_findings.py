@@ -183,7 +183,10 @@ class Findings:
             beside = np.maximum(change[:-2], change[2:])
             larger = np.maximum(rms[1:], rms[:-1])[1:-1]
             steep = change[1:-1] > np.maximum(_JUMP * larger, _BESIDE * beside)
-            for place in np.flatnonzero(steep):
+            # Without loss of contact only another period jumps; else it is a peak between points.
+            loss, period = found.contact_loss_share[branch], found.period[branch]
+            free = (loss[1:] > 0.0) | (loss[:-1] > 0.0) | (period[1:] != period[:-1])
+            for place in np.flatnonzero(steep & free[1:-1]):
                 yield name, int(place) + 1
 
     def _jumps(self) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from collections.abc import Mapping
 from itertools import product
@@ -109,5 +110,7 @@ def _point(case: Case, axes: tuple[Axis, ...], values: tuple[Any, ...]) -> Sweep
             result = run(case.replace(changes))
             figures = result.summary()
     except (InputError, ComputationError) as error:
-        return SweepPoint(values, {}, str(error.problems[0]))
+        first = error.problems[0]
+        place = first.where.removeprefix("replace: ")  # the sweep is what replaces
+        return SweepPoint(values, {}, str(dataclasses.replace(first, where=place)))
     return SweepPoint(values, figures, "", tuple(warning.code for warning in result.warnings))

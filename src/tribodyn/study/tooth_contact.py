@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+from tribodyn.errors import ComputationError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study import derive
 from tribodyn.study.collect import collected
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
 __all__ = ["load_friction_of", "mesh_law_of", "mesh_of", "model_settings"]
+
+#: Load over the nominal load below which friction may be missing.
+_LIGHT = 0.3
 
 
 def mesh_law_of(case: Case) -> MeshForce:
@@ -119,11 +123,24 @@ def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
     MeshFriction or None
         None where friction stays that of the nominal load. What the laws say about light and heavy
         loads, among them that these lie outside of their ranges, is not repeated.
+
+    Raises
+    ------
+    ComputationError
+        If the tooth contact cannot be computed at a heavy load; light loads at which a film in
+        series with the teeth has no solution are left out.
     """
     if case.dynamics.friction_load == "nominal":
         return None
     from tribodyn.mesh import LOADS, mesh_friction
 
+    tables = []
     with collected():
-        tables = [nominal if load == 1.0 else mesh_of(case, load=load) for load in LOADS]
+        for load in LOADS:
+            try:
+                tables.append(nominal if load == 1.0 else mesh_of(case, load=load))
+            except ComputationError:
+                # An oil film in series is softer than lightly loaded teeth. Light loads rub little.
+                if load > _LIGHT:
+                    raise
     return mesh_friction(tables, nominal)

@@ -23,7 +23,8 @@ def test_curves_are_the_branch_in_display_units(branch):
     stable, unstable = traces["stable"], traces["unstable"]
     drawn = np.isfinite(stable.y)
     assert drawn[branch.stable].all()
-    np.testing.assert_allclose(stable.y[drawn], 1e6 * branch.rms[drawn, 0])
+    np.testing.assert_allclose(stable.y[drawn], branch.rms[drawn, 0])
+    assert figure.layout.yaxis.title.text == "Alternating rms of deflection [m]"
     assert unstable.line.dash == "dash"
     # Both parts meet: no gap is left between them.
     assert (np.isfinite(unstable.y) | drawn)[1:].all()

@@ -69,7 +69,8 @@ def test_periods_jumps_and_two_motions(case):
     period[0, 4:6], period[0, 7] = 2, 0
     rms[0, 5:] *= 2.0
     rms[1, 3:] *= 2.0
-    found = Findings(case, replace(plain, period=period, rms=rms))
+    loss = np.full_like(rms, 0.1)
+    found = Findings(case, replace(plain, period=period, rms=rms, contact_loss_share=loss))
     told = found.sentences()
     assert "up: period 2 from 1400 rpm to 1500 rpm" in told
     assert "up: no period within 16 mesh cycles at 1700 rpm" in told
@@ -79,11 +80,43 @@ def test_periods_jumps_and_two_motions(case):
     assert [jump["branch"] for jump in found.figures()["jumps"]] == ["up", "down"]
 
 
+def test_the_title_of_the_figure_tells_what_matters_most():
+    plain = diagram(branches=("up", "down"))
+    rms, period, verdict = plain.rms.copy(), plain.period.copy(), plain.verdict.copy()
+
+    def title():
+        made = replace(plain, rms=rms, period=period, verdict=verdict)
+        return made.plot().layout.title.text
+
+    assert title() == "Every motion repeats after one mesh cycle"
+    period[0, 7] = 2
+    assert title() == "The motion repeats after up to 2 mesh cycles"
+    rms[1, 3:5] *= 2.0
+    assert title() == (
+        "Two motions are possible from 1300 rpm to 1400 rpm; the motion repeats after up to 2 "
+        "mesh cycles"
+    )
+    verdict[0, 7] = "step-limited"  # its period counts no longer
+    assert title().endswith("1400 rpm; 1 of 20 made by the step")
+    verdict[:, 5:] = "step-limited"
+    assert title() == "10 of 20 motions are made by the step, not by physics"
+
+
 def test_a_resonance_is_no_jump(case):
     plain = diagram(40)
     speed = np.arange(40.0)
     peak = 1e-6 / np.hypot(1.0 - (speed / 20.0) ** 2, 0.1)
     assert Findings(case, replace(plain, rms=peak[None])).figures()["jumps"] == []
+
+
+def test_flanks_in_touch_do_not_jump(case):
+    plain = diagram()
+    rms, loss = plain.rms.copy(), np.zeros_like(plain.rms)
+    rms[0, 5:] *= 2.0  # a resonance between two points
+    found = replace(plain, rms=rms, contact_loss_share=loss)
+    assert Findings(case, found).figures()["jumps"] == []
+    loss[0, 5:] = 0.1
+    assert len(Findings(case, found).figures()["jumps"]) == 1
 
 
 def test_interrupted_diagram_counts_what_is_there(case):

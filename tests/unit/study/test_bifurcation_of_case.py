@@ -56,7 +56,7 @@ def test_steps_are_those_of_the_case_or_enough_to_judge(case):
     [
         ({}, "between"),
         ({"between": ENDS, "points": 1}, "points = 1"),
-        ({"over": "friction.law", "between": ("none", "none")}, "not a number"),
+        ({"over": "friction.law", "between": ("none", "none")}, "no values in between"),
         ({"between": ("1900 mm", "2000 rpm")}, "mm"),
         ({"over": "operation.sped", "between": ENDS}, "sped"),
     ],

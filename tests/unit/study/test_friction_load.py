@@ -74,3 +74,31 @@ def test_without_friction_nothing_follows():
     case = tribodyn.load_case("fzg-roughness")
     with pytest.raises(InputError, match="without friction"):
         case.replace({"friction.law": "none", **DYNAMIC})
+
+
+def test_light_loads_that_have_no_film_are_left_out(monkeypatch):
+    from tribodyn.errors import ComputationError
+    from tribodyn.study import tooth_contact
+
+    case = tribodyn.load_case("fzg-roughness").replace({**DYNAMIC, "friction.law": "xu-2007"})
+    plain, refused = tooth_contact.mesh_of, []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        nominal = plain(case)
+        whole = tooth_contact.load_friction_of(case, nominal)
+
+        def mesh_of(case, *, load):
+            if load in refused:
+                raise ComputationError("the film is softer than the teeth")
+            return plain(case, load=load)
+
+        monkeypatch.setattr(tooth_contact, "mesh_of", mesh_of)
+        refused.append(0.12)
+        found = tooth_contact.load_friction_of(case, nominal)
+        refused.append(2.05)
+        with pytest.raises(ComputationError):
+            tooth_contact.load_friction_of(case, nominal)
+    force = 1.2 * nominal.total_normal_force
+    assert found.value("friction_sum", 0.3, force) == pytest.approx(
+        whole.value("friction_sum", 0.3, force), rel=1e-3
+    )

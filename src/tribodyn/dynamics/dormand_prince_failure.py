@@ -1,0 +1,96 @@
+"""What is said of an adaptive march that ends early: when, which state, and why that may be."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.divergence import probable_cause
+from tribodyn.dynamics.grid import system_events
+from tribodyn.dynamics.program import compile_system
+from tribodyn.dynamics.system import System
+from tribodyn.errors import ComputationError, Problem
+
+__all__ = ["report_failure"]
+
+Array = NDArray[np.float64]
+
+_SAMPLE = 64
+
+
+def report_failure(
+    report: Array,
+    period: float,
+    state: Array,
+    scale: Array,
+    system: System,
+    factors: Array,
+    lane: int,
+) -> NoReturn:
+    """Raise the error that tells when and where a march ended.
+
+    Parameters
+    ----------
+    report : (10,) array
+        As the compiled march leaves it.
+    period : float
+        Mesh period [s].
+    state : (2 n,) array
+        State at the failed step [m or rad, m/s or rad/s].
+    scale : (2 n,) array
+        Size of each state at rest [same units].
+    system : System
+    factors : (6,) array
+        What the trajectory scales: stiffness, damping, friction, error, gap, force [1].
+    lane : int
+        Number of the trajectory; -1 for a single one.
+
+    Raises
+    ------
+    ComputationError
+        Always.
+    """
+    cycle, phase = int(report[9]), float(report[5])
+    n = system.size
+    where = f"time {(cycle + phase) * period:.6g} s, mesh cycle {cycle + 1}, phase {phase:.6g}"
+    where += f", trajectory {lane}" if lane >= 0 else ""
+    if report[4] == 2.0:
+        raise ComputationError(
+            Problem(
+                what=f"contact {int(report[7])} opens and closes more than 64 times within a "
+                "millionth of a mesh cycle",
+                where=where,
+                why="It chatters: its damping, error or direction throws it back at once, or its "
+                "flanks are far too hard or too near each other",
+                remedy="Look for negative damping, and for an error or a gap that jumps "
+                "at a phase that is not an event",
+            )
+        )
+    size = np.abs(state) / np.maximum(scale, 1e-300)
+    worst = int(np.argmax(np.where(np.isfinite(state), size, np.inf)))
+    name = system.names[worst % n]
+    kind = "position" if worst < n else "velocity"
+    if not np.isfinite(state[worst]) or size[worst] > 1e9:
+        steps = max(_SAMPLE, 2 * len(system_events(system)))
+        _, nodes, _ = compile_system(system, steps)
+        cause, remedy = probable_cause(system, nodes, 0.0, factors)
+        raise ComputationError(
+            Problem(
+                what=f"the motion grew beyond all bounds: the {kind} of {name} is "
+                f"{state[worst]:.3g}",
+                where=where,
+                why=f"{cause}. Steps are as short as accuracy needs, so it is not they",
+                remedy=remedy,
+            )
+        )
+    raise ComputationError(
+        Problem(
+            what=f"no step meets the tolerance: {name} moves fastest, its {kind} is "
+            f"{state[worst]:.3g}",
+            where=where,
+            why="An entry is not smooth there, or rounding exceeds the tolerance",
+            remedy="Give the phase as an event, or a larger rtol or atol",
+        )
+    )

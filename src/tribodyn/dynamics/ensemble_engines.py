@@ -1,0 +1,276 @@
+"""Ensembles with the engines whose kernels gather no statistics: block by block, in threads.
+
+A block of lanes is marched to the last mesh cycles; these are recorded one at a time, so that
+room is needed for one cycle of each block that marches at the moment.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.dynamics.dormand_prince import AdaptiveEngine, adaptive_engine
+from tribodyn.dynamics.dormand_prince_tolerance import Tolerance
+from tribodyn.dynamics.ensemble_moments import RecordedLanes, add_moments
+from tribodyn.dynamics.lane_parameters import LaneParameters
+from tribodyn.dynamics.march import Compiled, Member
+from tribodyn.dynamics.newmark_engine import newmark_engine
+from tribodyn.dynamics.newmark_limit import refuse_newmark
+
+__all__ = ["Block", "adaptive_blocks", "march_blocks", "moments_taker", "newmark_blocks"]
+
+Array = NDArray[np.float64]
+
+#: Marches the lanes of one block by some mesh cycles, after others, records them, and returns the
+#: new state.
+_Advance = Callable[[Array, int, Array | None, int], Array]
+
+#: Lanes of one block, and the tolerance of the contact forces.
+_WIDTH, _TOLERANCE = 16, 1e-12
+
+
+class Block:
+    """Lanes that march side by side the same system.
+
+    Parameters
+    ----------
+    member : Member
+    lanes : (m,) int array
+        Their numbers.
+    advance : callable
+        Marches them.
+    """
+
+    def __init__(self, member: Member, lanes: NDArray[np.int64], advance: _Advance) -> None:
+        self.member, self.lanes, self.advance = member, lanes, advance
+
+
+def _members(compiled: Compiled, lanes: int) -> tuple[Member, ...]:
+    return compiled.members or (Member(compiled.system, compiled.nodes, np.arange(lanes)),)
+
+
+def newmark_blocks(
+    compiled: Compiled,
+    period: Array,
+    extra_force: Array,
+    parameters: LaneParameters | None,
+    gamma: float,
+    beta: float,
+) -> list[Block]:
+    """Blocks that march by Newmark's scheme.
+
+    Parameters
+    ----------
+    compiled : Compiled
+    period : (lanes,) array
+        Mesh period [s].
+    extra_force : (lanes, n) array
+        Constant generalized force on top of the system's [N or N*m].
+    parameters : LaneParameters or None
+        Factors of the lanes.
+    gamma, beta : float
+        Parameters of the scheme [-].
+
+    Returns
+    -------
+    list of Block
+
+    Raises
+    ------
+    InputError
+        If gamma or beta are out of range, or the step of a conditionally stable scheme is too long.
+    """
+    refuse_newmark(compiled, period, gamma, beta, parameters)
+    engine = newmark_engine(compiled, np.array([gamma, beta, _TOLERANCE]), parameters)
+    scales = None if parameters is None else parameters.table(period.size)
+    members = _members(compiled, period.size)
+
+    def build(number: int, lanes: NDArray[np.int64]) -> Block:
+        called = lanes if period.size > 1 else None
+
+        def advance(state: Array, cycles: int, record: Array | None, elapsed: int) -> Array:
+            return engine.march(
+                period[lanes], state, cycles, extra_force=extra_force[lanes],
+                scales=None if scales is None else scales[lanes], record=record, member=number,
+                numbers=called, threads=1, elapsed=elapsed,
+            )  # fmt: skip
+
+        return Block(members[number], lanes, advance)
+
+    return [build(number, lanes) for number, lanes in engine.blocks(period.size)]
+
+
+def adaptive_blocks(
+    compiled: Compiled,
+    period: Array,
+    cycles: int,
+    extra_force: Array,
+    parameters: LaneParameters | None,
+    rtol: float,
+    atol: Tolerance | None,
+) -> list[Block]:
+    """Blocks that march in adaptive steps.
+
+    Parameters
+    ----------
+    compiled : Compiled
+    period : (lanes,) array
+        Mesh period [s].
+    cycles : int
+        Mesh cycles in all.
+    extra_force : (lanes, n) array
+        Constant generalized force on top of the system's [N or N*m].
+    parameters : LaneParameters or None
+        Factors of the lanes.
+    rtol : float
+        Error over the largest size so far of each state [-].
+    atol : float, (position, velocity) or (2 n,) array, optional
+        Error allowed on top of that [m or rad, m/s or rad/s].
+
+    Returns
+    -------
+    list of Block
+
+    Raises
+    ------
+    InputError
+        If a tolerance is out of range or an entry jumps at a phase that is not an event.
+    """
+    scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)
+    found = []
+    for member in _members(compiled, period.size):
+        engine = adaptive_engine(
+            member.system, 1.0 / period[member.lanes], cycles, rtol=rtol, atol=atol,
+            parameters=parameters,
+        )  # fmt: skip
+
+        def build(
+            lanes: NDArray[np.int64], member: Member = member, engine: AdaptiveEngine = engine
+        ) -> Block:
+            memory: list[Array | None] = [None]
+
+            def advance(state: Array, cycles: int, record: Array | None, elapsed: int) -> Array:
+                run = engine.march(
+                    period[lanes], state, cycles, extra_force=extra_force[lanes],
+                    points=compiled.grid.left, record=record, memory=memory[0], threads=1,
+                    scales=scales[lanes], numbers=lanes if period.size > 1 else None,
+                    width=1 if lanes.size == 1 else _WIDTH, elapsed=elapsed,
+                )  # fmt: skip
+                memory[0] = run.memory
+                return np.asarray(run.state)
+
+            return Block(member, lanes, advance)
+
+        found += [build(member.lanes[at : at + _WIDTH])
+                  for at in range(0, member.lanes.size, _WIDTH)]  # fmt: skip
+    return found
+
+
+def march_blocks(
+    compiled: Compiled,
+    blocks: list[Block],
+    state: Array,
+    cycles: int,
+    take: Callable[[Block, Array], None] | None,
+    threads: int | None,
+    elapsed: int = 0,
+) -> Array:
+    """March all blocks; where somebody takes them, mesh cycle by mesh cycle with their records.
+
+    Parameters
+    ----------
+    compiled : Compiled
+    blocks : list of Block
+    state : (lanes, 2 n) array
+        Position and velocity.
+    cycles : int
+        Mesh cycles.
+    take : callable or None
+        Takes a block and the record (steps + 1, 2 n, lanes of the block) of one mesh cycle.
+    threads : int or None
+        Blocks marched at a time; the number of processors by default.
+    elapsed : int
+        Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
+
+    Returns
+    -------
+    (lanes, 2 n) array
+        New state.
+
+    Raises
+    ------
+    ComputationError
+        If a motion grows beyond all bounds.
+    """
+    new = np.empty_like(state)
+
+    def march(block: Block) -> None:
+        part = state[block.lanes]
+        if take is None:
+            new[block.lanes] = block.advance(part, cycles, None, elapsed)
+            return
+        record = np.empty((compiled.grid.steps + 1, state.shape[1], block.lanes.size))
+        for cycle in range(cycles):
+            part = block.advance(part, 1, record, elapsed + cycle)
+            take(block, record)
+        new[block.lanes] = part
+
+    threads = threads or os.cpu_count() or 1
+    if len(blocks) == 1 or threads == 1:
+        for block in blocks:
+            march(block)
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(march, blocks))
+    return new
+
+
+def moments_taker(
+    compiled: Compiled,
+    period: Array,
+    extra_force: Array,
+    parameters: LaneParameters | None,
+    outputs: Array,
+    waves: Array,
+    share: float,
+    moments: Array,
+) -> Callable[[Block, Array], None]:
+    """Make what adds recorded mesh cycles to the moments of all lanes.
+
+    Parameters
+    ----------
+    compiled : Compiled
+    period : (lanes,) array
+        Mesh period [s].
+    extra_force : (lanes, n) array
+        Constant generalized force on top of the system's [N or N*m].
+    parameters : LaneParameters or None
+        Factors of the lanes.
+    outputs : (m, 2 n) array
+        Linear outputs of the state.
+    waves : (steps, 3, harmonics, 2) array
+        Cosine and sine at the nodes.
+    share : float
+        Part of the averaging time that one mesh cycle takes [-].
+    moments : (signals, lanes) array
+        Changed in place.
+
+    Returns
+    -------
+    callable
+    """
+    scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)
+
+    def take(block: Block, record: Array) -> None:
+        own, lanes = moments[:, block.lanes], block.lanes
+        cycle = RecordedLanes(
+            block.member, compiled.grid, period[lanes], extra_force[lanes], scales[lanes], record
+        )
+        add_moments(cycle, outputs, waves, share, own)
+        moments[:, lanes] = own
+
+    return take

@@ -1,0 +1,249 @@
+"""Ensembles with every engine: statistics, factors and systems of the lanes, refusals."""
+
+import numpy as np
+import pytest
+
+from known_systems import hysteresis_system, reference_system
+from tribodyn.dynamics import (
+    Contact,
+    LaneParameters,
+    LoadFriction,
+    System,
+    simulate,
+    simulate_ensemble,
+)
+from tribodyn.dynamics.ensemble_moments import RecordedLanes, add_moments
+from tribodyn.dynamics.lane_tables import compile_lanes
+from tribodyn.dynamics.march import Member, compile_for, march
+from tribodyn.errors import ComputationError, InputError
+
+FREQUENCY = 0.4
+START = (np.array([0.2, -0.1, 0.15]), np.array([0.3, 0.1, -0.2]))
+SCALES = tuple(
+    f"{name}_scale" for name in ("stiffness", "damping", "friction", "error", "gap", "force")
+)
+OUTPUTS = np.eye(6)[[1, 5]]
+#: Agreement with Runge-Kutta over the size of a statistic: engine, options, steps, tolerance.
+ENGINES = [("newmark", {}, 1024, 3e-3), ("dormand-prince", {"rtol": 1e-9}, 1024, 3e-4)]
+
+
+def _turning(phase):
+    angle = 2 * np.pi * phase
+    return np.stack([1.0 + 0 * phase, 0.2 * np.sin(angle), 0.3 * np.cos(angle)], axis=1)
+
+
+def _build(stiffness=1.0):
+    """Everything varies over the cycle, teeth separate, both kinds of friction act."""
+    first = Contact(
+        _turning,
+        stiffness=lambda phase: stiffness * (40.0 + np.where(phase < 0.4, 20.0, 0.0)),
+        damping=0.3,
+        error=lambda phase: 0.02 * np.sin(4 * np.pi * phase),
+        gap=lambda phase: 0.01 + 0.005 * np.cos(2 * np.pi * phase),
+        friction=lambda phase: np.where(phase < 0.55, 0.2, -0.2)[:, None] * [1.0, -1.0, 0.5],
+        events=(0.4, 0.55),
+    )
+    second = Contact([0.0, 1.0, -1.0], stiffness=25.0, damping=0.2, gap=0.02, damping_in_gap=True)
+    third = Contact([0.5, 0.0, 1.0], stiffness=9.0, damping=0.1)
+    follows = LoadFriction([0.1, 0.3, 0.0], np.array([0.2, 0.1]), 0.5, contacts=(0, 2))
+    return System(
+        np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 0.5]]),
+        0.5 * np.eye(3),
+        np.array([[3.0, -1.0, 0.0], [-1.0, 4.0, -1.0], [0.0, -1.0, 2.0]]),
+        lambda phase: np.stack([np.sin(2 * np.pi * phase), 0 * phase, 1.0 + 0 * phase], axis=1),
+        [first, second, third],
+        frictions=[follows],
+    )
+
+
+def _parameters(lanes, seed=1):
+    values = np.random.default_rng(seed).uniform(0.6, 1.5, (lanes, 6))
+    return LaneParameters(**dict(zip(SCALES, values.T, strict=True)))
+
+
+def _differs(one, other, tolerance):
+    """Statistics of two ensembles that are further apart than the tolerance allows."""
+    found = {}
+    for name in ("deflection", "contact_force", "acceleration", "output"):
+        for part in ("mean", "rms", "minimum", "maximum", "harmonics"):
+            values, expected = (getattr(getattr(item, name), part) for item in (one, other))
+            if not values.size:
+                continue
+            size = np.abs(getattr(other, name).maximum).max()
+            if not np.abs(values - expected).max() <= tolerance * size:
+                found[f"{name}.{part}"] = float(np.abs(values - expected).max() / size)
+    for name in ("position", "velocity", "contact_loss_share"):
+        values, expected = getattr(one, name), getattr(other, name)
+        if not np.abs(values - expected).max() <= tolerance * np.abs(expected).max():
+            found[name] = float(np.abs(values - expected).max() / np.abs(expected).max())
+    return found
+
+
+def test_statistics_of_a_record_are_those_of_the_kernel():
+    systems = [_build(), _build(0.7)] * 3
+    parameters = _parameters(6)
+    outputs = np.random.default_rng(2).standard_normal((2, 6))
+    options = {"steps": 128, "parameters": parameters, "outputs": outputs, "harmonics": 3}
+    extra = np.random.default_rng(3).standard_normal((6, 3)) * 0.1
+    many = simulate_ensemble(systems, FREQUENCY, 1, START, extra_force=extra, **options)
+    assert many.contact_loss_share.max() > 0.1
+    compiled = compile_lanes(systems, np.full(6, FREQUENCY), 128, parameters)
+    angle = 2 * np.pi * compiled.nodes.phase[:, :, None] * np.arange(1, 4)
+    waves = np.stack((np.cos(angle), np.sin(angle)), axis=-1)
+    for member in compiled.members:
+        lane = int(member.lanes[1])
+        own = compile_lanes(member.system, [FREQUENCY], 128, any_step=True)
+        single = LaneParameters(**{name: getattr(parameters, name)[lane] for name in SCALES})
+        record = np.empty((129, 6, 1))
+        state, period = np.concatenate(START)[None], np.array([1.0 / FREQUENCY])
+        march(own, period, state, 1, extra_force=extra[lane : lane + 1], parameters=single,
+              record=record)  # fmt: skip
+        moments = np.zeros((6 * 11 + 5 * 5, 1))
+        for at in (*range(0, 66, 11), *range(66, 91, 5)):
+            moments[at + 2], moments[at + 3] = np.inf, -np.inf
+        lanes = RecordedLanes(
+            Member(member.system, own.nodes, np.arange(1)), own.grid, period,
+            extra[lane : lane + 1], single.table(1), record,
+        )  # fmt: skip
+        add_moments(lanes, outputs, waves, 1.0, moments)
+        rows = moments[:66, 0].reshape(6, 11)
+        for name, part in (("deflection", rows[:3]), ("contact_force", rows[3:])):
+            found = getattr(many, name)
+            assert part[:, 0] == pytest.approx(found.mean[lane], abs=1e-10)
+            assert np.sqrt(part[:, 1]) == pytest.approx(found.rms[lane], rel=1e-10)
+            assert part[:, 2] == pytest.approx(found.minimum[lane], abs=1e-10)
+            assert part[:, 3] == pytest.approx(found.maximum[lane], rel=1e-10)
+            waved = 2.0 * (part[:, 5::2] - 1j * part[:, 6::2])
+            assert np.abs(waved - found.harmonics[lane]).max() < 1e-10
+        assert rows[3:, 4] == pytest.approx(many.contact_loss_share[lane], abs=1e-12)
+        short = moments[66:, 0].reshape(5, 5)
+        assert short[:3, 0] == pytest.approx(many.acceleration.mean[lane], abs=1e-9)
+        assert np.sqrt(short[:3, 1]) == pytest.approx(many.acceleration.rms[lane], rel=1e-9)
+        assert short[3:, 3] == pytest.approx(many.output.maximum[lane], rel=1e-9)
+
+
+@pytest.mark.parametrize(("method", "options", "steps", "tolerance"), ENGINES)
+def test_engines_agree_on_lanes_with_factors_and_systems(method, options, steps, tolerance):
+    two, lanes = (_build(), _build(0.7)), 19
+    systems = [two[number % 2] for number in range(lanes)]
+    shared = {"parameters": _parameters(lanes), "averaged": 2, "outputs": OUTPUTS}
+    frequency = np.linspace(0.3, 0.5, lanes)
+    reference = simulate_ensemble(systems, frequency, 3, START, steps=1024, **shared)
+    found = simulate_ensemble(systems, frequency, 3, START, steps=steps, method=method, **options,
+                              **shared)  # fmt: skip
+    assert _differs(found, reference, tolerance) == {}
+    one = simulate_ensemble(systems, frequency, 3, START, steps=steps, method=method, **options,
+                            threads=1, **shared)  # fmt: skip
+    np.testing.assert_array_equal(one.velocity, found.velocity)
+    np.testing.assert_array_equal(one.contact_force.rms, found.contact_force.rms)
+
+
+@pytest.mark.parametrize(("method", "options", "steps", "tolerance"), ENGINES)
+@pytest.mark.parametrize("number", range(6))
+def test_one_factor_at_a_time(method, options, steps, tolerance, number):
+    parameters = LaneParameters(**{SCALES[number]: [0.6, 1.0, 1.5]})
+    found, reference = (
+        simulate_ensemble(_build(), FREQUENCY, 1, START, steps=steps, parameters=parameters,
+                          **{"method": method, **options} if engine else {})
+        for engine in (True, False)
+    )  # fmt: skip
+    assert not np.allclose(found.velocity[0], found.velocity[1], rtol=10.0 * tolerance)
+    assert _differs(found, reference, 4.0 * tolerance) == {}
+
+
+@pytest.mark.parametrize(("method", "options", "steps", "tolerance"), ENGINES)
+def test_statistics_are_near_those_of_the_response(method, options, steps, tolerance):
+    """A response parts its samples where a contact opens, the statistics do not."""
+    system = reference_system(0.1, gap=2e-5)
+    start = (np.full(6, 1e-5), np.zeros(6))
+    kept = simulate(system, 1800.0, 2, start, steps=256, method=method, **options)
+    found = simulate_ensemble(system, 1800.0, 2, start, steps=256, averaged=2, harmonics=2,
+                              method=method, **options)  # fmt: skip
+    fine = kept.fine
+    assert found.acceleration.rms[0] == pytest.approx(
+        np.sqrt(fine.mean(fine.acceleration**2)), rel=2e-3
+    )
+    assert found.contact_force.mean[0] == pytest.approx(fine.mean(fine.contact_force), rel=2e-3)
+    wave = 2.0 * fine.mean(fine.deflection[:, 0] * np.exp(-2j * np.pi * 2 * fine.phase))
+    assert found.deflection.harmonics[0, 0, 1] == pytest.approx(wave, rel=5e-3)
+    share = fine.mean((fine.deflection[:, 0] <= 2e-5).astype(float))
+    assert found.contact_loss_share[0, 0] == pytest.approx(share, abs=5e-3)
+
+
+def test_adaptive_and_implicit_engines_take_steps_that_runge_kutta_refuses():
+    stiff = System(np.eye(2), np.diag([0.2, 40.0]), np.diag([4.0, 1e7]), [1.0, 1.0])
+    start = (np.zeros(2), np.zeros(2))
+    with pytest.raises(InputError, match="omega_max"):
+        simulate_ensemble(stiff, [1.0, 2.0], 3, start, steps=64)
+    for method in ("newmark", "dormand-prince"):
+        found = simulate_ensemble(stiff, [1.0, 2.0], 60, start, steps=64, method=method)
+        assert found.position[:, 0] == pytest.approx([0.25, 0.25], rel=0.06)
+    scale = LaneParameters(stiffness_scale=[1.0, 9.0])
+    meshed = System([[1.0]], [[0.0]], [[0.0]], [0.0], [Contact([1.0], 4.0)])
+    options = {"method": "newmark", "gamma": 0.5, "beta": 0.0, "parameters": scale}
+    with pytest.raises(InputError, match=r"6 rad/s in lane 1"):
+        simulate_ensemble(meshed, 1 / 8.0, 1, ([1.0], [0.0]), steps=22, **options)
+    simulate_ensemble(meshed, 1 / 8.0, 1, ([1.0], [0.0]), steps=26, **options)
+
+
+def test_a_preset_is_its_pair_of_numbers():
+    options = {"steps": 64, "method": "newmark"}
+    named = simulate(hysteresis_system(), 0.1, 2, ([1.5], [0.8]), preset="seed", **options)
+    pair = {"gamma": 0.5, "beta": 0.5}
+    given = simulate(hysteresis_system(), 0.1, 2, ([1.5], [0.8]), **pair, **options)
+    np.testing.assert_array_equal(named.position, given.position)
+    many = simulate_ensemble(hysteresis_system(), 0.1, 2, ([1.5], [0.8]), preset="seed", **options)
+    assert many.position[0] == pytest.approx(given.fine.position[-1], rel=1e-12)
+    usual = simulate(hysteresis_system(), 0.1, 2, ([1.5], [0.8]), **options)
+    assert np.abs(usual.position - given.position).max() > 1e-4
+
+
+def test_newmark_lanes_have_the_period_of_their_stiffness():
+    """Average acceleration turns by 2 arctan(omega h / 2) per step."""
+    meshed = System([[1.0]], [[0.0]], [[0.0]], [0.0], [Contact([1.0], 4.0)])
+    scale = np.array([0.25, 1.0, 2.25, 4.0])
+    found = simulate_ensemble(meshed, 1.0, 3, ([1.0], [0.0]), steps=16, method="newmark",
+                              parameters=LaneParameters(stiffness_scale=scale))  # fmt: skip
+    turned = 2.0 * np.arctan(np.sqrt(scale) / 16.0) * 48
+    assert found.position[:, 0] == pytest.approx(np.cos(turned), abs=1e-11)
+
+
+def test_wrong_options_and_failures_name_the_lane():
+    start = ([1.0], [0.0])
+    with pytest.raises(InputError, match='It belongs to "newmark"'):
+        simulate_ensemble(hysteresis_system(), [0.1, 0.2], 1, start, beta=0.25)
+    with pytest.raises(InputError, match='It belongs to "dormand-prince"'):
+        simulate_ensemble(hysteresis_system(), 0.1, 1, start, rtol=1e-6, method="newmark")
+    with pytest.raises(InputError, match='"rk4", "dormand-prince", "newmark"'):
+        simulate_ensemble(hysteresis_system(), 0.1, 1, start, method="euler")
+    with pytest.raises(InputError, match='It belongs to "newmark"'):
+        simulate_ensemble(hysteresis_system(), 0.1, 1, start, preset="seed")
+    for wrong in ({"preset": "trapezoid"}, {"preset": "seed", "beta": 0.3}):
+        with pytest.raises(InputError, match='"average acceleration", "linear acceleration"'):
+            simulate(hysteresis_system(), 0.1, 1, start, method="newmark", **wrong)
+    with pytest.raises(InputError, match="steps = 0"):
+        simulate_ensemble(hysteresis_system(), 0.1, 1, start, steps=0, method="newmark")
+    system = System([[1.0]], [[1.0]], [[4.0]], [1.0], [Contact([1.0], 10.0, damping=1.0)])
+    damping = np.ones(40)
+    damping[33] = -300.0
+    parameters = LaneParameters(damping_scale=damping)
+    for method, name in (("newmark", "lane 33"), ("dormand-prince", "trajectory 33")):
+        with pytest.raises(ComputationError, match=name):
+            simulate_ensemble(system, 1.0, 60, start, steps=64, method=method,
+                              parameters=parameters)  # fmt: skip
+
+
+def test_a_system_of_its_own_in_march_newmark_and_march_adaptive():
+    from tribodyn.dynamics.dormand_prince import march_adaptive
+    from tribodyn.dynamics.newmark import march_newmark
+
+    systems = [_build(), _build(0.7), _build()]
+    compiled = compile_lanes(systems, np.full(3, FREQUENCY), 256)
+    state = np.tile(np.concatenate(START), (3, 1))
+    period, record = np.full(3, 1.0 / FREQUENCY), np.empty((257, 6, 3))
+    for engine, tolerance in ((march_newmark, 1e-2), (march_adaptive, 1e-5)):
+        end = engine(compiled, period, state, 1, record=record)
+        np.testing.assert_array_equal(record[-1].T, end)
+        for lane, system in enumerate(systems):
+            single = march(compile_for(system, FREQUENCY, 1024), period[:1], state[:1], 1)
+            assert np.abs(end[lane] - single[0]).max() < tolerance * np.abs(single).max()
