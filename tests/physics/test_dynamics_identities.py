@@ -91,13 +91,13 @@ def _pulsating(damping):
     return System(np.diag([1.0, 2.0]), 0.05 * np.eye(2), np.eye(2), [0.5, -0.2], [contact])
 
 
-@pytest.mark.parametrize(("damping", "limit"), [(0.0, 1e-9), (0.2, 2e-4)])
-def test_energy_audit_closes_with_contact_loss_and_a_moving_error(damping, limit):
-    # With a contact damper the force jumps inside a step, which the quadrature of the audit sees.
+@pytest.mark.parametrize("damping", [0.0, 0.2])
+def test_energy_audit_closes_with_contact_loss_and_a_moving_error(damping):
+    # With a contact damper the force jumps inside a step.
     system = _pulsating(damping)
-    motion = simulate(system, 0.3, 4, ([0.9, 0.0], [0.0, 0.4]), steps=32768)
+    motion = simulate(system, 0.3, 4, ([0.9, 0.0], [0.0, 0.4]), steps=2048)
     assert np.abs(motion.deflection).min() < 0.3
-    assert energy_audit(system, motion).imbalance < limit
+    assert energy_audit(system, motion).imbalance < 1e-9
 
 
 def test_orbit_returns_all_the_energy_it_stores():

@@ -33,8 +33,8 @@ def test_a_slow_mesh_follows_the_static_transmission_error():
     assert errors[1] < 0.2 * errors[0]
 
 
-@pytest.mark.parametrize(("damping", "limit"), [(0.0, 1e-6), (900.0, 1e-4)])
-def test_energy_audit_closes_on_a_force_law(damping, limit):
+@pytest.mark.parametrize("damping", [0.0, 900.0])
+def test_energy_audit_closes_on_a_force_law(damping):
     system = gear_pair(wavy_law(6), friction=0.05, backlash=1e-5, mesh_damping=damping)
     start = (np.zeros(6), np.array([0.0, 0.05, 1.5, 0.0, 0.0, 0.0]))
     motion = simulate(system, 1200.0, 2, start, steps=8192)
@@ -42,7 +42,7 @@ def test_energy_audit_closes_on_a_force_law(damping, limit):
     assert carrying.min() == 0
     assert carrying.max() >= 4
     audit = energy_audit(system, motion)
-    assert audit.imbalance < limit
+    assert audit.imbalance < 1e-8
     assert audit.external > 0.0
 
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.analysis.settling import still_settles
 from tribodyn.dynamics.coordinates import orbit_coordinates
 from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.march import Compiled, march
@@ -209,6 +210,9 @@ class _Block:
         self.part = np.zeros(width, dtype=np.int64)
         self.least = np.full(width, 1e-300)
         self.before = np.full((LONGEST_PERIOD, width), np.inf)
+        coordinates = motions.coordinates
+        reduced = coordinates.elastic.shape[1] + coordinates.moving.shape[1]
+        self.earlier = np.full((LONGEST_PERIOD + 1, width, reduced), np.nan)
         points = LONGEST_PERIOD * self.steps + 1
         self.record = None
         self.lanes = min(width, _LANES)
@@ -238,6 +242,7 @@ class _Block:
         m = self.motions
         while job >= 0:
             self.job[lane], self.part[lane], self.before[:, lane] = job, 0, np.inf
+            self.earlier[:, lane] = np.nan
             self.state[lane], self.force[lane] = m.start[job], m.force[job]
             begin = np.abs(m.coordinates.reduce(m.start[job])).max(initial=0.0)
             self.least[lane] = max(_REST * begin, 1e-300)
@@ -298,10 +303,14 @@ class _Block:
             certified = change / (1.0 - rate) <= self.tolerance
         repeats = ((certified & np.isfinite(self.before)) | (change <= _ROUNDING)) & balanced
         period = np.where(repeats.any(axis=0), repeats.argmax(axis=0) + 1, 0)
-        # Turning states come near after several cycles first: the shortest of its divisors counts.
+        # Turning states come near after several cycles first: the shortest of its divisors counts,
+        # and while they still come nearer after fewer cycles, it is too early to tell.
         for lane in np.flatnonzero(period > 1):
             shorter = [p for p in range(1, period[lane]) if period[lane] % p == 0]
             period[lane] = next((p for p in shorter if change[p - 1, lane] <= _SAME), period[lane])
+            if still_settles(states[:, lane], self.earlier[:, lane], _PART, int(period[lane])):
+                period[lane] = 0
+        self.earlier = states
         m = self.motions
         done = (self.job >= 0) & ((period > 0) | (self.part >= self.parts))
         self.before = change

@@ -37,7 +37,7 @@ class Bifurcation:
     period : (branches, points) int array
         Mesh cycles after which the motion repeats; 0 if it does not repeat within 16.
     rms : (branches, points) array
-        Its alternating rms [m or rad].
+        Its alternating rms [m or rad]; NaN for a motion that grew beyond all bounds.
     contact_loss_share : (branches, points) array
         Part of the time off the driving flank [-].
     step_number : (points,) array
@@ -83,10 +83,17 @@ class Bifurcation:
         """Whether every motion is there."""
         return bool(self.finished.all())
 
+    @property
+    def ran_away(self) -> NDArray[np.bool_]:
+        """Which motions grew beyond all bounds without the step's doing, (branches, points)."""
+        lost = self.finished & ~np.isfinite(self.rms)
+        return np.asarray(lost & (self.verdict != "step-limited"))
+
     def __repr__(self) -> str:
         """One line."""
         low, high = self.parameter.min(), self.parameter.max()
         words = [f"{count} {word}" for word, count in self.verdicts().items()]
+        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
         return (
             f"Bifurcation({self.parameter.size} values of {self.parameter_name} from {low:.6g} to "
             f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}"

@@ -62,6 +62,12 @@ class ParameterMap:
         """Whether every motion is there."""
         return bool(self.finished.all())
 
+    @property
+    def ran_away(self) -> NDArray[np.bool_]:
+        """Which motions grew beyond all bounds without the step's doing, (nx, ny)."""
+        lost = self.finished & ~np.isfinite(self.rms)
+        return np.asarray(lost & (self.verdict != "step-limited"))
+
     def verdicts(self) -> dict[str, int]:
         """Count the verdicts.
 
@@ -76,6 +82,7 @@ class ParameterMap:
     def __repr__(self) -> str:
         """One line."""
         words = [f"{count} {word}" for word, count in self.verdicts().items()]
+        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
         return (
             f"ParameterMap({self.first.size} values of {self.names[0]} x {self.second.size} of "
             f"{self.names[1]}{': ' if words else ''}{', '.join(words)}"

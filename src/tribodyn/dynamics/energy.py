@@ -2,7 +2,8 @@
 
 A stiffness prescribed over the mesh phase does work on the motion, and so do a moving error and
 a moving direction: the drive that keeps the phase supplies it. An audit that counts this closes
-to the accuracy of the integration.
+to the accuracy of the integration. Where a contact opens or closes, the samples before and after
+are those of different sides, and the rows of the table are taken where these samples lie.
 """
 
 from __future__ import annotations
@@ -14,13 +15,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.dynamics.grid import Grid, RowEvaluator
 from tribodyn.dynamics.load_friction import friction_force
-from tribodyn.dynamics.march import compile_for
-from tribodyn.dynamics.response import Response, on_the_steps
+from tribodyn.dynamics.march import Compiled, compile_for
+from tribodyn.dynamics.response import Response
+from tribodyn.dynamics.response_crossings import interpolate_rows, within_steps
 from tribodyn.dynamics.system import System
 
 __all__ = ["EnergyAudit", "energy_audit"]
 
 Array = NDArray[np.float64]
+
+#: Mesh phases nearer than this are the same; one-sided values are taken a little off an event.
+_SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -86,53 +91,79 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
     """
     steps = response.time.size // response.periods
     compiled = compile_for(system, response.mesh_frequency, steps)
-    fine = on_the_steps(compiled, response)
-    nodes, beat = compiled.nodes, response.mesh_frequency
-    shape = (response.periods, steps, 3)
+    fine, beat = response.fine, response.mesh_frequency
     q, v, d, n = (
-        part.reshape(*shape, -1)
+        part.reshape(part.shape[0] // 3, 3, part.shape[-1])
         for part in (fine.position, fine.velocity, fine.deflection, fine.contact_force)
     )
-    gap = np.broadcast_to(nodes.gap, d.shape)
-    side = np.where(gap > 0.0, np.where(d > gap, 1.0, np.where(d < -gap, -1.0, 0.0)), 1.0)
+    rows = _Rows(compiled, fine.phase.reshape(-1, 3))
+    stiffness, gap, direction = rows.of("stiffness"), rows.of("gap"), rows.of("direction")
+    # The middle tells the side of a part: its ends may lie at the edge of the dead zone.
+    beyond = np.where(d > gap, 1.0, np.where(d < -gap, -1.0, 0.0))
+    beyond = np.where(rows.moved[:, None, None], beyond[:, 1:2], beyond)
+    side = np.where(gap > 0.0, beyond, 1.0)
     g = np.abs(side) * (d - side * gap)
-    rate = np.einsum("rsji,crsi->crsj", nodes.direction, v)
-    moved = np.einsum("rsji,crsi->crsj", nodes.direction_slope, q) - nodes.error_slope
-    stiffness_slope, gap_slope = _slopes(system, compiled.grid)
+    rate = np.einsum("tsji,tsi->tsj", direction, v)
+    moved = np.einsum("tsji,tsi->tsj", rows.of("direction_slope"), q) - rows.of("error_slope")
+    stiffness_slope, gap_slope = (rows.at(part) for part in _slopes(system, compiled.grid))
     parametric = 0.5 * stiffness_slope * g**2
-    parametric = parametric + nodes.stiffness * g * (moved - side * gap_slope)
-    elastic = 0.5 * nodes.stiffness * g**2
-    sliding = np.einsum("rsji,crsi->crsj", nodes.force_direction - nodes.direction, v)
+    parametric = parametric + stiffness * g * (moved - side * gap_slope)
+    elastic = 0.5 * stiffness * g**2
+    sliding = np.einsum("tsji,tsi->tsj", rows.of("force_direction") - direction, v)
     rubbed = (n * sliding).sum(axis=-1)
     if system.frictions:
-        rub = friction_force(system, nodes.friction_coefficients, n)
-        rubbed = rubbed + np.einsum("rsfi,crsi,crsf->crs", nodes.friction_direction, v, rub)
+        rub = friction_force(system, rows.of("friction_coefficients"), n)
+        rubbed = rubbed + np.einsum("tsfi,tsi,tsf->ts", rows.of("friction_direction"), v, rub)
     lost = _form(system.damping, v)
     # The contact damper loses its force times the whole rate, the moving error included; what
     # the error puts in is then the force, not the spring force alone, times its speed.
-    damper = n - nodes.stiffness * g
+    damper = n - stiffness * g
     lost = lost + (damper * (rate + beat * moved)).sum(axis=-1)
     parametric = parametric + damper * moved
     kinetic = 0.5 * _form(system.mass, v)
     strain = 0.5 * _form(system.stiffness, q)
     total = kinetic + strain + elastic.sum(axis=-1)
-    weight = fine.weight.reshape(shape) * response.duration
+    weight = fine.weight.reshape(-1, 3) * response.duration
 
     def work(power: Array) -> float:
         return float((weight * power).sum())
 
     return EnergyAudit(
-        external=work(np.einsum("crsi,rsi->crs", v, nodes.force + response.extra_force)),
+        external=work(np.einsum("tsi,tsi->ts", v, rows.of("force") + response.extra_force)),
         parametric=work(beat * parametric.sum(axis=-1)) + _jumps(elastic.sum(axis=-1)),
         dissipated=work(lost),
         friction=work(rubbed),
-        stored=float(total[-1, -1, 2] - total[0, 0, 0]),
+        stored=float(total[-1, 2] - total[0, 0]),
     )
+
+
+class _Rows:
+    """Rows of the table at triples of samples, on whole steps or on parts of them."""
+
+    def __init__(self, compiled: Compiled, phase: Array) -> None:
+        self._nodes, grid = compiled.nodes, compiled.grid
+        self._step = np.arange(phase.shape[0]) % grid.steps
+        cycle = np.arange(phase.shape[0]) // grid.steps
+        apart = phase - cycle[:, None] - self._nodes.phase[self._step]
+        #: Triples that are not a whole step.
+        self.moved = np.any(np.abs(apart) > _SAME, axis=1)
+        self._number, self._tau = within_steps(grid, cycle[self.moved], phase[self.moved])
+
+    def at(self, rows: Array) -> Array:
+        """Take rows of shape (steps, 3, ...) to the samples."""
+        values = rows[self._step]
+        parts = interpolate_rows(rows, self._number.reshape(-1), self._tau.reshape(-1))
+        values[self.moved] = parts.reshape(*self._tau.shape, *rows.shape[2:])
+        return values
+
+    def of(self, name: str) -> Array:
+        """Take the rows called ``name`` to the samples."""
+        return self.at(getattr(self._nodes, name))
 
 
 def _form(matrix: ArrayLike, x: Array) -> Array:
     """Quadratic form at every sample."""
-    return np.asarray(np.einsum("crsi,ik,crsk->crs", x, np.asarray(matrix), x))
+    return np.asarray(np.einsum("tsi,ik,tsk->ts", x, np.asarray(matrix), x))
 
 
 def _slopes(system: System, grid: Grid) -> tuple[Array, Array]:
@@ -151,5 +182,4 @@ def _slopes(system: System, grid: Grid) -> tuple[Array, Array]:
 
 def _jumps(energy: Array) -> float:
     """Energy that appears or vanishes between the end of a step and the start of the next."""
-    flat = energy.reshape(-1, 3)
-    return float((flat[1:, 0] - flat[:-1, 2]).sum())
+    return float((energy[1:, 0] - energy[:-1, 2]).sum())

@@ -19,6 +19,7 @@ __all__ = [
     "find_orbit",
     "finish_orbit",
     "motion_size",
+    "newton_step",
 ]
 
 Array = NDArray[np.float64]
@@ -74,19 +75,44 @@ class OrbitPoint:
     @property
     def correction(self) -> Array:
         """Newton step to the fixed point, (k,)."""
-        identity = np.eye(self.matrix.shape[0])
-        step, *_ = np.linalg.lstsq(identity - self.matrix, self.residual, rcond=None)
-        return np.asarray(step, dtype=float)
+        return newton_step(self.matrix, self.residual)[0]
 
     @property
     def error(self) -> float:
         """Distance to the orbit over its size; at least the rounding of the map."""
-        return float(np.linalg.norm(self.correction)) / self.scale
+        return newton_step(self.matrix, self.residual)[1] / self.scale
 
     @property
     def attracts(self) -> bool:
         """Whether motions beside the orbit approach it, or keep their distance."""
         return bool(np.abs(self.multipliers[:1]).max(initial=0.0) <= 1.0 + 1e-6)
+
+
+def newton_step(matrix: Array, residual: Array) -> tuple[Array, float]:
+    """Step to the fixed point of a map, and the distance to it.
+
+    Parameters
+    ----------
+    matrix : (k, k) array
+        Derivative of the map [-].
+    residual : (k,) array
+        What the map adds to the point [m/s].
+
+    Returns
+    -------
+    tuple of (k,) array and float
+        Step and distance [m/s]. A motion that a constant force drives through its play has no
+        orbit beside it: what no step takes away counts as it is.
+
+    Examples
+    --------
+    >>> step, distance = newton_step(np.array([[1.0, 1.0], [0.0, 1.0]]), np.array([0.0, 0.1]))
+    >>> np.abs(step).max() < 1e-12, round(distance, 12)
+    (np.True_, 0.1)
+    """
+    slope = np.eye(matrix.shape[0]) - matrix
+    step = np.asarray(np.linalg.lstsq(slope, residual, rcond=None)[0], dtype=float)
+    return step, float(np.linalg.norm(step) + np.linalg.norm(residual - slope @ step))
 
 
 def motion_size(mapping: OrbitMap, states: Array) -> float:

@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.step_limit import LIMIT
 
-__all__ = ["Resampled", "resample_crossings"]
+__all__ = ["Resampled", "interpolate_rows", "resample_crossings", "within_steps"]
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -55,6 +56,54 @@ class Resampled(NamedTuple):
     force: Array
 
 
+def interpolate_rows(rows: Array, step: Places, tau: Array) -> Array:
+    """Interpolate rows quadratically within their steps, as the integrator does.
+
+    Parameters
+    ----------
+    rows : (steps, 3, ...) array
+        Values at the left end, middle and right end of each step of a mesh cycle.
+    step : (m,) int array
+        Numbers of the steps; those of later mesh cycles begin anew.
+    tau : (m,) array
+        Fraction of the step [-].
+
+    Returns
+    -------
+    (m, ...) array
+        In the unit of the rows.
+    """
+    values = rows[step % rows.shape[0]]
+    at = tau.reshape(-1, *(1,) * (values.ndim - 2))
+    left, middle = (1.0 - at) * (1.0 - 2.0 * at), 4.0 * at * (1.0 - at)
+    return np.asarray(
+        left * values[:, 0] + middle * values[:, 1] + at * (2.0 * at - 1.0) * values[:, 2]
+    )
+
+
+def within_steps(grid: Grid, cycle: Places, phase: Array) -> tuple[Places, Array]:
+    """Find the steps in which triples of samples lie.
+
+    Parameters
+    ----------
+    grid : Grid
+    cycle : (m,) int array
+        Mesh cycle of each triple, counted from 0.
+    phase : (m, 3) array
+        Mesh phase of the samples [cycles]; the first and the last belong to the steps inwards.
+
+    Returns
+    -------
+    tuple of (m, 3) int array and (m, 3) array
+        Step within the mesh cycle and fraction of it [-].
+    """
+    edges = np.concatenate((grid.left, [1.0]))
+    own = phase - cycle[:, None]
+    inner = own + np.array([1e-12, 0.0, -1e-12])
+    number = np.clip(np.searchsorted(edges, inner, side="right") - 1, 0, grid.steps - 1)
+    return number, np.clip((own - grid.left[number]) / grid.width[number], 0.0, 1.0)
+
+
 class _Points:
     """The equations of motion at points within steps, each with the sides of its contacts."""
 
@@ -65,13 +114,8 @@ class _Points:
         self.in_gap = np.array([one.damping_in_gap for one in self.system.contacts])
 
     def row(self, name: str, step: Places, tau: Array) -> Array:
-        """Interpolate rows quadratically within their steps, as the integrator does."""
-        values = getattr(self.compiled.nodes, name)[step % self.compiled.grid.steps]
-        at = tau.reshape(-1, *(1,) * (values.ndim - 2))
-        left, middle = (1.0 - at) * (1.0 - 2.0 * at), 4.0 * at * (1.0 - at)
-        return np.asarray(
-            left * values[:, 0] + middle * values[:, 1] + at * (2.0 * at - 1.0) * values[:, 2]
-        )
+        """Interpolate rows of the table within steps."""
+        return interpolate_rows(getattr(self.compiled.nodes, name), step, tau)
 
     def compression(self, step: Places, tau: Array, q: Array) -> Array:
         """Compression of the contacts, (m, contacts)."""
@@ -232,12 +276,7 @@ def _part(
         (0.5 * (q0 + q1) + 0.125 * h * (v0 - v1), 1.5 * (q1 - q0) / h - 0.25 * (v0 + v1)), axis=1
     )
     at = np.stack((phase[0], 0.5 * (phase[0] + phase[1]), phase[1]), axis=1)
-    edges = np.concatenate((grid.left, [1.0]))
-    cycle = (step // grid.steps)[:, None]
-    # The step in which a sample lies; its left end is that of the step, its right end too.
-    inner = at - cycle + np.array([1e-12, 0.0, -1e-12])
-    number = np.clip(np.searchsorted(edges, inner, side="right") - 1, 0, grid.steps - 1)
-    tau = np.clip((at - cycle - grid.left[number]) / grid.width[number], 0.0, 1.0)
+    number, tau = within_steps(grid, step // grid.steps, at)
     samples = []
     for node, state in enumerate((ends[0], between, ends[1])):
         d, force, acceleration = points.at(number[:, node], tau[:, node], state, side)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tribodyn.dynamics.march import march
 from tribodyn.dynamics.orbit_map import OrbitMap
+from tribodyn.dynamics.orbit_search import newton_step
 from tribodyn.dynamics.speed_sweep_family import Orbits, SpeedFamily
 from tribodyn.errors import ComputationError
 
@@ -77,12 +78,12 @@ def _matrix(mapping: OrbitMap, y: Array, scale: float) -> tuple[Array, Array]:
 
 def _newton(mapping: OrbitMap, y: Array, tolerance: float) -> Followed | None:
     """Newton's method; the matrix is kept once the orbit is near."""
-    eye, last = np.eye(y.size), np.inf
+    last = np.inf
     residual, matrix = _matrix(mapping, y, float(np.linalg.norm(y)))
     for _ in range(_NEWTON):
         scale = float(np.linalg.norm(y)) + 1e-300
-        correction = np.linalg.lstsq(eye - matrix, residual, rcond=None)[0]
-        error = float(np.linalg.norm(correction)) / scale
+        correction, distance = newton_step(matrix, residual)
+        error = distance / scale
         if error <= tolerance:
             return Followed(y, mapping.multipliers(matrix), error, mapping.periods)
         if not error < 0.7 * last:

@@ -104,7 +104,8 @@ def _two_motions(found: Any, parameter: Any, label: str) -> str:
 
 
 def _title(found: Any, parameter: Any, label: str) -> str:
-    count, done = found.verdict.size, found.finished & (found.verdict != "step-limited")
+    count, lost = found.verdict.size, int(found.ran_away.sum())
+    done = found.finished & (found.verdict != "step-limited") & ~found.ran_away
     limited = found.verdicts().get("step-limited", 0)
     if limited > _FEW * count:
         return f"{limited} of {count} motions are made by the step, not by physics"
@@ -117,6 +118,9 @@ def _title(found: Any, parameter: Any, label: str) -> str:
         parts.append(f"{wild} of {count} motions do not repeat{within}")
     elif longest > 1:
         parts.append(f"{'the' if two else 'The'} motion repeats after up to {longest} mesh cycles")
+    if lost:
+        verb = "grows" if lost == 1 else "grow"
+        parts.insert(0, f"{lost} of {count} motions {verb} beyond all bounds")
     if not parts:
         parts.append("Every motion repeats after one mesh cycle")
     if limited:

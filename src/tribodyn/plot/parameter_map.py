@@ -13,10 +13,10 @@ from tribodyn.plot.style import PAIR_COLORS, PINION, WHEEL, Panel
 
 __all__ = ["parameter_map"]
 
-#: Words and colours of the periods; the last one is for motions that were lost.
+#: Words and colours of the periods; the last one is for motions without bounds.
 _PERIODS = (
     ("1", "#eef3f7"), ("2", PINION), ("3", PAIR_COLORS[0]), ("4", PAIR_COLORS[2]),
-    ("5 to 16", PAIR_COLORS[3]), ("none", WHEEL), ("lost", "#8a94a0"),
+    ("5 to 16", PAIR_COLORS[3]), ("none", WHEEL), ("ran away", "#8a94a0"),
 )  # fmt: skip
 #: From little to much.
 _SCALE = [[0.0, "#f7fbff"], [0.35, "#9ecae1"], [0.7, "#3182bd"], [1.0, "#08306b"]]
@@ -72,6 +72,9 @@ def _periods(found: Any, x: Any, y: Any) -> dict[str, Any]:
 
 
 def _title(found: Any) -> str:
+    if lost := int(found.ran_away.sum()):
+        verb = "grows" if lost == 1 else "grow"
+        return f"{lost} of {found.rms.size} motions {verb} beyond all bounds"
     seen = found.finished & np.isfinite(found.rms)
     if not seen.any():
         return "No motion is finished"

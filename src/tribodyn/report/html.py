@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tribodyn.report.blocks import Block, figure_blocks
+from tribodyn.report.friction_loop import compared_friction
 from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.study.save import write_file
@@ -103,6 +104,7 @@ def render_report(result: Any) -> str:
             operating_point=operating_point(result.case),
             cards=headlines(summary),
             rows=table(summary),
+            compared=compared_friction(summary),
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],
             assumptions=result.assumptions,

@@ -123,6 +123,8 @@ def write_bifurcation_report(
     """
     caption = str(getattr(FIGURES["bifurcation"], "caption", ""))
     counts = [(word.capitalize(), str(count)) for word, count in found.verdicts().items()]
+    if lost := int(found.ran_away.sum()):
+        counts.append(("Ran away", str(lost)))
     return _write(
         Path(path), case, kind="bifurcation diagram", lead=lead,
         varied=[found.parameter_name], notice_heading="What it says",

@@ -55,13 +55,16 @@ class Findings:
         return f"{len(self.axis.values)} values of {self.axis.key} {ends}"
 
     def sentences(self) -> list[str]:
-        """Tell verdicts, the step limit, periods, jumps and where two motions are possible.
+        """Tell verdicts, runaways, step limit, periods, jumps and where two motions are possible.
 
         Returns
         -------
         list of str
         """
-        return [*self._counts(), *self._limit(), *self._periods(), *self._jumps(), *self._two()]
+        return [
+            *self._counts(), *self._lost(), *self._limit(), *self._periods(), *self._jumps(),
+            *self._two(),
+        ]  # fmt: skip
 
     def figures(self) -> dict[str, Any]:
         """Return the same for a program, in SI.
@@ -69,7 +72,7 @@ class Findings:
         Returns
         -------
         dict
-            Counts of verdicts, onset of the step limit, periods and jumps.
+            Counts of verdicts and runaways, onset of the step limit, periods and jumps.
         """
         onset = self._onset()
         return {
@@ -78,6 +81,7 @@ class Findings:
             "values": int(self.found.parameter.size),
             "finished": int(self.found.finished.sum()),
             "verdicts": self.found.verdicts(),
+            "ran_away": int(self.found.ran_away.sum()),
             "step_limited_onset": None if onset is None else float(self.found.parameter[onset]),
             "omega_max_dt_at_onset": None
             if onset is None
@@ -112,10 +116,12 @@ class Findings:
                 if found.finished[branch, number]:
                     period, rms = found.period[branch, number], found.rms[branch, number]
                     loss = found.contact_loss_share[branch, number]
+                    lost = found.ran_away[branch, number]
+                    size = f"{rms if turns else 1e6 * rms:.5g}"
                     cells.append([
                         f"{value:.6g}", name, str(period) if period else "none",
-                        f"{rms if turns else 1e6 * rms:.5g}",
-                        f"{loss:.3g}", f"{found.step_number[number]:.3g}",
+                        "ran away" if lost else size, "" if lost else f"{loss:.3g}",
+                        f"{found.step_number[number]:.3g}",
                         str(found.verdict[branch, number]),
                     ])  # fmt: skip
         return head, cells
@@ -130,6 +136,14 @@ class Findings:
         if unjudged:
             words = ", ".join(part for part in (words, f"{unjudged} not judged") if part)
         yield f"{done} motions: {words}"
+
+    def _lost(self) -> Iterator[str]:
+        for branch, name in enumerate(self.found.branches):
+            places = np.flatnonzero(self.found.ran_away[branch])
+            if places.size:
+                lost = self.found.parameter[places]
+                many = f"{places.size} motions" if places.size > 1 else "1 motion"
+                yield f"{name}: {many} grew beyond all bounds {self._span(lost[0], lost[-1])}"
 
     def _onset(self) -> int | None:
         limited = np.any(self.found.verdict == "step-limited", axis=0)
@@ -158,10 +172,11 @@ class Findings:
                 )
 
     def _runs(self) -> Iterator[tuple[str, int, Array]]:
-        """Stretches of the same period, step-limited motions left out."""
+        """Stretches of the same period, step-limited motions and runaways left out."""
         found = self.found
         for branch, name in enumerate(found.branches):
             kept = found.finished[branch] & (found.verdict[branch] != "step-limited")
+            kept &= ~found.ran_away[branch]
             places = np.flatnonzero(kept)
             for period, group in groupby(places, key=lambda i, b=branch: int(found.period[b, i])):  # type: ignore[misc]
                 yield name, period, found.parameter[list(group)]

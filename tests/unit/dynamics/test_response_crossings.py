@@ -60,7 +60,7 @@ def test_layout_stays():
     np.testing.assert_allclose(np.diff(motion.time), motion.time[1], rtol=1e-9)
     moved = np.flatnonzero(np.abs(triples[:, 0] - np.arange(512) / 256) > 1e-12)
     assert 3 < moved.size < 25
-    assert energy_audit(system, motion).imbalance < 0.01
+    assert energy_audit(system, motion).imbalance < 5e-5
 
 
 def test_two_flanks_that_open_at_one_place():

@@ -102,6 +102,27 @@ def test_the_title_of_the_figure_tells_what_matters_most():
     assert title() == "10 of 20 motions are made by the step, not by physics"
 
 
+def test_motions_that_ran_away_are_told(case):
+    plain = diagram(branches=("up", "down"))
+    rms, period, verdict = plain.rms.copy(), plain.period.copy(), plain.verdict.copy()
+    rms[0, 6:], period[0, 6:], verdict[0, 6:] = np.nan, 0, "undecided"
+    verdict[0, 9] = "step-limited"  # with half the step this one does not
+    made = replace(plain, rms=rms, period=period, verdict=verdict)
+    assert made.ran_away.sum() == 3
+    assert repr(made).endswith("3 undecided, 3 ran away)")
+    assert made.plot().layout.title.text.startswith("3 of 20 motions grow beyond all bounds")
+    found = Findings(case, made)
+    told = "\n".join(found.sentences())
+    assert "up: 3 motions grew beyond all bounds from 1600 rpm to 1800 rpm" in told
+    assert "down: period 1 from 1000 rpm to 1900 rpm" in told
+    assert "no period" not in told
+    assert "nan" not in told
+    assert found.figures()["ran_away"] == 3
+    _, rows = found.rows()
+    assert rows[12][:5] == ["1600", "up", "none", "ran away", ""]
+    assert Findings(case, plain).figures()["ran_away"] == 0
+
+
 def test_a_resonance_is_no_jump(case):
     plain = diagram(40)
     speed = np.arange(40.0)

@@ -1,0 +1,65 @@
+"""What friction that follows the dynamic load changes, beside friction of the nominal load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tribodyn.report.numbers import Number, describe
+
+__all__ = ["Compared", "compared_friction"]
+
+_ENDING = "_nominal_friction"
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One figure with friction in the loop and without.
+
+    Parameters
+    ----------
+    own, nominal : Number
+        The figure with friction that follows the load, and with that of the nominal load.
+    change : str
+        Change of the former from the latter, with its sign [%].
+    """
+
+    own: Number
+    nominal: Number
+    change: str
+
+
+def compared_friction(summary: Mapping[str, float]) -> list[Compared]:
+    """Put the comparison with nominal friction into words.
+
+    Parameters
+    ----------
+    summary : mapping
+        Names and SI values.
+
+    Returns
+    -------
+    list of Compared
+        Empty where friction keeps to the nominal load.
+
+    Examples
+    --------
+    >>> (row,) = compared_friction({"peak_mesh_force": 2020.0,
+    ...     "peak_mesh_force_nominal_friction": 2000.0})
+    >>> row.own.shown, row.nominal.shown, row.change
+    ('2020', '2000', '+1.000 %')
+    """
+    found = []
+    for name, nominal in summary.items():
+        own = name.removesuffix(_ENDING)
+        if own != name and own in summary:
+            found.append(
+                Compared(describe(own, summary[own]), describe(name, nominal),
+                         _change(float(summary[own]), float(nominal)))
+            )  # fmt: skip
+    return found
+
+
+def _change(own: float, nominal: float) -> str:
+    """Write the relative change, or a dash where there is nothing to relate it to."""
+    return f"{100.0 * (own - nominal) / abs(nominal):+.3f} %" if nominal else "–"
