@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tribodyn.dynamics.kernel import I64, INNER, compression, dead_zone, step
 from tribodyn.dynamics.lanes import above, first_lane, store
 
-__all__ = ["MAX_SPLITS", "find_sides", "set_sides", "split_step"]
+__all__ = ["MAX_SPLITS", "find_sides", "row_within", "set_sides", "split_step"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -72,7 +72,7 @@ def _clearance(d: float, gap: float, side: float, leaving: float) -> float:
 
 
 @nb.njit(**INNER)
-def _row_within(code: Index, rows: Array, base: int, tau: float, part: Array, node: int) -> None:
+def row_within(code: Index, rows: Array, base: int, tau: float, part: Array, node: int) -> None:
     """Interpolate the three rows of a step quadratically at the fraction ``tau``."""
     columns = code[2]
     left, middle = (1.0 - tau) * (1.0 - 2.0 * tau), 4.0 * tau * (1.0 - tau)
@@ -113,21 +113,45 @@ def _first_beyond(
 
 
 @nb.njit(**INNER)
+def _note(code: Index, start: float, end: float, w: Array, parts: Array) -> None:
+    """Add a part to the list of them: where it begins and ends, sides, state at both ends."""
+    n, contacts = code[0], code[1]
+    at = 1 + I64(parts[0]) * (2 + contacts + 4 * n)
+    parts[0] += 1.0
+    parts[at], parts[at + 1] = start, end
+    at += 2
+    for j in range(contacts):
+        parts[at + j] = w[8 * n + contacts + j]
+    at += contacts
+    for i in range(2 * n):
+        parts[at + i], parts[at + 2 * n + i] = w[i], w[4 * n + i]
+
+
+@nb.njit(**INNER)
 def split_step(
-    code: Index, reads: Index, rows: Array, base: int, width: float, part: Array, w: Array
+    code: Index,
+    reads: Index,
+    rows: Array,
+    base: int,
+    width: float,
+    part: Array,
+    w: Array,
+    parts: Array,
 ) -> int:
     """March one lane by one step in parts; returns the number of crossings.
 
     The state in buffer 0 and the sides are those at the left end; the new state is left in
     buffer 2, and the sides are updated. Crossings are found by the Illinois method on the step
-    itself, so that they are as accurate as the step.
+    itself, so that they are as accurate as the step. The number of the parts and what
+    :func:`~tribodyn.dynamics.moments.gather_parts` needs of each are left in ``parts``.
     """
     n, right, sides = code[0], 2 * code[2], 8 * code[0] + code[1]
     start, target, contact, splits, probe, tries = 0.0, 1.0, I64(-1), 0, 0, 0
+    parts[0] = 0.0
     low = high = g_low = g_high = leaving = scale = 0.0
     while True:
         for node in range(3):
-            _row_within(code, rows, base, start + 0.5 * node * (target - start), part, I64(node))
+            row_within(code, rows, base, start + 0.5 * node * (target - start), part, I64(node))
         w[9 * n + 2 * code[1] + 1] = width * (target - start)
         step((0.0,), code, reads, part, I64(0), w)
         if contact >= 0:
@@ -169,6 +193,7 @@ def split_step(
                 probe = 1
                 target = start + 0.125 * (1.0 - start)
             continue
+        _note(code, start, target, w, parts)
         if contact < 0:
             break
         for i in range(2 * n):

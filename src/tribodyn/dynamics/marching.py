@@ -12,10 +12,10 @@ from numba.extending import overload
 from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
-from tribodyn.dynamics.crossing import set_sides, split_step
+from tribodyn.dynamics.crossing import MAX_SPLITS, set_sides, split_step
 from tribodyn.dynamics.kernel import I64, INNER, JIT, left_side, step
 from tribodyn.dynamics.lanes import address, open_rows
-from tribodyn.dynamics.moments import gather
+from tribodyn.dynamics.moments import gather, gather_parts
 
 __all__ = ["march_block"]
 
@@ -61,7 +61,7 @@ def _choose_rows(rows, base, columns, width, lane, room):  # type: ignore[no-unt
 
 @nb.njit(**INNER)
 def _repair(
-    gone: int,
+    lane: int,
     slots: int,
     lanes: Any,
     code: Index,
@@ -72,17 +72,38 @@ def _repair(
     single: Array,
     part: Array,
     room: Array,
+    parts: Array,
 ) -> None:
-    """Repeat the step in parts for every lane that crossed a boundary."""
+    """Repeat the step in parts for a lane that crossed a boundary."""
     n, side, width = code[0], 8 * code[0] + code[1], len(lanes)
     h = 9 * n + 2 * code[1] + 1
+    _take(lane, width, slots, w, single)
+    own, start = _own_rows(rows, base, code[2], width, lane, room)
+    split_step(code, reads, own, start, w[h * width + lane], part, single, parts)
+    _put(lane, width, 4 * n, 6 * n, w, single)
+    _put(lane, width, side, side + code[1], w, single)
+
+
+def _room_aside(first: int, moments: Any, waves: int) -> Array:
+    """Room for ``first`` numbers; with moments, also for those of every lane and some waves."""
+    return np.empty(first + (0 if moments is None else moments.size + waves))
+
+
+@overload(_room_aside)
+def _choose_room(first, moments, waves):  # type: ignore[no-untyped-def]
+    if isinstance(moments, types.NoneType):
+        return lambda first, moments, waves: np.empty(first)
+    return lambda first, moments, waves: np.empty(first + moments.size + waves)
+
+
+@nb.njit(**INNER)
+def _put_back(gone: int, width: int, moments: Array, kept: Array) -> None:
+    """Replace the moments of split lanes, to which the whole step was added, by their own."""
+    count = moments.size // width
     for lane in range(width):
         if (gone >> lane) & 1:
-            _take(lane, width, slots, w, single)
-            own, start = _own_rows(rows, base, code[2], width, lane, room)
-            split_step(code, reads, own, start, w[h * width + lane], part, single)
-            _put(lane, width, 4 * n, 6 * n, w, single)
-            _put(lane, width, side, side + code[1], w, single)
+            own = address(kept[lane * count :])
+            _put(lane, width, I64(0), count, address(moments), own)
 
 
 @nb.njit(**INNER)
@@ -172,8 +193,12 @@ def _build(digest: str) -> Any:
         single, part = address(work[slots * width :]), address(work[slots * (width + 1) :])
         room = address(work[slots * (width + 1) + 3 * columns :])
         w, code, reads, table = address(work), address(code), address(reads), open_rows(rows)
+        # A list of the parts of a step, moments of the lanes that were split, waves of a part.
+        most = 1 + (MAX_SPLITS + 1) * (2 + code[1] + 4 * n)
+        kept = _room_aside(most, moments, 6 * harmonics)
+        parts, wave = address(kept), address(waves)
         _set_up(lanes, code, period, load, state, w)
-        switching = False
+        switching = np.bool_(False)
         for j in range(code[1]):
             switching = switching or code[4 + 4 * j + 2] != 0
         keep = record.shape[0] > 0
@@ -190,10 +215,49 @@ def _build(digest: str) -> Any:
                         for lane in range(width):
                             record[point, i, lane] = w[i * width + lane]
                 step(lanes, code, reads, table, base, w)
+                gone = I64(0)
                 if switching:
                     gone = left_side(lanes, code, reads, table, base + 2 * columns, w)
-                    if gone != 0:
-                        _repair(gone, slots, lanes, code, reads, table, base, w, single, part, room)
+                if gone != 0:
+                    for lane in range(width):
+                        if not (gone >> lane) & 1:
+                            continue
+                        _repair(
+                            lane,
+                            slots,
+                            lanes,
+                            code,
+                            reads,
+                            table,
+                            base,
+                            w,
+                            single,
+                            part,
+                            room,
+                            parts,
+                        )
+                        if moments is not None:
+                            count = moments.size // width
+                            own = address(kept[most + lane * count :])
+                            _take(lane, width, count, address(moments), own)
+                            own_rows, start = _own_rows(table, base, columns, width, lane, room)
+                            gather_parts(
+                                code,
+                                reads,
+                                own_rows,
+                                start,
+                                parts,
+                                period[lane] * share[r],
+                                part,
+                                single,
+                                outputs,
+                                share[r] / cycles,
+                                wave,
+                                6 * harmonics * r,
+                                harmonics,
+                                address(kept[most + width * count :]),
+                                own,
+                            )
                 if moments is not None:
                     for lane in range(width):
                         w[(h + 3) * width + lane] = 1.0 / w[h * width + lane]
@@ -207,17 +271,21 @@ def _build(digest: str) -> Any:
                         w,
                         outputs,
                         share[r] / cycles,
-                        waves,
+                        wave,
                         6 * harmonics * r,
                         harmonics,
-                        moments,
+                        address(moments),
                     )
+                    if gone != 0:
+                        _put_back(gone, width, moments, kept[most:])
                 for item in range(2 * n * width):
                     w[item] = w[4 * n * width + item]
                 point += 1
             for item in range(2 * n * width):
                 if not np.isfinite(w[item]):
                     return point
+        # The address of the list of parts holds only as long as its owner is in use.
+        kept[0] = 0.0
         for lane in range(width):
             for i in range(2 * n):
                 state[lane, i] = w[i * width + lane]

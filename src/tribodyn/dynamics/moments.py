@@ -1,23 +1,26 @@
 """Statistics of every lane, gathered while marching, so that no time series is stored.
 
 Each step contributes with Simpson's rule: both ends and the middle, where the state is the cubic
-Hermite interpolant of the two ends. Signals are, in this order: compression of every contact,
-force of every contact, acceleration of every coordinate, and linear outputs of the state.
+Hermite interpolant of the two ends. A lane in which a contact opens or closes within the step
+contributes with every part of it by itself, as the damping force jumps there. Signals are, in this
+order: compression of every contact, force of every contact, acceleration of every coordinate, and
+linear outputs of the state.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.dynamics.crossing import set_sides
+from tribodyn.dynamics.crossing import row_within, set_sides
 from tribodyn.dynamics.kernel import I64, INNER, acceleration, compression
 from tribodyn.dynamics.lanes import greatest, least, load, store
 
-__all__ = ["PLAIN_MOMENTS", "gather"]
+__all__ = ["PLAIN_MOMENTS", "gather", "gather_parts"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -25,6 +28,8 @@ Index = NDArray[np.int64]
 #: Per signal: mean, mean square, minimum, maximum, share of the time off the driving flank.
 #: Signals of the contacts are followed by a cosine and a sine part per harmonic.
 PLAIN_MOMENTS = 5
+#: Shorter parts of a step are left out: their rate of change would be nothing but rounding.
+_SHORTEST = 1e-7
 
 
 @nb.njit(**INNER)
@@ -116,3 +121,79 @@ def gather(
                     y = y + outputs[o, i] * load(lanes, w, 2 * n * buffer + i)
             _add(lanes, y, weight, signal, waves, phase, 0, m)
             signal += PLAIN_MOMENTS
+
+
+@nb.njit(**INNER)
+def _waves_within(
+    waves: Array, wave: int, harmonics: int, tau: float, near: Array, node: int
+) -> None:
+    """Cosine and sine of every harmonic at the fraction ``tau`` of a step, into ``near``.
+
+    The angle of a wave grows evenly; by how much in half a step tell its first two nodes.
+    """
+    for item in range(0, 2 * harmonics, 2):
+        c0, s0 = waves[wave + item], waves[wave + item + 1]
+        half = wave + 2 * harmonics + item
+        c1, s1 = waves[half], waves[half + 1]
+        angle = math.atan2(s0, c0) + 2.0 * tau * math.atan2(s1 * c0 - c1 * s0, c1 * c0 + s1 * s0)
+        near[2 * harmonics * node + item] = math.cos(angle)
+        near[2 * harmonics * node + item + 1] = math.sin(angle)
+
+
+@nb.njit(**INNER)
+def gather_parts(
+    code: Index,
+    reads: Index,
+    rows: Array,
+    base: int,
+    parts: Array,
+    width: float,
+    part: Array,
+    w: Array,
+    outputs: Array,
+    share: float,
+    waves: Array,
+    wave: int,
+    harmonics: int,
+    near: Array,
+    m: Array,
+) -> None:
+    """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``.
+
+    ``width`` is the time that the whole step takes, ``share`` its part of the averaging time;
+    ``part`` and ``near`` are room for the rows and waves of a part. Leaves its marks in ``w``.
+    """
+    n, contacts = code[0], code[1]
+    one, at = 9 * n + 2 * contacts, I64(1)
+    for _ in range(I64(parts[0])):
+        start, end = parts[at], parts[at + 1]
+        at += 2
+        if end - start > _SHORTEST:
+            for j in range(contacts):
+                w[8 * n + contacts + j] = parts[at + j]
+            for i in range(2 * n):
+                w[i] = parts[at + contacts + i]
+                w[4 * n + i] = parts[at + contacts + 2 * n + i]
+            for node in range(3):
+                tau = start + 0.5 * node * (end - start)
+                row_within(code, rows, base, tau, part, I64(node))
+                _waves_within(waves, wave, harmonics, tau, near, I64(node))
+            w[one + 1] = width * (end - start)
+            w[one + 4] = 1.0 / w[one + 1]
+            here = share * (end - start)
+            gather(
+                (0.0,),
+                code,
+                reads,
+                part,
+                I64(0),
+                np.bool_(False),
+                w,
+                outputs,
+                here,
+                near,
+                I64(0),
+                harmonics,
+                m,
+            )
+        at += contacts + 4 * n

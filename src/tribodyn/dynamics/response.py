@@ -15,7 +15,7 @@ from tribodyn.dynamics.response_crossings import resample_crossings
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["FineSamples", "Response", "build_response", "on_the_steps"]
+__all__ = ["FineSamples", "Response", "build_response"]
 
 Array = NDArray[np.float64]
 
@@ -245,25 +245,6 @@ def build_response(
         extra_force=extra_force,
         **facts,
     )
-
-
-def on_the_steps(compiled: Compiled, response: Response) -> FineSamples:
-    """Samples of a response in every step as it was marched, even across a contact's opening.
-
-    Parameters
-    ----------
-    compiled : Compiled
-        The system on the grid of the response.
-    response : Response
-
-    Returns
-    -------
-    FineSamples
-    """
-    place = np.vstack((response.position, response.fine.position[-1:]))
-    speed = np.vstack((response.velocity, response.fine.velocity[-1:]))
-    states = np.hstack((place, speed))
-    return _step_samples(compiled, response.mesh_frequency, states, response.extra_force)
 
 
 def _step_samples(

@@ -23,8 +23,9 @@ SCALES = tuple(
     f"{name}_scale" for name in ("stiffness", "damping", "friction", "error", "gap", "force")
 )
 OUTPUTS = np.eye(6)[[1, 5]]
-#: Agreement with Runge-Kutta over the size of a statistic: engine, options, steps, tolerance.
-ENGINES = [("newmark", {}, 1024, 3e-3), ("dormand-prince", {"rtol": 1e-9}, 1024, 3e-4)]
+#: Agreement with Runge-Kutta over the size of a statistic: engine, options, steps, tolerance. Only
+#: Runge-Kutta takes the parts of a step in which a contact opens, so that the time apart differs.
+ENGINES = [("newmark", {}, 1024, 3e-3), ("dormand-prince", {"rtol": 1e-9}, 1024, 8e-4)]
 
 
 def _turning(phase):
@@ -80,21 +81,22 @@ def _differs(one, other, tolerance):
 
 
 def test_statistics_of_a_record_are_those_of_the_kernel():
-    systems = [_build(), _build(0.7)] * 3
-    parameters = _parameters(6)
+    """As near as whole steps come to the parts of those in which a contact opens."""
+    systems, steps = [_build(), _build(0.7)] * 3, 4096
+    parameters, limit = _parameters(6), 3e-4
     outputs = np.random.default_rng(2).standard_normal((2, 6))
-    options = {"steps": 128, "parameters": parameters, "outputs": outputs, "harmonics": 3}
+    options = {"steps": steps, "parameters": parameters, "outputs": outputs, "harmonics": 3}
     extra = np.random.default_rng(3).standard_normal((6, 3)) * 0.1
     many = simulate_ensemble(systems, FREQUENCY, 1, START, extra_force=extra, **options)
     assert many.contact_loss_share.max() > 0.1
-    compiled = compile_lanes(systems, np.full(6, FREQUENCY), 128, parameters)
+    compiled = compile_lanes(systems, np.full(6, FREQUENCY), steps, parameters)
     angle = 2 * np.pi * compiled.nodes.phase[:, :, None] * np.arange(1, 4)
     waves = np.stack((np.cos(angle), np.sin(angle)), axis=-1)
     for member in compiled.members:
         lane = int(member.lanes[1])
-        own = compile_lanes(member.system, [FREQUENCY], 128, any_step=True)
+        own = compile_lanes(member.system, [FREQUENCY], steps, any_step=True)
         single = LaneParameters(**{name: getattr(parameters, name)[lane] for name in SCALES})
-        record = np.empty((129, 6, 1))
+        record = np.empty((steps + 1, 6, 1))
         state, period = np.concatenate(START)[None], np.array([1.0 / FREQUENCY])
         march(own, period, state, 1, extra_force=extra[lane : lane + 1], parameters=single,
               record=record)  # fmt: skip
@@ -109,17 +111,17 @@ def test_statistics_of_a_record_are_those_of_the_kernel():
         rows = moments[:66, 0].reshape(6, 11)
         for name, part in (("deflection", rows[:3]), ("contact_force", rows[3:])):
             found = getattr(many, name)
-            assert part[:, 0] == pytest.approx(found.mean[lane], abs=1e-10)
-            assert np.sqrt(part[:, 1]) == pytest.approx(found.rms[lane], rel=1e-10)
-            assert part[:, 2] == pytest.approx(found.minimum[lane], abs=1e-10)
-            assert part[:, 3] == pytest.approx(found.maximum[lane], rel=1e-10)
+            assert part[:, 0] == pytest.approx(found.mean[lane], abs=limit)
+            assert np.sqrt(part[:, 1]) == pytest.approx(found.rms[lane], rel=limit)
+            assert part[:, 2] == pytest.approx(found.minimum[lane], abs=limit)
+            assert part[:, 3] == pytest.approx(found.maximum[lane], rel=limit)
             waved = 2.0 * (part[:, 5::2] - 1j * part[:, 6::2])
-            assert np.abs(waved - found.harmonics[lane]).max() < 1e-10
-        assert rows[3:, 4] == pytest.approx(many.contact_loss_share[lane], abs=1e-12)
+            assert np.abs(waved - found.harmonics[lane]).max() < limit
+        assert rows[3:, 4] == pytest.approx(many.contact_loss_share[lane], abs=limit)
         short = moments[66:, 0].reshape(5, 5)
-        assert short[:3, 0] == pytest.approx(many.acceleration.mean[lane], abs=1e-9)
-        assert np.sqrt(short[:3, 1]) == pytest.approx(many.acceleration.rms[lane], rel=1e-9)
-        assert short[3:, 3] == pytest.approx(many.output.maximum[lane], rel=1e-9)
+        assert short[:3, 0] == pytest.approx(many.acceleration.mean[lane], abs=limit)
+        assert np.sqrt(short[:3, 1]) == pytest.approx(many.acceleration.rms[lane], rel=limit)
+        assert short[3:, 3] == pytest.approx(many.output.maximum[lane], rel=limit)
 
 
 @pytest.mark.parametrize(("method", "options", "steps", "tolerance"), ENGINES)
@@ -153,7 +155,7 @@ def test_one_factor_at_a_time(method, options, steps, tolerance, number):
 
 @pytest.mark.parametrize(("method", "options", "steps", "tolerance"), ENGINES)
 def test_statistics_are_near_those_of_the_response(method, options, steps, tolerance):
-    """A response parts its samples where a contact opens, the statistics do not."""
+    """A response parts its samples where a contact opens, these statistics do not."""
     system = reference_system(0.1, gap=2e-5)
     start = (np.full(6, 1e-5), np.zeros(6))
     kept = simulate(system, 1800.0, 2, start, steps=256, method=method, **options)

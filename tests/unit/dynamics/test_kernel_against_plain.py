@@ -8,7 +8,6 @@ from tribodyn.analysis import alternating_rms, extremes, mesh_harmonics, rms
 from tribodyn.dynamics import Contact, System, simulate, simulate_ensemble
 from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.plain import march_plain
-from tribodyn.dynamics.response import on_the_steps
 
 
 def _everything_varies():
@@ -96,31 +95,34 @@ def test_statistics_in_the_kernel_equal_those_of_a_record():
     start = (np.zeros(6), np.zeros(6))
     outputs = np.hstack([system.stiffness, system.damping])[:2]
     many = simulate_ensemble(
-        system, [240.0, 900.0, 2600.0, 3000.0], 3, start, steps=512, averaged=3, outputs=outputs
+        system, [240.0, 900.0, 2600.0, 3000.0], 3, start, steps=1024, averaged=3, outputs=outputs
     )
     for lane, frequency in enumerate(many.mesh_frequency):
-        one = simulate(system, frequency, 3, start, steps=512)
-        # The kernel takes its samples in every step, even in one in which a contact opens.
-        fine = on_the_steps(compile_for(system, frequency, 512), one)
+        one = simulate(system, frequency, 3, start, steps=1024)
+        fine = one.fine
+        # Both take parts of the steps in which teeth part, but not the same ones.
+        apart = fine.mean((fine.deflection[:, 0] <= 1e-5).astype(float))
+        limit = 1e-6 if apart > 0.0 else 1e-10
         for found, signal in (
             (many.deflection, fine.deflection),
             (many.contact_force, fine.contact_force),
             (many.acceleration, fine.acceleration),
             (many.output, fine.position @ outputs[:, :6].T + fine.velocity @ outputs[:, 6:].T),
         ):
-            size = np.abs(signal).max(axis=0) * 1e-10
+            size = np.abs(signal).max(axis=0) * limit
             assert np.all(np.abs(found.mean[lane] - fine.mean(signal)) <= size)
             assert np.all(np.abs(found.rms[lane] - rms(fine, signal)) <= size)
-            assert np.all(np.abs(found.minimum[lane] - signal.min(axis=0)) <= size)
-            assert np.all(np.abs(found.maximum[lane] - signal.max(axis=0)) <= size)
+            # At the jump itself the two differ by as much as its place does.
+            assert np.all(np.abs(found.minimum[lane] - signal.min(axis=0)) <= 10.0 * size)
+            assert np.all(np.abs(found.maximum[lane] - signal.max(axis=0)) <= 10.0 * size)
         np.testing.assert_allclose(
             found.alternating_rms[lane], alternating_rms(fine, signal), rtol=1e-6
         )
         waves = mesh_harmonics(fine, fine.deflection[:, 0], 5)
-        scale = np.abs(waves).max() * 1e-10
+        scale = np.abs(waves).max() * limit
         np.testing.assert_allclose(many.deflection.harmonics[lane, 0], waves, atol=scale)
-        apart = fine.mean((fine.deflection[:, 0] <= 1e-5).astype(float))
-        assert many.contact_loss_share[lane, 0] == pytest.approx(apart, abs=1e-12)
+        # The samples count those at the boundary by halves, the kernel knows the time.
+        assert many.contact_loss_share[lane, 0] == pytest.approx(apart, abs=2e-3)
         assert extremes(fine.deflection[:, 0])[1] >= many.deflection.maximum[lane, 0] - 1e-15
 
 

@@ -5,8 +5,6 @@ import pytest
 
 from tribodyn.analysis import rms
 from tribodyn.dynamics import Contact, System, energy_audit, simulate
-from tribodyn.dynamics.march import compile_for
-from tribodyn.dynamics.response import on_the_steps
 
 START = ([3.0], [-2.0])
 
@@ -27,13 +25,6 @@ def test_mean_force_is_the_change_of_momentum():
         force = fine.mean(fine.contact_force[:, 0])
         assert gained == pytest.approx((-1.0 - force) * motion.duration, abs=2e-6)
         assert fine.mean(fine.acceleration[:, 0]) == pytest.approx(-1.0 - force, rel=1e-12)
-
-
-def test_plain_samples_miss_the_jump():
-    system, motion = bouncing(256)
-    plain = on_the_steps(compile_for(system, 0.1, 256), motion)
-    gained = (plain.velocity[-1, 0] - plain.velocity[0, 0]) / motion.duration
-    assert abs(gained + 1.0 + plain.mean(plain.contact_force[:, 0])) > 1e-5
 
 
 def test_rms_of_the_force_has_order_four_or_nearly():
