@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tribodyn.dynamics.kernel import I64, INNER, compression, dead_zone, step
 from tribodyn.dynamics.lanes import above, first_lane, store
 
-__all__ = ["MAX_SPLITS", "find_sides", "row_within", "set_sides", "split_step"]
+__all__ = ["MAX_SPLITS", "MAX_TRIES", "find_sides", "row_within", "set_sides", "split_step"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -25,7 +25,7 @@ Index = NDArray[np.int64]
 #: step are then too small to matter; the step is taken as it stands.
 MAX_SPLITS = 16
 #: A crossing is found within a dozen tries, or never.
-_MAX_TRIES = 200
+MAX_TRIES = 200
 
 
 @nb.njit(**INNER)
@@ -160,7 +160,7 @@ def split_step(
             done = target == start or abs(g) <= 1e-14 * scale or abs(high - low) < 1e-15
             # A motion beyond all bounds has no crossing to be found; the caller reports it.
             tries += 1
-            done = done or tries > _MAX_TRIES or not np.isfinite(g)
+            done = done or tries > MAX_TRIES or not np.isfinite(g)
             if probe > 0 and not done:
                 # A contact just made starts on its boundary, to rounding: look for a point inside.
                 if g > 0.0:

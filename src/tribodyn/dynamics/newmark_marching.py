@@ -15,23 +15,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
+from tribodyn.dynamics.crossing import MAX_SPLITS, MAX_TRIES
 from tribodyn.dynamics.kernel import I64, INNER, JIT
 from tribodyn.dynamics.lanes import address, first_lane, load
 from tribodyn.dynamics.newmark_force import SINGLE, compression, row_length, slots
 from tribodyn.dynamics.newmark_kernel import beyond, newmark_step, start_acceleration
 
-__all__ = ["MAX_SPLITS", "newmark_block"]
+__all__ = ["newmark_block"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-#: A step is split at most this often. More means a grazing contact, whose excursions within one
-#: step are then too small to matter; the step is taken as it stands.
-MAX_SPLITS = 16
-
-_SOURCES = (
-    "lanes", "kernel", "newmark_lanes", "newmark_force", "newmark_kernel", "newmark_marching",
-)  # fmt: skip
+#: Every file whose code or constants end up in the compiled kernel.
+_OWN = ("newmark_lanes", "newmark_force", "newmark_kernel", "newmark_marching")
+_SOURCES = ("lanes", "kernel", "crossing", *_OWN)
 
 
 @nb.njit(**INNER)
@@ -166,7 +163,7 @@ def _split_step(
     sides, _, _, _, _, _, _, _, _, single = slots(shape)
     inverse = single + SINGLE
     spare = inverse + n * n
-    start, target, contact, splits, probe = 0.0, 1.0, I64(-1), 0, 0
+    start, target, contact, splits, probe, tries = 0.0, 1.0, I64(-1), 0, 0, 0
     low = high = g_low = g_high = leaving = scale = 0.0
     ok = True
     _row_within(columns, rows, base, 0.0, part, I64(0))
@@ -180,6 +177,9 @@ def _split_step(
             at = columns + contact * (5 + 3 * n)
             g = _clearance(n, part, at, 3 * n, w[sides + contact], leaving, single, w)
             done = target == start or abs(g) <= 1e-14 * scale or abs(high - low) < 1e-15
+            # A motion beyond all bounds has no crossing to be found; the caller reports it.
+            tries += 1
+            done = done or tries > MAX_TRIES or not np.isfinite(g)
             if probe > 0 and not done:
                 # A contact just made starts on its boundary, to rounding: look for a point inside.
                 if g > 0.0:
@@ -203,7 +203,7 @@ def _split_step(
         other, direction, before, after = _first_beyond(shape, dead, part, columns, contact, w)
         if other >= 0 and splits < MAX_SPLITS and not (contact >= 0 and target == start):
             # Another contact crossed, earlier than the one just found if there was one.
-            contact, leaving, scale = other, direction, abs(before - after)
+            contact, leaving, scale, tries = other, direction, abs(before - after), 0
             low, g_low, high, g_high = start, before, target, after
             if before > 0.0:
                 probe = 0
