@@ -102,19 +102,20 @@ def test_statistics_in_the_kernel_equal_those_of_a_record():
         fine = one.fine
         # Both take parts of the steps in which teeth part, but not the same ones.
         apart = fine.mean((fine.deflection[:, 0] <= 1e-5).astype(float))
-        limit = 1e-6 if apart > 0.0 else 1e-10
+        limit, at_jumps, share = (1e-6, 1e-5, 2e-3) if apart > 0.0 else (1e-10, 1e-10, 1e-12)
         for found, signal in (
             (many.deflection, fine.deflection),
             (many.contact_force, fine.contact_force),
             (many.acceleration, fine.acceleration),
             (many.output, fine.position @ outputs[:, :6].T + fine.velocity @ outputs[:, 6:].T),
         ):
-            size = np.abs(signal).max(axis=0) * limit
+            scale = np.abs(signal).max(axis=0)
+            size, most = limit * scale, at_jumps * scale
             assert np.all(np.abs(found.mean[lane] - fine.mean(signal)) <= size)
             assert np.all(np.abs(found.rms[lane] - rms(fine, signal)) <= size)
             # At the jump itself the two differ by as much as its place does.
-            assert np.all(np.abs(found.minimum[lane] - signal.min(axis=0)) <= 10.0 * size)
-            assert np.all(np.abs(found.maximum[lane] - signal.max(axis=0)) <= 10.0 * size)
+            assert np.all(np.abs(found.minimum[lane] - signal.min(axis=0)) <= most)
+            assert np.all(np.abs(found.maximum[lane] - signal.max(axis=0)) <= most)
         np.testing.assert_allclose(
             found.alternating_rms[lane], alternating_rms(fine, signal), rtol=1e-6
         )
@@ -122,7 +123,7 @@ def test_statistics_in_the_kernel_equal_those_of_a_record():
         scale = np.abs(waves).max() * limit
         np.testing.assert_allclose(many.deflection.harmonics[lane, 0], waves, atol=scale)
         # The samples count those at the boundary by halves, the kernel knows the time.
-        assert many.contact_loss_share[lane, 0] == pytest.approx(apart, abs=2e-3)
+        assert many.contact_loss_share[lane, 0] == pytest.approx(apart, abs=share)
         assert extremes(fine.deflection[:, 0])[1] >= many.deflection.maximum[lane, 0] - 1e-15
 
 
