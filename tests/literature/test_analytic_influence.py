@@ -17,10 +17,13 @@ import pytest
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import Material, SpurGear, SpurPair, spur_pair
-from tribodyn.stiffness import load_point, weber_banaschek_compression
+from tribodyn.stiffness import (
+    GearInfluence,
+    load_point,
+    loaded_contact,
+    weber_banaschek_compression,
+)
 from tribodyn.stiffness.analytic import analytic_influence
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.loaded import loaded_contact
 from tribodyn.stiffness.weber import weber_influence
 
 WIDTH = 20e-3

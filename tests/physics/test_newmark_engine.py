@@ -9,8 +9,14 @@ import pytest
 
 from known_systems import EVENTS, MESH_FREQUENCY, friction_vector, reference_system
 from tribodyn.analysis import mesh_harmonics
-from tribodyn.dynamics import FZG12_MESH_FREQUENCY, Contact, System, fzg12, steady_state
-from tribodyn.dynamics.load_friction import LoadFriction
+from tribodyn.dynamics import (
+    FZG12_MESH_FREQUENCY,
+    Contact,
+    LoadFriction,
+    System,
+    fzg12,
+    steady_state,
+)
 from tribodyn.dynamics.march import compile_for, march
 from tribodyn.dynamics.newmark import compile_newmark, march_newmark
 from tribodyn.dynamics.newmark_plain import newmark_plain

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribodyn.ehl.roughness import RoughnessProfile
+from tribodyn.ehl import RoughnessProfile
 from tribodyn.ehl.roughness_resolution import warn_if_unresolved
 from tribodyn.errors import InputError, ModelWarning
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tribodyn.errors import ComputationError
+from tribodyn.stiffness import ContactProblem
 from tribodyn.stiffness.loaded.plain import plain_approach, plain_loads
-from tribodyn.stiffness.loaded.problem import ContactProblem
 from tribodyn.stiffness.loaded.structure import Compliance
 
 WIDTH = 0.02

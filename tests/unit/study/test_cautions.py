@@ -9,10 +9,10 @@ import pytest
 from broken import SOUND
 
 import tribodyn as td
+from tribodyn.study import read_case
 from tribodyn.study.assembly import system_of
 from tribodyn.study.cautions import case_cautions
 from tribodyn.study.damping import damping_of
-from tribodyn.study.read import read_case
 from tribodyn.study.steps import steps_of
 from tribodyn.study.tooth_contact import mesh_of
 

@@ -13,8 +13,7 @@ from broken import SOUND
 
 import tribodyn as td
 from tribodyn.errors import ComputationError, OutputExistsError
-from tribodyn.study import SUMMARY
-from tribodyn.study.read import read_case
+from tribodyn.study import SUMMARY, read_case
 from tribodyn.study.save import RESULT_FILES
 
 _NAMED = """
