@@ -22,6 +22,7 @@ from tribodyn.mesh.loads import (
     IN_SERIES,
     Loads,
     quasi_static_loads,
+    reported_films,
     tribological_contact,
     warn_of_rigid_films,
 )
@@ -146,14 +147,18 @@ def build(
     tribology = tribological_contact(motion, touching, loads.tribological, composite_roughness)
     carried = loads.carried
     load_per_width = total_load * carried.share[cycle.in_contact]
+    films = loads.film_at(loads.tribological)
     columns: dict[str, Array] = {
         **_motion_columns(motion, cycle.sliding_direction),
         "load_per_width": load_per_width,
         "hertz_pressure": np.where(load_per_width > 0.0, tribology.hertz_pressure, 0.0),
         "friction_coefficient": _friction(friction_law, friction_options, tribology, motion, loads),
-        **as_columns(loads.film_at(loads.tribological), composite_roughness),
+        **as_columns(
+            reported_films(films, loads.film_at, load_per_width, teeth.least_share * total_load),
+            composite_roughness,
+        ),
     }
-    in_series = columns["film_stiffness"] if options["stiffness"] in IN_SERIES else None
+    in_series = films.film_stiffness if options["stiffness"] in IN_SERIES else None
     return MeshTable(
         grid=cycle.grid,
         path=cycle.path,

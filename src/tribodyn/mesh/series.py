@@ -9,18 +9,24 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, ModelWarning, Problem
 from tribodyn.mesh.path_film import FilmAt
+from tribodyn.mesh.solved_places import ALL, STIFFNESS
 from tribodyn.mesh.teeth import Carried, Teeth
 from tribodyn.types import Array, Mask
 
+#: Films of the loads given, with the quantities in which they are checked between the positions.
+FilmOf = Callable[[Array, tuple[int, ...]], FilmAt]
+
 #: The film is solved anew until the load shares move by less than this.
 _TOLERANCE = 1e-6
-_PASSES = 20
+_PASSES = 30
 #: Between two solutions the shares settle to this; each pass gains one digit or two, and after
 #: every few of them the limit is extrapolated.
 _SETTLED = 1e-13
 #: Pairs that are solved together are solved to this.
 _SETTLED_TOGETHER = 1e-9
-_STEPS = 200
+_STEPS = 300
+#: Steps that tell a slope, and bounds of that slope: 1 is a share that does not act on itself.
+_TOLD, _FALLS = 1e-11, (0.2, 50.0)
 _ROUND = 4
 #: Change of the steps, relative to them, without which nothing can be extrapolated.
 _BENT = 1e-3
@@ -31,18 +37,22 @@ _LOST = 1e-9
 def in_series(
     teeth: Teeth,
     total_load: float,
-    film_of: Callable[[Array], FilmAt],
+    film_of: FilmOf,
     where: Callable[[int, int], str],
 ) -> tuple[Carried, FilmAt]:
     """Put the film of each pair in series with its teeth, at the load share that follows."""
-    share = teeth.carried().share
+    share, checked = teeth.carried().share, (STIFFNESS,)
     for _ in range(_PASSES):
-        film_at = film_of(total_load * share)
+        film_at = film_of(total_load * share, checked)
         carried = _settle(teeth, total_load, film_at, share, where)
         change = float(np.max(np.abs(carried.share - share)))
         share = carried.share
-        if change < _TOLERANCE:
+        if change >= _TOLERANCE:
+            checked = ()
+        elif checked == ALL:
             return carried, film_at
+        else:
+            checked = ALL
     raise _unsettled(f"the load share still moves by {change:.2g} after {_PASSES} solutions")
 
 
@@ -84,16 +94,24 @@ def _settle_together(
 ) -> Carried:
     """The same for pairs solved together; a share that swings to and fro is slowed down."""
     least = teeth.least_share * total_load
-    pace, before = np.ones(share.shape), np.zeros(share.shape)
+    before, step = share, np.zeros(share.shape)
+    slope = np.ones(share.shape)
     for _ in range(_STEPS):
         load = np.maximum(total_load * share, least)
         carried = teeth.carried(_film_stiffness(teeth.in_contact, load, film_at))
-        step = carried.share - share
+        earlier, step = step, carried.share - share
         if np.abs(step).max() < _SETTLED_TOGETHER:
             return carried
-        pace = np.where(step * before < 0.0, 0.5 * pace, np.minimum(1.1 * pace, 1.0))
-        share, before = share + pace * step, step
+        slope = _secant(share - before, step - earlier, slope)
+        before, share = share, np.clip(share + step / slope, 0.0, 1.0)
     raise _still_moving(np.abs(step), where)
+
+
+def _secant(moved: Array, change: Array, slope: Array) -> Array:
+    """Fall of the step over the share, within bounds that neither stop it nor let it jump."""
+    told = np.abs(moved) > _TOLD
+    fall = -change / np.where(told, moved, 1.0)
+    return np.where(told, np.clip(fall, *_FALLS), slope)
 
 
 def _still_moving(change: Array, where: Callable[[int, int], str]) -> ComputationError:
