@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -128,10 +129,7 @@ class Refinement:
         for zone in range(len(self.positions.counts)):
             ages = np.unique(self.places.age[self.places.zone == zone])
             nothing = np.zeros(len(QUANTITIES))
-            found += [
-                _Interval(zone, float(a), float(b), nothing)
-                for a, b in zip(ages[:-1], ages[1:], strict=True)
-            ]
+            found += [_Interval(zone, float(a), float(b), nothing) for a, b in pairwise(ages)]
         return found
 
     def _inside(self, interval: _Interval) -> Index:

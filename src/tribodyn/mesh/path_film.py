@@ -17,8 +17,8 @@ import numpy as np
 from tribodyn.contact import PathOfContact
 from tribodyn.ehl.solved_films import Films
 from tribodyn.mesh.film_places import film_places
-from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.film_refinement import PathLoads, Refinement
+from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.positions import PathPositions, path_positions
 from tribodyn.mesh.solved_places import (
     PRESSURE,

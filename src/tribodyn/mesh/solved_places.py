@@ -40,9 +40,7 @@ class Places(NamedTuple):
 
     def joined(self, others: Places) -> Places:
         """Both together."""
-        return Places(
-            *(np.concatenate(pair, axis=-1) for pair in zip(self, others, strict=True))
-        )
+        return Places(*(np.concatenate(pair, axis=-1) for pair in zip(self, others, strict=True)))
 
 
 @dataclass(eq=False)
@@ -59,9 +57,7 @@ class Memory:
         self.yielding = np.concatenate([self.yielding, yielding])
 
 
-def places_of(
-    touching: Touching, zone: Index, load: Array, films: Films, yielding: Mask
-) -> Places:
+def places_of(touching: Touching, zone: Index, load: Array, films: Films, yielding: Mask) -> Places:
     """Solved films over their scales, as logarithms, and where their pressure is greatest."""
     scales = touching.scales(load)
     values = [np.log(getattr(films, name) / scales[name]) for name in QUANTITIES[:STIFFNESS]]
@@ -69,9 +65,7 @@ def places_of(
     values.append(scales["film_stiffness"] / np.asarray(films.film_stiffness))
     peaks = [_peak(solution.pressure) for solution in films.solutions]
     node, drop = np.array(peaks).reshape(-1, 2).T
-    return Places(
-        touching.age, zone, load, np.stack(values), node.astype(np.int64), drop, yielding
-    )
+    return Places(touching.age, zone, load, np.stack(values), node.astype(np.int64), drop, yielding)
 
 
 def _peak(pressure: Array) -> tuple[int, float]:
@@ -101,9 +95,7 @@ def between(
             )
         elif (near & added).any():
             order = np.flatnonzero(near)[np.argsort(places.age[near])]
-            found[quantity, here] += np.interp(
-                age[here], places.age[order], rest[quantity, order]
-            )
+            found[quantity, here] += np.interp(age[here], places.age[order], rest[quantity, order])
     return found
 
 

@@ -79,7 +79,7 @@ def film(result: Any) -> Any:
     mesh = result.mesh
     angle = driving_roll_angle(mesh)
     name, place, _ = _columns(mesh)[-1]
-    least = rounded("film_thickness", float(np.min(pair_life(mesh, name)[1])))
+    least = rounded("film_thickness", float(np.nanmin(pair_life(mesh, name)[1])))
     return stack(
         f"The oil film {place} is never below {least}",
         roll_angle_label(mesh),
