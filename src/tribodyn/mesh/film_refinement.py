@@ -164,8 +164,8 @@ class Refinement:
 
     def _opened(self, intervals: list[_Interval], errors: Array) -> Mask:
         """Intervals with an error, and those beside them."""
-        bad = (errors > GOOD).any(axis=0)
-        opened = bad.copy()
+        bad = np.asarray((errors > GOOD).any(axis=0))
+        opened = np.array(bad)
         for left in range(len(intervals) - 1):
             a, b = intervals[left], intervals[left + 1]
             if a.zone == b.zone and abs(a.end - b.start) < _SAME:

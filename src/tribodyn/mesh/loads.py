@@ -53,10 +53,10 @@ def quasi_static_loads(
     def raised(loads: Array) -> Array:
         return np.where(cycle.in_contact, np.maximum(loads, least), 0.0)
 
-    def of_formula(loads: Array, checked: tuple[int, ...] = ()) -> FilmAt:
+    def of_formula(loads: Array, checked: tuple[int, ...]) -> FilmAt:
         return lambda load: touching.films(model, np.maximum(load, least), **options)
 
-    def of_path(loads: Array, checked: tuple[int, ...] = ALL) -> FilmAt:
+    def of_path(loads: Array, checked: tuple[int, ...]) -> FilmAt:
         every = raised(loads)
         at_places = np.maximum(along.load_of(cycle.grid, every), least)
         of_contacts = every[cycle.in_contact]
@@ -73,7 +73,7 @@ def quasi_static_loads(
         carried, film_at = in_series(teeth, total_load, film_of, cycle.named)
     else:
         carried = teeth.carried()
-        film_at = film_of(total_load * carried.share)
+        film_at = film_of(total_load * carried.share, ALL)
     return Loads(carried, raised(total_load * carried.share)[cycle.in_contact], film_at)
 
 
@@ -92,7 +92,7 @@ def reported_films(
     if isinstance(film_at, SolvedPath):
         known &= ~film_at.doubtful
         _warn_of_doubt(film_at)
-    columns = {}
+    columns: dict[str, Any] = {}
     for row, name in zip(known, QUANTITIES, strict=True):
         column = getattr(films, name)
         columns[name] = None if column is None else np.where(row, column, np.nan)
