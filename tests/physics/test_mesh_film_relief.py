@@ -72,8 +72,11 @@ def contact(mesh: Any, place: tuple[Any, Any]) -> tuple[Any, Any, Any, float]:
     """Load per width, radius, entrainment speed and modulus by hand."""
     gears = mesh.gear_pair
     pinion = mesh.path[place]
-    base = 0.5 * 3e-3 * math.cos(math.radians(20.0)) * np.array(
-        [gears.pinion.teeth, gears.wheel.teeth]
+    base = (
+        0.5
+        * 3e-3
+        * math.cos(math.radians(20.0))
+        * np.array([gears.pinion.teeth, gears.wheel.teeth])
     )
     wheel = base.sum() * math.tan(math.radians(20.0)) - pinion
     speed = 0.5 * mesh.pinion_speed * (pinion + wheel * base[0] / base[1])
@@ -144,7 +147,6 @@ def test_pairs_that_do_not_touch_have_no_film() -> None:
         assert np.all(np.isnan(column[apart]))
         assert np.all(np.isfinite(column[mesh.in_contact & ~apart]))
         assert np.all(column[~mesh.in_contact] == 0.0)
-    assert np.nanmax(mesh.central_film) < 45e-6
 
 
 def test_figures_leave_out_pairs_that_do_not_touch() -> None:
@@ -156,7 +158,9 @@ def test_figures_leave_out_pairs_that_do_not_touch() -> None:
         figure = FIGURES[name](result)
         assert "nan" not in figure.layout.title.text
         assert np.isnan(np.array(figure.data[0].y, dtype=float)).sum() > 100
-    assert "0.77 GPa" in FIGURES["film_pressure"](result).layout.title.text
+    assert "reaches 0.7" in FIGURES["film_pressure"](result).layout.title.text
+    # a pair that is about to leave contact has a film of 50 um: the others must still be seen
+    assert FIGURES["film"](result).layout.yaxis.type == "log"
 
 
 def test_films_over_operation_leave_them_out_too() -> None:

@@ -19,6 +19,7 @@ from tribodyn.mesh.solved_places import (
     PRESSURE,
     PROMISED,
     QUANTITIES,
+    RIGID,
     STIFFNESS,
     Memory,
     Places,
@@ -94,7 +95,8 @@ class Refinement:
                 self._choose_curves(contacts, solved, errors)
                 first = False
             opened = self._opened([interval for interval, _ in pairs], errors)
-            self._add(contacts, solved, opened & (errors[STIFFNESS] > 0.0))
+            turning = [self._turns_rigid(interval) for interval, _ in pairs]
+            self._add(contacts, solved, (opened | turning) & (errors[STIFFNESS] > 0.0))
             intervals = self._halves(pairs, errors, opened, PRESSURE in quantities)
 
     def solve_extremes(self) -> None:
@@ -185,20 +187,29 @@ class Refinement:
             age = float(self.touching.age[contact])
             for start, end in ((interval.start, age), (age, interval.end)):
                 half = _Interval(interval.zone, start, end, errors[:, number])
-                if opened[number] or (spikes and self._passes_nodes(half)):
+                uneven = spikes and self._passes_nodes(half)
+                if opened[number] or uneven or self._turns_rigid(half):
                     found.append(half)
         return found
 
     def _passes_nodes(self, interval: _Interval) -> bool:
         """Whether a sharp peak passes several nodes between two places: its height is uneven."""
-        ends = [
-            np.flatnonzero(
-                (self.places.zone == interval.zone) & (np.abs(self.places.age - age) < _SAME)
-            )[0]
-            for age in (interval.start, interval.end)
-        ]
+        ends = self._ends(interval)
         nodes, drops = self.places.peak_node[ends], self.places.peak_drop[ends]
         return bool(abs(nodes[1] - nodes[0]) > 1 and drops.max() > PROMISED)
+
+    def _turns_rigid(self, interval: _Interval) -> bool:
+        """Whether the film counts as rigid at one end only: its stiffness has a pole between."""
+        rigid = self.places.values[STIFFNESS, self._ends(interval)] < RIGID
+        return bool(rigid[0] != rigid[1])
+
+    def _ends(self, interval: _Interval) -> list[int]:
+        """Places at both ends."""
+        same_zone = self.places.zone == interval.zone
+        return [
+            int(np.flatnonzero(same_zone & (np.abs(self.places.age - age) < _SAME))[0])
+            for age in (interval.start, interval.end)
+        ]
 
     def _doubt(self, intervals: list[_Interval]) -> None:
         """Mark the contacts between places that are not near enough to each other."""

@@ -25,6 +25,8 @@ ALL = (0, 1, 2, 3)
 RIGID = 1e-3
 #: Error of a value between the places above which more of them are solved, and what is promised.
 GOOD, PROMISED = 0.006, 0.02
+#: Difference of logarithms beyond which more is as bad.
+_FAR = 20.0
 
 
 class Places(NamedTuple):
@@ -109,7 +111,7 @@ def _curve(knots: Array, values: Array, age: Array) -> Array:
 
 def deviation(expected: Array, solved: Array) -> Array:
     """Relative error of each quantity (4, m); films that do not yield all count as rigid."""
-    error = np.abs(np.expm1(expected - solved))
+    error = np.abs(np.expm1(np.clip(expected - solved, -_FAR, _FAR)))
     yielding, solved_yielding = (np.maximum(v[STIFFNESS], RIGID) for v in (expected, solved))
     error[STIFFNESS] = np.abs(solved_yielding / yielding - 1.0)
     return np.asarray(error)
