@@ -33,6 +33,8 @@ from tribodyn.types import Array, Index, Mask
 MOST_ADDED = 800
 #: Ages nearer than this are one place [mesh cycles].
 _SAME = 1e-8
+#: Compliance below which a film is nearly rigid, and ratio of two of them that is steep.
+_NEARLY_RIGID, _SOARS = 5.0 * RIGID, 1.4
 #: Times that the contact with the greatest pressure or the least film is looked for anew.
 _EXTREMES = 6
 
@@ -199,9 +201,11 @@ class Refinement:
         return bool(abs(nodes[1] - nodes[0]) > 1 and drops.max() > PROMISED)
 
     def _turns_rigid(self, interval: _Interval) -> bool:
-        """Whether the film counts as rigid at one end only: its stiffness has a pole between."""
-        rigid = self.places.values[STIFFNESS, self._ends(interval)] < RIGID
-        return bool(rigid[0] != rigid[1])
+        """Whether the film turns rigid between both ends, so that its stiffness soars."""
+        least, most = np.sort(
+            np.maximum(self.places.values[STIFFNESS, self._ends(interval)], RIGID)
+        )
+        return bool(least < _NEARLY_RIGID and most > _SOARS * least)
 
     def _ends(self, interval: _Interval) -> list[int]:
         """Places at both ends."""
