@@ -8,6 +8,7 @@ formula follows every change of load, radius and speed.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -16,6 +17,7 @@ import numpy as np
 
 from tribodyn.contact import PathOfContact
 from tribodyn.ehl.solved_films import Films
+from tribodyn.errors import ModelWarning
 from tribodyn.mesh.film_places import film_places
 from tribodyn.mesh.film_refinement import PathLoads, Refinement
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
@@ -76,9 +78,7 @@ class PathFilm:
         first.yielding[count:] = yielding
         refinement = Refinement(
             self.places, self.touching, self.zone, loads, known, first,
-            lambda new: self._solve(
-                self.touching.some(new), self.zone[new], loads.of_contacts[new], progress
-            )[1],
+            lambda new: self._solve_more(new, loads, progress),
         )  # fmt: skip
         if checked:
             refinement.refine(checked)
@@ -94,6 +94,13 @@ class PathFilm:
             doubtful=refinement.doubtful,
             scored=loads.scored,
         )
+
+    def _solve_more(self, contacts: Index, loads: PathLoads, progress: Progress) -> Places:
+        touching, zone = self.touching.some(contacts), self.zone[contacts]
+        with warnings.catch_warnings():
+            # The positions have said it already.
+            warnings.filterwarnings("ignore", r"\[seed-film-stiffness\]", ModelWarning)
+            return self._solve(touching, zone, loads.of_contacts[contacts], progress)[1]
 
     def _solve(
         self, touching: Touching, zone: Index, loads: Array, progress: Progress
