@@ -21,7 +21,7 @@ from tribodyn.mesh.positions import PathPositions, path_positions
 from tribodyn.mesh.teeth import LEAST_SHARE, teeth_of
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     import xarray
@@ -222,11 +222,12 @@ def film_over_operation(
         load_per_width=load,
         hertz_pressure=hertz_line(load, motion.equivalent_radius[0], modulus).maximum_pressure,
         entrainment_speed=motion.entrainment_speed,
-        **{
-            name: np.where(touches, column, np.nan)
-            for name, column in as_columns(films, composite_roughness).items()
-        },
+        **_masked(as_columns(films, composite_roughness), touches),
     )
+
+
+def _masked(columns: dict[str, Array], touches: Mask) -> dict[str, Array]:
+    return {name: np.where(touches, column, np.nan) for name, column in columns.items()}
 
 
 def _check(speed: Array, torque: Array, composite_roughness: float) -> None:
