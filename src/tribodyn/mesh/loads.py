@@ -80,13 +80,7 @@ def quasi_static_loads(
 def reported_films(
     films: Films, film_at: FilmAt, load_per_width: Array, least_load: float
 ) -> Films:
-    """Leave out pairs that hardly touch, and what is not known well enough.
-
-    Warns
-    -----
-    ModelWarning
-        Code ``film-positions`` where the solved places are too few.
-    """
+    """Leave out pairs that hardly touch, and what is not known well enough."""
     touches = load_per_width > least_load
     known = np.broadcast_to(touches, (len(QUANTITIES), touches.size)).copy()
     if isinstance(film_at, SolvedPath):
