@@ -31,6 +31,7 @@ from tribodyn.dynamics.dormand_prince_kernel import (
 )
 from tribodyn.dynamics.kernel import I64, INNER, JIT, acceleration
 from tribodyn.dynamics.lanes import address
+from tribodyn.interrupt import STOPPED
 
 __all__ = ["march_adaptive_block"]
 
@@ -134,6 +135,7 @@ def _build(digest: str) -> Any:
         record: Array,
         trail: Array,
         report: Array,
+        stop: Index,
     ) -> None:
         """March every lane by ``cycles`` mesh cycles.
 
@@ -170,7 +172,9 @@ def _build(digest: str) -> Any:
             Receives the steps of a single lane; empty to keep nothing.
         report : (10,) array
             Steps, rejections, crossings, widest step, reason of a failure (0 none, 1 step too
-            narrow, 2 chatter), its phase, lane and contact, steps in the trail, cycle.
+            narrow, 2 chatter, -2 stopped), its phase, lane and contact, steps in the trail, cycle.
+        stop : (1,) array
+            Not zero when the march has to end.
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, contacts, width_of_block = code[0], code[1], len(lanes)
@@ -201,6 +205,9 @@ def _build(digest: str) -> Any:
                 cell, last = first[segment], first[segment + 1]
                 anew = True
                 while phase < end:
+                    if stop[0] != 0:
+                        report[4] = STOPPED
+                        return
                     if anew:
                         fill_row(cells, count, cell, phase, row)
                         if switching and phase == events[segment]:

@@ -12,18 +12,22 @@ from numba.extending import overload
 from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
-from tribodyn.dynamics.crossing import MAX_SPLITS, set_sides, split_step
+from tribodyn.dynamics.crossing import set_sides, split_step
+from tribodyn.dynamics.crossing_search import WIDTH, most_splits
 from tribodyn.dynamics.kernel import I64, INNER, JIT, left_side, step
 from tribodyn.dynamics.lanes import address, open_rows
 from tribodyn.dynamics.moments import gather, gather_parts
+from tribodyn.interrupt import STOPPED
 
-__all__ = ["march_block"]
+__all__ = ["UNPARTED", "march_block"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 #: Every file whose code ends up in the compiled kernel.
-_SOURCES = ("lanes", "kernel", "crossing", "moments", "marching")
+_SOURCES = ("lanes", "kernel", "crossing_search", "crossing", "moments", "marching")
+#: What :func:`march_block` returns from here on tells of a step that comes to no end.
+UNPARTED = 1 << 40
 
 
 @nb.njit(**INNER)
@@ -73,15 +77,18 @@ def _repair(
     part: Array,
     room: Array,
     parts: Array,
-) -> None:
-    """Repeat the step in parts for a lane that crossed a boundary."""
+    search: Array,
+) -> int:
+    """Repeat the step in parts for a lane that crossed a boundary; returns as `split_step` does."""
     n, side, width = code[0], 8 * code[0] + code[1], len(lanes)
     h = 9 * n + 2 * code[1] + 1
     _take(lane, width, slots, w, single)
     own, start = _own_rows(rows, base, code[2], width, lane, room)
-    split_step(code, reads, own, start, w[h * width + lane], part, single, parts)
+    whole = w[h * width + lane]
+    contact: int = split_step(code, reads, own, start, whole, part, single, parts, search)
     _put(lane, width, 4 * n, 6 * n, w, single)
     _put(lane, width, side, side + code[1], w, single)
+    return contact
 
 
 def _room_aside(first: int, moments: Any, waves: int) -> Array:
@@ -147,6 +154,7 @@ def _build(digest: str) -> Any:
         waves: Array,
         harmonics: int,
         moments: Any,
+        stop: Index,
     ) -> int:
         """March every lane by ``cycles`` mesh cycles.
 
@@ -180,11 +188,15 @@ def _build(digest: str) -> Any:
         moments : array or None
             Receives the statistics, see :mod:`tribodyn.dynamics.moments`; None to gather nothing,
             which also spares the compiler that code.
+        stop : (1,) array
+            Not zero when the march has to end.
 
         Returns
         -------
         int
-            -1 when done, else the step, counted from the start, after which a state is not finite.
+            -1 when done, -2 when stopped, else the step, counted from the start, after which a
+            state is not finite; of a step that comes to no end
+            ``UNPARTED + (step * contacts + contact) * lanes + lane``.
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, columns, width = code[0], code[2], len(lanes)
@@ -194,9 +206,10 @@ def _build(digest: str) -> Any:
         room = address(work[slots * (width + 1) + 3 * columns :])
         w, code, reads, table = address(work), address(code), address(reads), open_rows(rows)
         # A list of the parts of a step, moments of the lanes that were split, waves of a part.
-        most = 1 + (MAX_SPLITS + 1) * (2 + code[1] + 4 * n)
+        listed = 1 + (most_splits(code[1]) + 1) * (2 + code[1] + 4 * n)
+        most = listed + WIDTH * (code[1] + 1)
         kept = _room_aside(most, moments, 6 * harmonics)
-        parts, wave = address(kept), address(waves)
+        parts, search, wave = address(kept), address(kept[listed:]), address(waves)
         _set_up(lanes, code, period, load, state, w)
         switching = np.bool_(False)
         for j in range(code[1]):
@@ -205,6 +218,8 @@ def _build(digest: str) -> Any:
         point = 0
         for _cycle in range(cycles):
             for r in range(share.size):
+                if stop[0] != 0:
+                    return STOPPED
                 base = 3 * columns * r
                 for lane in range(width):
                     w[h * width + lane] = period[lane] * share[r]
@@ -222,7 +237,7 @@ def _build(digest: str) -> Any:
                     for lane in range(width):
                         if not (gone >> lane) & 1:
                             continue
-                        _repair(
+                        contact = _repair(
                             lane,
                             slots,
                             lanes,
@@ -235,7 +250,10 @@ def _build(digest: str) -> Any:
                             part,
                             room,
                             parts,
+                            search,
                         )
+                        if contact >= 0:
+                            return UNPARTED + (point * code[1] + contact) * width + lane
                         if moments is not None:
                             count = moments.size // width
                             own = address(kept[most + lane * count :])
