@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 #: Numbers per contact, and those of the search behind them: see the slots.
 WIDTH = 8
-#: Slots of a contact: -1 without a dead zone, 1 if it has just changed its side, else 0; its
+#: Slots of a contact: -1 without a dead zone, 1 if it begins on its boundary, else 0; its
 #: compression and gap at the near place, at the far one, at the last try; what they change by in
 #: the whole step.
 _KIND, NEAR, _FAR, NOW, _CHANGE = 0, 1, 3, 5, 7
@@ -34,7 +34,7 @@ _LOW, _HIGH, _LOW_WEIGHT, _HIGH_WEIGHT, _LAST, _WIDE, _TRIES, _LEADER = 0, 1, 2,
 MAX_TRIES = 240
 #: Distances from the boundary over their change in the step: of the crossing, and of others there.
 _THERE, _TOGETHER = 1e-14, 1e-12
-#: Narrowest search, and least time that a contact that has just changed its side may stay there.
+#: Narrowest search, and time within which it is not told whether a contact leaves its boundary.
 _NARROW, _STAY = 1e-15, 1e-6
 
 
@@ -54,9 +54,11 @@ def _distance(room: Array, j: int, place: int, sides: int, w: Array) -> float:
 
 
 @nb.njit(**INNER)
-def _is_beyond(room: Array, j: int, sides: int, w: Array) -> bool:
-    """Tell whether a contact is beyond its boundary at the last try."""
+def _is_beyond(room: Array, j: int, early: bool, sides: int, w: Array) -> bool:
+    """Tell whether a contact is beyond its boundary at the last try, ``early`` after the start."""
     at = WIDTH * j
+    if early and room[at + _KIND] > 0.0:
+        return False
     d, gap, side = room[at + NOW], room[at + NOW + 1], w[sides + j]
     beyond: bool = side * d - gap < 0.0 if side != 0.0 else abs(d) - gap > 0.0
     return room[at + _KIND] >= 0.0 and beyond
@@ -70,7 +72,7 @@ def _keep(room: Array, contacts: int, place: int) -> None:
 
 
 @nb.njit(**INNER)
-def _leader(room: Array, contacts: int, sides: int, w: Array) -> tuple[Any, float]:
+def _leader(room: Array, contacts: int, start: float, sides: int, w: Array) -> tuple[Any, float]:
     """Contact that seems to cross first, and where; -1 if one is there from the beginning."""
     search = WIDTH * contacts
     low, high = room[search + _LOW], room[search + _HIGH]
@@ -78,10 +80,11 @@ def _leader(room: Array, contacts: int, sides: int, w: Array) -> tuple[Any, floa
     place = high
     for j in range(contacts):
         after = _distance(room, j, I64(_FAR), sides, w)
-        if room[WIDTH * j + _KIND] < 0.0 or not after < 0.0:
+        kind = room[WIDTH * j + _KIND]
+        if kind < 0.0 or not after < 0.0 or (kind > 0.0 and high - start < _STAY):
             continue
         before = _distance(room, j, I64(NEAR), sides, w)
-        if room[WIDTH * j + _KIND] > 0.0 or before <= 0.0:
+        if (kind > 0.0 and low == start) or before <= 0.0:
             return I64(-1), low
         near = room[search + _LOW_WEIGHT] * before
         at = low + (high - low) * near / (near - room[search + _HIGH_WEIGHT] * after)
@@ -95,12 +98,12 @@ def _propose(room: Array, contacts: int, start: float, sides: int, w: Array) -> 
     """Next place to try; ``start`` itself ends the search there."""
     search = WIDTH * contacts
     low, high = room[search + _LOW], room[search + _HIGH]
-    leader, target = _leader(room, contacts, sides, w)
+    leader, target = _leader(room, contacts, start, sides, w)
     room[search + _LEADER] = leader
     room[search + _TRIES] += 1.0
     if leader < 0:
         # A contact begins on its boundary, to rounding: look for a place inside.
-        return start if high - start < _STAY else low + 0.5 * (high - low)
+        return start if high - start < 2.0 * _STAY else low + 0.5 * (high - low)
     if room[search + _TRIES] % 4.0 == 0.0:
         if high - low > 0.5 * room[search + _WIDE]:
             target = low + 0.5 * (high - low)
@@ -120,7 +123,11 @@ def begin_search(
     some = False
     for j in range(contacts):
         at = WIDTH * j
-        some = some or _is_beyond(room, j, sides, w)
+        gap, side = room[at + NEAR + 1], w[sides + j]
+        d = side * room[at + NEAR] if side != 0.0 else -abs(room[at + NEAR])
+        if room[at + _KIND] == 0.0 and (d - gap if side != 0.0 else gap + d) <= 0.0:
+            room[at + _KIND] = 1.0
+        some = some or _is_beyond(room, j, end - start < _STAY, sides, w)
         room[at + _CHANGE] = abs(room[at + NOW] - room[at + NEAR])
         room[at + _CHANGE] += abs(room[at + NOW + 1] - room[at + NEAR + 1])
     if not some:
@@ -142,7 +149,7 @@ def go_on(
         return True, target
     some, alone = False, True
     for j in range(contacts):
-        if _is_beyond(room, j, sides, w):
+        if _is_beyond(room, j, target - start < _STAY, sides, w):
             some = True
             limit = _TOGETHER * room[WIDTH * j + _CHANGE]
             alone = alone and _distance(room, j, I64(NOW), sides, w) >= -limit
@@ -164,9 +171,6 @@ def go_on(
         room[search + _LOW_WEIGHT + other] = 1.0
     room[search + _LAST] = 1.0 + kept
     _keep(room, contacts, I64(_FAR if some else NEAR))
-    if not some:
-        for j in range(contacts):
-            room[WIDTH * j + _KIND] = min(room[WIDTH * j + _KIND], 0.0)
     if leader >= 0 and room[search + _HIGH] - room[search + _LOW] < _NARROW:
         return True, target
     return False, _propose(room, contacts, start, sides, w)
@@ -185,10 +189,11 @@ def change_sides(
         if room[at + _KIND] < 0.0:
             continue
         if target == start:
-            crosses = room[at + _KIND] > 0.0 or _distance(room, j, I64(NEAR), sides, w) <= 0.0
+            crosses = room[at + _KIND] > 0.0
         else:
             limit = _TOGETHER * room[at + _CHANGE]
             crosses = narrow or _distance(room, j, I64(NOW), sides, w) <= limit
+            crosses = crosses and not (room[at + _KIND] > 0.0 and target - start < _STAY)
             crosses = crosses or j == I64(room[search + _LEADER])
         crosses = crosses and _distance(room, j, I64(_FAR), sides, w) < 0.0
         room[at + _KIND] = 1.0 if crosses else 0.0
