@@ -84,7 +84,7 @@ def test_one_interruption_ends_a_march_and_its_process(lanes):
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize(
-    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=100000"],
+    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=20000"],
               ["bifurcation", "operation.speed=2000..3000 rpm:40", "--transient", "100000000"]]
 )  # fmt: skip
 def test_one_interruption_ends_a_command(words, tmp_path: Path):
