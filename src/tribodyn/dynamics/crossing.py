@@ -124,7 +124,7 @@ def split_step(
     w: Array,
     parts: Array,
     room: Array,
-) -> int:
+) -> Any:
     """March one lane by one step in parts; returns -1, or a contact that comes to no end.
 
     The state in buffer 0 and the sides are those at the left end; the new state is left in

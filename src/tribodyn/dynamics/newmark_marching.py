@@ -157,7 +157,7 @@ def _split_step(
     part: Array,
     w: Array,
     room: Array,
-) -> tuple[bool, int]:
+) -> tuple[bool, Any]:
     """March one lane by one step in parts; returns whether all contact forces were found.
 
     State, acceleration and sides are those at the left end; the new state is left where a step
