@@ -253,7 +253,8 @@ def _build(digest: str) -> Any:
                             search,
                         )
                         if contact >= 0:
-                            return UNPARTED + (point * code[1] + contact) * width + lane
+                            place: int = (point * code[1] + contact) * width + lane
+                            return UNPARTED + place
                         if moments is not None:
                             count = moments.size // width
                             own = address(kept[most + lane * count :])

@@ -355,7 +355,8 @@ def _build(digest: str) -> Any:
                                 part, one, room,
                             )  # fmt: skip
                             if contact >= 0:
-                                return UNPARTED + (point * m + contact) * width + lane
+                                told: int = (point * m + contact) * width + lane
+                                return UNPARTED + told
                             if not found:
                                 return 2 * point + 3
                             for slot in range(3 * n, 6 * n):
