@@ -11,7 +11,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.crossing_search import (
     NEAR,
@@ -24,11 +23,7 @@ from tribodyn.dynamics.crossing_search import (
 )
 from tribodyn.dynamics.kernel import I64, INNER, compression, dead_zone, step
 from tribodyn.dynamics.lanes import above, first_lane, store
-
-__all__ = ["find_sides", "row_within", "set_sides", "split_step"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 
 @nb.njit(**INNER)
@@ -125,14 +120,7 @@ def split_step(
     parts: Array,
     room: Array,
 ) -> Any:
-    """March one lane by one step in parts; returns -1, or a contact that comes to no end.
-
-    The state in buffer 0 and the sides are those at the left end; the new state is left in
-    buffer 2, and the sides are updated. Crossings are found on the step itself, so that they are
-    as accurate as the step. The number of the parts and what
-    :func:`~tribodyn.dynamics.moments.gather_parts` needs of each are left in ``parts``; ``room``
-    is that of the search.
-    """
+    """March one lane by one step in parts; returns -1, or a contact that comes to no end."""
     n, contacts, sides = code[0], code[1], 8 * code[0] + code[1]
     start, contact = 0.0, I64(-1)
     parts[0] = 0.0

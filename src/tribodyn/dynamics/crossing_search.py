@@ -12,13 +12,9 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.kernel import I64, INNER
-
-__all__ = ["NEAR", "NOW", "WIDTH", "begin_search", "change_sides", "go_on", "most_splits"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Numbers per contact, and those of the search behind them: see the slots.
 WIDTH = 8
@@ -113,10 +109,7 @@ def _propose(room: Array, contacts: int, start: float, sides: int, w: Array) -> 
 
 @nb.njit(**INNER)
 def begin_search(room: Array, contacts: int, start: float, end: float, sides: int, w: Array) -> Any:
-    """First place to try between ``start`` and ``end``, the last try; -1 if all keep their sides.
-
-    The compressions and gaps at the start are those at the near place.
-    """
+    """First place to try between ``start`` and ``end``, the last try; -1 if all keep their sides."""
     search = WIDTH * contacts
     some = False
     for j in range(contacts):

@@ -20,7 +20,6 @@ from tribodyn.dynamics.system import Entry, System
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
 
-__all__ = ["SPUR6_NAMES", "spur6"]
 
 SPUR6_NAMES = ("pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta")
 

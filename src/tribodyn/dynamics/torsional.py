@@ -20,7 +20,6 @@ from tribodyn.dynamics.system import Entry, System
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
 
-__all__ = ["TORSIONAL_NAMES", "torsional"]
 
 TORSIONAL_NAMES = ("pinion_theta", "wheel_theta")
 

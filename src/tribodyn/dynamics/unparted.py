@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from tribodyn.errors import ComputationError, Problem
 
-__all__ = ["unparted_step"]
-
 
 def unparted_step(
     contact: int, contacts: int, phase: float, time: float, lane: int | None
