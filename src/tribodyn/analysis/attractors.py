@@ -15,7 +15,6 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.settling import still_settles
 from tribodyn.dynamics.coordinates import orbit_coordinates
@@ -24,11 +23,7 @@ from tribodyn.dynamics.march import Compiled, march
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["LONGEST_PERIOD", "Motions", "settle"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 #: Longest period that ends a transient early [mesh cycles].
 LONGEST_PERIOD = 8
@@ -49,38 +44,7 @@ _PATIENCE = 0.05
 
 
 class Motions:
-    """Motions of one compiled system, one lane each, and what became of them.
-
-    Parameters
-    ----------
-    compiled : Compiled
-        The system.
-    frequency : (m,) array
-        Mesh frequency of every motion [Hz].
-    start : (m, 2 n) array
-        Where every motion begins [mixed]; NaN for a motion whose start is not yet known.
-    force : (m, n) array, optional
-        Constant generalized force on top of the system's [N or N*m].
-    parameters : dict of str to (m,) array, optional
-        Factors of the system per motion, by their names in ``LaneParameters`` [-].
-    keep_states : bool
-        Keep the states of the last 8 mesh cycles.
-
-    Attributes
-    ----------
-    state : (m, 2 n) array
-        Last state [mixed]; NaN for a motion that grew beyond all bounds.
-    period : (m,) int array
-        Mesh cycles after which it repeats, 1 to 8; 0 if it has not settled.
-    change : (m,) array
-        Least relative change over 1 to 8 mesh cycles [-].
-    rate : (m,) array
-        What one period leaves of a distance to the motion that repeats [-]; 1 if not known.
-    recent : (m, 8, k) array
-        Reduced states of the last 8 mesh cycles.
-    finished : (m,) bool array
-        Whether a motion was marched to its end.
-    """
+    """Motions of one compiled system, one lane each, and what became of them."""
 
     def __init__(
         self,
@@ -112,27 +76,11 @@ class Motions:
         self._lock = threading.Lock()
 
     def queue(self, indices: Any) -> None:
-        """Say which motions are to be marched.
-
-        Parameters
-        ----------
-        indices : sequence of int
-            Numbers of the motions.
-        """
+        """Say which motions are to be marched."""
         self._waiting = iter([int(i) for i in indices])
 
     def take(self, count: int) -> list[int]:
-        """Take motions out of the queue.
-
-        Parameters
-        ----------
-        count : int
-            How many at most.
-
-        Returns
-        -------
-        list of int
-        """
+        """Take motions out of the queue."""
         with self._lock:
             taken = []
             for item in self._waiting:
@@ -142,22 +90,7 @@ class Motions:
             return taken
 
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
-        """Keep what became of a motion.
-
-        Parameters
-        ----------
-        index : int
-            Number of the motion.
-        state : (2 n,) array
-            Its last state [mixed].
-        facts : tuple
-            Period, least relative change, force and reduced states of the last 8 mesh cycles.
-
-        Returns
-        -------
-        int
-            Motion that the lane goes on with; -1 for none.
-        """
+        """Keep what became of a motion."""
         self.state[index] = state
         self.period[index], self.change[index], self.force[index], recent = facts
         if len(self.recent):
@@ -168,25 +101,7 @@ class Motions:
         return -1
 
     def march(self, index: Index, state: Array, cycles: int, force: Array, **options: Any) -> Array:
-        """March lanes by whole mesh cycles.
-
-        Parameters
-        ----------
-        index : (lanes,) int array
-            Numbers of the motions.
-        state : (lanes, 2 n) array
-            Where they are [mixed].
-        cycles : int
-            Mesh cycles.
-        force : (lanes, n) array
-            Constant generalized force [N or N*m].
-        **options : object
-            Of :func:`tribodyn.dynamics.march.march`.
-
-        Returns
-        -------
-        (lanes, 2 n) array
-        """
+        """March lanes by whole mesh cycles."""
         if self.parameters:
             options["any_step"] = True
             options["parameters"] = LaneParameters(
@@ -293,7 +208,7 @@ class _Block:
             states.append(m.march(index, states[-1], 1, self.force, **options))
         return states[-1], np.array(states)
 
-    def _look(self, states: Array, balanced: NDArray[np.bool_]) -> None:
+    def _look(self, states: Array, balanced: Mask) -> None:
         """Look which lanes repeat; ``states`` are (9, lanes, k), the last of them the present."""
         size = np.maximum(np.abs(states[-1]).max(axis=1, initial=0.0), self.least)
         change = np.abs(states[-1] - states[-2::-1]).max(axis=2, initial=0.0) / size
@@ -352,30 +267,7 @@ def settle(
     threads: int | None = None,
     progress: Progress = SILENT,
 ) -> None:
-    """March motions until they repeat, or over the whole transient.
-
-    Parameters
-    ----------
-    motions : Motions
-        Receives what became of them.
-    indices : sequence of int
-        Which of them.
-    transient : int
-        Mesh cycles at most, to whole parts of 16.
-    tolerance : float
-        Certified distance to the motion that repeats, relative to the state [-].
-    width : int
-        Lanes looked at together: 1, or a multiple of 16.
-    threads : int, optional
-        Blocks at a time; the number of processors by default.
-    progress : Progress
-        Told about the motions.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        As it came; the motions that are ``finished`` are kept.
-    """
+    """March motions until they repeat, or over the whole transient."""
     motions.queue(indices)
     told = motions.marched
     count = threads or os.cpu_count() or 1

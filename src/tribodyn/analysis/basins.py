@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.basins_attractors import Attractor, Catalogue, Found, multiplier_of
@@ -18,11 +18,7 @@ from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["basins"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 #: Certified distance to an attractor at which a start has come to it, relative to the state.
 _NEAR = 1e-4
@@ -207,7 +203,7 @@ def _march(compiled: Compiled, starts: Array, plan: _Plan) -> Motions:
 
 
 def _attractor(
-    catalogue: Catalogue, number: int, mine: NDArray[np.bool_], motions: Motions, steps: int
+    catalogue: Catalogue, number: int, mine: Mask, motions: Motions, steps: int
 ) -> Attractor:
     found = catalogue.known[number]
     half = found.full.shape[1] // 2

@@ -6,17 +6,12 @@ import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.bifurcation_statistics import measure
 from tribodyn.dynamics.steady_state import steady_state
 from tribodyn.errors import ComputationError, InputError, ModelWarning
-
-__all__ = ["Attractor", "Catalogue", "Found", "multiplier_of"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 #: States of one motion differ by less than this part of the largest state.
 _SAME = 1e-3
@@ -76,64 +71,26 @@ class Attractor:
 
 @dataclass
 class Found:
-    """An attractor as it comes out of the marching.
+    """An attractor as it comes out of the marching."""
 
-    Parameters
-    ----------
-    states : (p, k) array
-        Reduced states at the mesh phase 0; of an irregular motion the last one.
-    state : (2 n,) array
-        One state [mixed].
-    force : (n,) array
-        Generalized force that balanced the drive [N or N*m].
-    period : int
-        Mesh cycles after which it repeats; 0 if it does not.
-    rms, contact_loss_share : float
-        Of the signal [m or rad, -].
-    full : (p, 2 n) array
-        States at the mesh phase 0 [mixed].
-    """
-
-    states: Array
-    state: Array
-    force: Array
-    period: int
-    rms: float
-    contact_loss_share: float
-    full: Array
+    states: Array  #: reduced states at the mesh phase 0
+    state: Array  #: one state [mixed]
+    force: Array  #: generalized force that balanced the drive [N or N*m]
+    period: int  #: mesh cycles after which it repeats
+    rms: float  #: [m or rad, -]
+    contact_loss_share: float  #: [m or rad, -]
+    full: Array  #: states at the mesh phase 0 [mixed]
 
 
 class Catalogue:
-    """Attractors known so far.
-
-    Parameters
-    ----------
-    signal : int or str
-        Contact whose compression is looked at, or name of a coordinate.
-    cycles : int
-        Mesh cycles of the statistics of a motion that does not repeat.
-    least : float
-        Rms below which a motion is at rest [m or rad].
-    """
+    """Attractors known so far."""
 
     def __init__(self, signal: int | str, cycles: int, least: float = 0.0) -> None:
         self.signal, self.cycles, self.least = signal, cycles, least
         self.known: list[Found] = []
 
     def label(self, motions: Motions) -> Index:
-        """Tell which attractor every motion came to; unknown ones are added.
-
-        Parameters
-        ----------
-        motions : Motions
-            That were settled.
-
-        Returns
-        -------
-        (m,) int array
-            Number of the attractor; -1 for a motion that has not settled, was lost, or was not
-            marched.
-        """
+        """Tell which attractor every motion came to; unknown ones are added."""
         label = np.full(motions.frequency.size, -1)
         alive = motions.finished & np.all(np.isfinite(motions.state), axis=1)
         if not alive.any():
@@ -198,7 +155,7 @@ class Catalogue:
             0.0 if rms < self.least else rms, float(facts.contact_loss_share[0]), full,
         )  # fmt: skip
 
-    def _irregular(self, label: Index, alive: NDArray[np.bool_], motions: Motions) -> None:
+    def _irregular(self, label: Index, alive: Mask, motions: Motions) -> None:
         """Sort motions that do not repeat by their rms; those that still approach stay open."""
         wild = np.flatnonzero((label < 0) & alive & (motions.period == 0))
         wild = wild[motions.change[wild] > _WILD]
@@ -219,22 +176,7 @@ class Catalogue:
             self.known[-1].rms = float(rms[middle])
 
     def again(self, motions: Motions, transient: int, tolerance: float) -> Catalogue:
-        """Follow every attractor with other steps.
-
-        Parameters
-        ----------
-        motions : Motions
-            One for every attractor, with its state as the start.
-        transient : int
-            Mesh cycles at most.
-        tolerance : float
-            Certified distance, relative to the state [-].
-
-        Returns
-        -------
-        Catalogue
-            In the same order.
-        """
+        """Follow every attractor with other steps."""
         settle(motions, np.arange(len(self.known)), transient, tolerance=tolerance)
         new = Catalogue(self.signal, self.cycles, self.least)
         for number in range(len(self.known)):
@@ -243,22 +185,7 @@ class Catalogue:
 
 
 def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
-    """Modulus of the largest Floquet multiplier of an attractor.
-
-    Parameters
-    ----------
-    found : Found
-        The attractor.
-    motions : Motions
-        Whose system and first mesh frequency count.
-    steps : int
-        Steps per mesh cycle.
-
-    Returns
-    -------
-    float
-        NaN for a motion that does not repeat, or whose orbit is not found.
-    """
+    """Modulus of the largest Floquet multiplier of an attractor."""
     half = found.state.size // 2
     start = (found.state[:half], found.state[half:])
     if not found.period:

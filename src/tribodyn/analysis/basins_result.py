@@ -6,16 +6,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.basins_attractors import Attractor
+from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["Basins"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -56,15 +52,15 @@ class Basins:
     units: tuple[str, str]
     first: Array = field(repr=False)
     second: Array = field(repr=False)
-    attractor: NDArray[np.int64] = field(repr=False)
+    attractor: Index = field(repr=False)
     attractors: tuple[Attractor, ...]
-    refined_attractor: NDArray[np.int64] = field(repr=False)
+    refined_attractor: Index = field(repr=False)
     names: tuple[str, ...] = field(repr=False)
     signal: str
     mesh_frequency: float
     steps: int
     step_number: float
-    finished: NDArray[np.bool_] = field(repr=False)
+    finished: Mask = field(repr=False)
 
     @property
     def complete(self) -> bool:

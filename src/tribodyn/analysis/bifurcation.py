@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.analysis.bifurcation_march import march_points, march_sweeps
 from tribodyn.analysis.bifurcation_result import Bifurcation
@@ -19,10 +19,8 @@ from tribodyn.dynamics.step_limit import LIMIT
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array, Index
 
-__all__ = ["bifurcation", "signal_name"]
-
-Array = NDArray[np.float64]
 Sweep = Literal["up", "down", "both", "independent"]
 
 _BRANCHES: dict[str, tuple[str, ...]] = {
@@ -233,29 +231,7 @@ def _read_plan(plan: Plan) -> Plan:
 
 
 def signal_name(system: System, signal: int | str) -> str:
-    """Name of what is looked at: a contact or a coordinate.
-
-    Parameters
-    ----------
-    system : System
-        The structure and its contacts.
-    signal : int or str
-        Number of a contact, or name of a coordinate; 0 is the first coordinate without contacts.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InputError
-        If there is no such contact or coordinate.
-
-    Examples
-    --------
-    >>> signal_name(System([[1.0]], [[0.0]], [[1.0]], [0.0]), 0)
-    'q0'
-    """
+    """Name of what is looked at: a contact or a coordinate."""
     names = tuple(system.names)
     if isinstance(signal, str) and signal in names:
         return signal
@@ -282,7 +258,7 @@ def _rows(
     return march_sweeps(values, first, plan, branches, progress)
 
 
-def _refined_steps(values: Values) -> NDArray[np.int64]:
+def _refined_steps(values: Values) -> Index:
     """Twice the steps, or as often doubled as it takes to be stable with a margin of two."""
     halvings = np.ceil(np.log2(np.maximum(2.0 * values.step_number / LIMIT, 2.0)))
     halvings = np.where(values.step_number > LIMIT, halvings, 1.0)
@@ -316,9 +292,7 @@ def _largest_exponents(
     return np.array(found)
 
 
-def _exponents(
-    values: Values, steps: NDArray[np.int64], last: Array, force: Array, cycles: int
-) -> list[float]:
+def _exponents(values: Values, steps: Index, last: Array, force: Array, cycles: int) -> list[float]:
     """Largest exponents; NaN for a motion that grew beyond all bounds or a step too long."""
     found = []
     for number, state in enumerate(last):

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.bifurcation_statistics import measure
@@ -15,34 +14,13 @@ from tribodyn.analysis.bifurcation_sweep import Stretches, march_stretches
 from tribodyn.analysis.bifurcation_values import Plan, Row, Values
 from tribodyn.dynamics.start import static_start
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["march_points", "march_sweeps"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 
 def march_points(
     values: Values, first: Array | None, plan: Plan, progress: Progress, chosen: Array | None = None
 ) -> Row:
-    """March every value of the parameter from a start of its own.
-
-    Parameters
-    ----------
-    values : Values
-        Systems; lanes side by side where nothing but the mesh frequency varies.
-    first : (points, 2 n) array, optional
-        Starts [mixed]; the static equilibrium where they are NaN, or by default.
-    plan : Plan
-        What to do.
-    progress : Progress
-        Told about the points.
-    chosen : (points,) bool array, optional
-        Values to march; all by default.
-
-    Returns
-    -------
-    Row
-    """
+    """March every value of the parameter from a start of its own."""
     row = Row(values.count, plan.keep, values.size)
     if first is not None:
         row.first[:] = first
@@ -65,26 +43,7 @@ def march_points(
 def march_sweeps(
     values: Values, first: Array | None, plan: Plan, branches: tuple[str, ...], progress: Progress
 ) -> list[Row]:
-    """March the values of the parameter each from the end of the last.
-
-    Parameters
-    ----------
-    values : Values
-        Systems.
-    first : (2 n,) array, optional
-        Start of the first value [mixed]; the static equilibrium by default.
-    plan : Plan
-        What to do.
-    branches : tuple of str
-        ``"up"`` and ``"down"``.
-    progress : Progress
-        Told about the points.
-
-    Returns
-    -------
-    list of Row
-        One for each branch. A motion that grew beyond all bounds is followed by a start at rest.
-    """
+    """March the values of the parameter each from the end of the last."""
     count = values.count
     rows = [Row(count, plan.keep, values.size) for _ in branches]
     if values.shared is not None:
@@ -128,8 +87,8 @@ def _march_one(values: Values, number: int, row: Row, plan: Plan) -> None:
 
 
 def _fill(
-    row: Row, motions: Motions, indices: NDArray[np.int64], plan: Plan,
-    numbers: NDArray[np.int64] | None = None,
+    row: Row, motions: Motions, indices: Index, plan: Plan,
+    numbers: Index | None = None,
 ) -> None:  # fmt: skip
     """Measure the finished motions, and write them into the row."""
     to = np.arange(indices.size) if numbers is None else numbers

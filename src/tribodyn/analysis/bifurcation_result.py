@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.types import Array, Index, Mask
+
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["Bifurcation"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -66,17 +64,17 @@ class Bifurcation:
     branches: tuple[str, ...]
     signal: str
     section: Array = field(repr=False)
-    period: NDArray[np.int64] = field(repr=False)
+    period: Index = field(repr=False)
     rms: Array = field(repr=False)
     contact_loss_share: Array = field(repr=False)
     step_number: Array = field(repr=False)
-    steps: NDArray[np.int64] = field(repr=False)
+    steps: Index = field(repr=False)
     verdict: NDArray[np.str_] = field(repr=False)
-    refined_period: NDArray[np.int64] = field(repr=False)
+    refined_period: Index = field(repr=False)
     refined_rms: Array = field(repr=False)
-    refined_steps: NDArray[np.int64] = field(repr=False)
+    refined_steps: Index = field(repr=False)
     largest_exponent: Array = field(repr=False)
-    finished: NDArray[np.bool_] = field(repr=False)
+    finished: Mask = field(repr=False)
 
     @property
     def complete(self) -> bool:
@@ -84,7 +82,7 @@ class Bifurcation:
         return bool(self.finished.all())
 
     @property
-    def ran_away(self) -> NDArray[np.bool_]:
+    def ran_away(self) -> Mask:
         """Which motions grew beyond all bounds without the step's doing, (branches, points)."""
         lost = self.finished & ~np.isfinite(self.rms)
         return np.asarray(lost & (self.verdict != "step-limited"))

@@ -6,16 +6,11 @@ import os
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.attractors import Motions
-from tribodyn.analysis.poincare import repeat_period
+from tribodyn.analysis.poincare_march import repeat_period
 from tribodyn.errors import ComputationError
-
-__all__ = ["Statistics", "measure"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Statistics of a signal without harmonics: mean, mean square, minimum, maximum, share off flank.
 _PLAIN = 5
@@ -23,52 +18,19 @@ _PLAIN = 5
 
 @dataclass(frozen=True)
 class Statistics:
-    """What was gathered of motions that go on from their last state.
+    """What was gathered of motions that go on from their last state."""
 
-    Parameters
-    ----------
-    points : (m, keep) array
-        The signal once per mesh cycle [m or rad].
-    period : (m,) int array
-        Mesh cycles after which it repeats; 0 if it does not.
-    rms : (m,) array
-        Alternating rms of the signal [m or rad].
-    contact_loss_share : (m,) array
-        Part of the time off the driving flank [-].
-    last : (m, 2 n) array
-        Last state [mixed].
-    """
-
-    points: Array
-    period: NDArray[np.int64]
-    rms: Array
-    contact_loss_share: Array
-    last: Array
+    points: Array  #: the signal once per mesh cycle [m or rad]
+    period: Index  #: mesh cycles after which it repeats
+    rms: Array  #: alternating rms of the signal [m or rad]
+    contact_loss_share: Array  #: part of the time off the driving flank [-]
+    last: Array  #: last state [mixed]
 
 
 def measure(
     motions: Motions, indices: Index, cycles: int, keep: int, signal: int | str
 ) -> Statistics:
-    """March on from the last states, and gather statistics.
-
-    Parameters
-    ----------
-    motions : Motions
-        That have settled, or whose transient is over.
-    indices : (m,) int array
-        Which of them.
-    cycles : int
-        Mesh cycles of a motion that has not settled; of others one period.
-    keep : int
-        Mesh cycles of which the points are kept.
-    signal : int or str
-        Contact whose compression is looked at, or name of a coordinate.
-
-    Returns
-    -------
-    Statistics
-        NaN and period 0 for motions that grew beyond all bounds.
-    """
+    """March on from the last states, and gather statistics."""
     nan = np.full(indices.size, np.nan)
     found = Statistics(
         np.full((indices.size, keep), np.nan), np.zeros(indices.size, dtype=np.int64), nan,

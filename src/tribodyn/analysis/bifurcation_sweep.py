@@ -9,15 +9,11 @@ already; if it never does, the following stretch is entered anew.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.dynamics.march import Compiled
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["Stretches", "march_stretches"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Stretches of all branches together, and values of the shortest.
 _STRETCHES, _SHORTEST = 32, 4
@@ -28,26 +24,7 @@ _SAME, _NEARLY = 1e-5, 1e-3
 
 
 class Stretches(Motions):
-    """Motions of one or two sweeps, cut into stretches.
-
-    Parameters
-    ----------
-    compiled : Compiled
-        The system.
-    frequency : (points,) array
-        Mesh frequency of every value [Hz].
-    first : (2 n,) array
-        Start of the first value [mixed].
-    rest : (2 n,) array
-        Start after a motion that was lost, and of all stretches but the first [mixed].
-    branches : tuple of str
-        ``"up"`` and ``"down"``.
-
-    Attributes
-    ----------
-    stretches : list of lists of (int, ...)
-        For every branch its stretches: numbers of the motions in the order of the sweep.
-    """
+    """Motions of one or two sweeps, cut into stretches."""
 
     def __init__(
         self, compiled: Compiled, frequency: Array, first: Array, rest: Array,
@@ -76,22 +53,7 @@ class Stretches(Motions):
         self.joining = False
 
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
-        """Keep a motion and go on with the next value of its stretch.
-
-        Parameters
-        ----------
-        index : int
-            Number of the motion.
-        state : (2 n,) array
-            Its last state [mixed].
-        facts : tuple
-            Period, least relative change, force and reduced states of the last 8 mesh cycles.
-
-        Returns
-        -------
-        int
-            Next value; -1 at the end, and where the motion is the one that is there already.
-        """
+        """Keep a motion and go on with the next value of its stretch."""
         self.met[index] = self.joining and self._same(index, facts)
         super().store(index, state, facts)
         if self.met[index]:
@@ -104,17 +66,7 @@ class Stretches(Motions):
         return after
 
     def take(self, count: int) -> list[int]:
-        """Take motions out of the queue, and then halves of what is left of the longest stretches.
-
-        Parameters
-        ----------
-        count : int
-            How many at most.
-
-        Returns
-        -------
-        list of int
-        """
+        """Take motions out of the queue, then halves of what is left of the longest stretches."""
         taken = super().take(count)
         with self._lock:
             while len(taken) < count and not self.joining:
@@ -142,13 +94,7 @@ class Stretches(Motions):
         return part[at]
 
     def enter(self, index: int, before: int) -> None:
-        """Let a motion begin where another ended; at rest if that one was lost.
-
-        Parameters
-        ----------
-        index, before : int
-            Numbers of the two motions.
-        """
+        """Let a motion begin where another ended; at rest if that one was lost."""
         alive = np.all(np.isfinite(self.state[before]))
         self.start[index] = self.state[before] if alive else self.rest
         self.force[index] = self.force[before] if alive else 0.0
@@ -171,22 +117,7 @@ class Stretches(Motions):
 
 
 def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> None:
-    """March all stretches, then join them.
-
-    Parameters
-    ----------
-    sweeps : Stretches
-        Receives the motions.
-    transient : int
-        Mesh cycles at most at every value.
-    progress : Progress
-        Told about the motions.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        As it came; motions behind a joint that was not yet looked at count as not finished.
-    """
+    """March all stretches, then join them."""
     joints = [(b, s) for b, cut in enumerate(sweeps.stretches) for s in range(1, len(cut))]
     try:
         settle(

@@ -7,68 +7,28 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.program import compile_system
 from tribodyn.dynamics.step_limit import largest_rate
 from tribodyn.dynamics.system import System
-
-__all__ = ["Plan", "Row", "Values", "compile_unchecked"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What to do at every value of the parameter.
-
-    Parameters
-    ----------
-    transient, cycles, keep : int
-        Mesh cycles before, those of the statistics, and the last of them whose points are kept.
-        Motions that repeat after 1 to 8 mesh cycles are marched no longer than that takes.
-    signal : int or str
-        Contact whose compression is looked at, or name of a coordinate.
-    keep_partial : bool
-        Whether an interruption leaves what is finished.
-    stop : threading.Event
-        Set by an interruption.
-    """
+    """What to do at every value of the parameter."""
 
     transient: int
     cycles: int
     keep: int
-    signal: int | str
-    keep_partial: bool = False
+    signal: int | str  #: contact whose compression is looked at, or name of a coordinate
+    keep_partial: bool = False  #: whether an interruption leaves what is finished
     stop: threading.Event = field(default_factory=threading.Event, repr=False, compare=False)
 
 
 class Row:
-    """What came of all values of the parameter on one branch; filled while marching.
-
-    Parameters
-    ----------
-    count, keep, size : int
-        Values of the parameter, points of each, coordinates of the system.
-
-    Attributes
-    ----------
-    section : (count, keep) array
-        The signal once per mesh cycle [m or rad].
-    period : (count,) int array
-        Mesh cycles after which the motion repeats; 0 if it does not.
-    rms : (count,) array
-        Alternating rms of the signal [m or rad].
-    contact_loss_share : (count,) array
-        Part of the time off the driving flank [-].
-    first, last : (count, 2 n) array
-        State at the beginning and at the end [mixed].
-    force : (count, n) array
-        Generalized force that balanced the drive [N or N*m].
-    finished : (count,) bool array
-        Whether the motion was marched to its end.
-    """
+    """What came of all values of the parameter on one branch; filled while marching."""
 
     def __init__(self, count: int, keep: int, size: int) -> None:
         self.section = np.full((count, keep), np.nan)
@@ -80,48 +40,16 @@ class Row:
 
 
 def compile_unchecked(system: System, mesh_frequency: float, steps: int) -> Compiled:
-    """Compile a system without refusing a long step; whoever calls has to look at its number.
-
-    Parameters
-    ----------
-    system : System
-        The structure and its contacts.
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    steps : int
-        Steps per mesh cycle.
-
-    Returns
-    -------
-    Compiled
-        With ``step_number``, which may exceed the limit of the integrator.
-
-    Examples
-    --------
-    >>> compile_unchecked(System([[1.0]], [[0.0]], [[1e4]], [0.0]), 1.0, 20).step_number
-    5.0
-    """
+    """Compile a system without refusing a long step; whoever calls has to look at its number."""
     grid, nodes, program = compile_system(system, steps)
     number = largest_rate(system, nodes) * float(grid.width.max()) / mesh_frequency
     return Compiled(system, grid, nodes, program, number)
 
 
 class Values:
-    """Systems, mesh frequencies and steps of all values of the parameter.
+    """Systems, mesh frequencies and steps of all values of the parameter."""
 
-    Parameters
-    ----------
-    systems : sequence of System
-        One for each value.
-    mesh_frequency : (points,) array
-        Mesh frequency [Hz].
-    steps : (points,) int array
-        Steps per mesh cycle.
-    """
-
-    def __init__(
-        self, systems: Sequence[System], mesh_frequency: Array, steps: NDArray[np.int64]
-    ) -> None:
+    def __init__(self, systems: Sequence[System], mesh_frequency: Array, steps: Index) -> None:
         self.systems, self.mesh_frequency, self.steps = list(systems), mesh_frequency, steps
         self.count, self.size = len(self.systems), self.systems[0].size
         same = all(item is self.systems[0] for item in self.systems)
@@ -134,17 +62,7 @@ class Values:
             self.step_number = self.shared.step_number * mesh_frequency.min() / mesh_frequency
 
     def at(self, number: int) -> Compiled:
-        """Compile the system of one value, and note its ``omega_max * dt``.
-
-        Parameters
-        ----------
-        number : int
-            Which value.
-
-        Returns
-        -------
-        Compiled
-        """
+        """Compile the system of one value, and note its ``omega_max * dt``."""
         if self.shared is not None:
             return self.shared
         beat, steps = float(self.mesh_frequency[number]), int(self.steps[number])

@@ -9,8 +9,6 @@ import numpy as np
 from tribodyn.analysis.spectrum_input import checked_signal
 from tribodyn.errors import InputError, Problem, require_positive
 
-__all__ = ["direction_shares", "dynamic_factor"]
-
 
 def dynamic_factor(mesh_force: Any, static_force: float) -> float:
     """Largest dynamic mesh force over the static one.

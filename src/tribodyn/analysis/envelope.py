@@ -5,16 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum import spectrum
 from tribodyn.analysis.spectrum_input import checked_signal, refuse_above_half
 from tribodyn.analysis.spectrum_result import SignalSpectrum
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["envelope", "envelope_spectrum"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def envelope(

@@ -6,22 +6,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.response import FineSamples, Response
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Spectrum", "amplitude_spectrum", "mesh_harmonics"]
-
-Array = NDArray[np.float64]
-
 
 def mesh_harmonics(
     response: Response | FineSamples, signal: Array, count: int = 10
-) -> NDArray[np.complex128]:
+) -> ComplexArray:
     """Complex amplitudes of the mesh harmonics 1 to ``count``.
 
     Parameters
@@ -56,7 +52,7 @@ def mesh_harmonics(
     return _fourier(fine, signal, np.arange(1, count + 1, dtype=float))
 
 
-def _fourier(fine: FineSamples, signal: Array, orders: Array) -> NDArray[np.complex128]:
+def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
     span = round(float(fine.phase[-1]))
     if orders.size and orders[-1] * 8.0 > fine.phase.size / 3.0 / max(span, 1):
         limit = fine.phase.size / 3.0 / max(span, 1) / 8.0

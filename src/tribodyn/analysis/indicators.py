@@ -7,13 +7,9 @@ every step. Between these three samples a signal is a parabola, so that peaks ar
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.response import FineSamples
-
-__all__ = ["alternating_rms", "crest_factor", "extremes", "mean", "peak_to_peak", "rms"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def mean(samples: FineSamples, signal: Array) -> Array:

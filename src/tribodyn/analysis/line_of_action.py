@@ -7,15 +7,9 @@ damage that one direction alone does not give.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tribodyn.analysis.indicators import alternating_rms
 from tribodyn.dynamics.response import FineSamples
-
-__all__ = ["line_of_action_indicator"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def line_of_action_indicator(samples: FineSamples, along: Array, across: Array) -> float:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.analysis.lyapunov_crossing import carry_over_crossings
 from tribodyn.analysis.lyapunov_floquet import floquet_growth, repeats_after
@@ -25,13 +25,11 @@ from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["LyapunovExponents", "lyapunov_exponents"]
-
-Array = NDArray[np.float64]
 
 #: Numbers kept at a time while disturbances are carried.
 _ROOM = 6_000_000

@@ -10,14 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.lyapunov_tangent import TangentTables, within
-
-__all__ = ["carry_over_crossings"]
-
-Array = NDArray[np.float64]
-Places = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 #: A step is split at most this often; more means a grazing contact that does not matter.
 _MOST_CROSSINGS = 16
@@ -31,12 +26,12 @@ _NAMES = (
 class _Lanes(NamedTuple):
     """Motions within one step each: step, fraction done, state, sides of the dead zones."""
 
-    steps: Places
+    steps: Index
     begin: Array
     state: Array
     side: Array
 
-    def take(self, which: Places) -> _Lanes:
+    def take(self, which: Index) -> _Lanes:
         return _Lanes(self.steps[which], self.begin[which], self.state[which], self.side[which])
 
 
@@ -95,28 +90,9 @@ class _Engine:
 
 
 def carry_over_crossings(
-    tables: TangentTables, extra_force: Array, steps: Places, state: Array, side: Array
+    tables: TangentTables, extra_force: Array, steps: Index, state: Array, side: Array
 ) -> tuple[Array, Array]:
-    """Matrices that carry a disturbance over steps in which contacts open or close.
-
-    Parameters
-    ----------
-    tables : TangentTables
-        Matrices of the system.
-    extra_force : (n,) array
-        Constant generalized force on top of the system's [N or N*m].
-    steps : (m,) int array
-        Numbers of the steps within the mesh cycle.
-    state : (m, 2 n) array
-        Position and velocity at the left ends [mixed].
-    side : (m, contacts) array
-        Sides of the dead zones there, 1, 0 or -1 [-].
-
-    Returns
-    -------
-    tuple of (m, k, k) array and (m,) array
-        Matrices, and the integral of the trace of the equations over each step.
-    """
+    """Matrices that carry a disturbance over steps in which contacts open or close."""
     engine = _Engine(tables, extra_force)
     count = steps.size
     matrix = np.broadcast_to(np.eye(tables.size), (count, tables.size, tables.size)).copy()
@@ -149,8 +125,8 @@ def carry_over_crossings(
 
 
 def _first_crossing(
-    engine: _Engine, lanes: _Lanes, leaving: Array, beyond: NDArray[np.bool_]
-) -> tuple[Array, Places]:
+    engine: _Engine, lanes: _Lanes, leaving: Array, beyond: Mask
+) -> tuple[Array, Index]:
     """Fraction at which the first contact leaves its side (2 if none does), and which it is."""
     found = np.full(beyond.shape, 2.0)
     for j in range(beyond.shape[1]):
@@ -190,7 +166,7 @@ def _root(engine: _Engine, lanes: _Lanes, leaving: Array, contact: int) -> Array
     return np.where(never, lanes.begin, tau)
 
 
-def _saltation(tables: TangentTables, engine: _Engine, lanes: _Lanes, contact: Places) -> Array:
+def _saltation(tables: TangentTables, engine: _Engine, lanes: _Lanes, contact: Index) -> Array:
     """Matrix of the jump of a disturbance where a contact opens or closes."""
     row, at = np.arange(contact.size), lanes.begin[:, None]
 
@@ -215,7 +191,7 @@ def _saltation(tables: TangentTables, engine: _Engine, lanes: _Lanes, contact: P
     return np.asarray(np.eye(tables.size) - jump)
 
 
-def _gap_rate(engine: _Engine, steps: Places, at: Array) -> Array:
+def _gap_rate(engine: _Engine, steps: Index, at: Array) -> Array:
     """Time derivative of the gaps within a step (m, contacts)."""
     left, middle, right = (engine.nodes.gap[steps, node] for node in range(3))
     slope = (4.0 * at - 3.0) * left + (4.0 - 8.0 * at) * middle + (4.0 * at - 1.0) * right

@@ -10,11 +10,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["floquet_growth", "repeats_after"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Mesh cycles after which matrices may repeat, and how closely.
 _PERIODS = 16
@@ -24,23 +21,7 @@ _APART = 1e-10
 
 
 def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
-    """Tell after how many mesh cycles the matrices repeat.
-
-    Parameters
-    ----------
-    cycles : sequence of (groups, k, k) array
-        Matrices of the last mesh cycles, at least twice as many as a period has [mixed].
-
-    Returns
-    -------
-    tuple of int and float
-        Mesh cycles, 0 if they do not repeat within 16; and how well they repeat [-].
-
-    Examples
-    --------
-    >>> repeats_after([np.eye(2)[None], 2 * np.eye(2)[None]] * 4)
-    (2, 0.0)
-    """
+    """Tell after how many mesh cycles the matrices repeat."""
     known = np.asarray(cycles)
     size = np.linalg.norm(known, axis=(-2, -1))
     for period in range(1, min(_PERIODS, len(known) // 2) + 1):
@@ -51,25 +32,7 @@ def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
 
 
 def floquet_growth(cycles: Sequence[Array], frame: Array) -> Array:
-    """Growth of disturbances over one period, from matrices and a frame that has turned in.
-
-    Parameters
-    ----------
-    cycles : sequence of (groups, k, k) array
-        Matrices of all mesh cycles of the period [mixed].
-    frame : (k, k) array
-        Orthogonal disturbances at its beginning, after many periods [-].
-
-    Returns
-    -------
-    (k,) array
-        Logarithm of the modulus of every multiplier, the largest first [-].
-
-    Examples
-    --------
-    >>> floquet_growth([np.diag([1.0, 0.5])[None]], np.eye(2)).round(6)
-    array([ 0.      , -0.693147])
-    """
+    """Growth of disturbances over one period, from matrices and a frame that has turned in."""
     old, uppers = frame, []
     for product in (product for groups in cycles for product in groups):
         frame, upper = np.linalg.qr(product @ frame)

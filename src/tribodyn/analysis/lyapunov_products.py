@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["grouped_products", "safe_length"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: A product whose singular values differ by more loses the small disturbances to rounding.
 _SPREAD = 1e6
@@ -22,23 +19,7 @@ def _pairwise(matrices: Array) -> Array:
 
 
 def safe_length(matrices: Array) -> int:
-    """Steps that may be multiplied before disturbances are made orthogonal again.
-
-    Parameters
-    ----------
-    matrices : (steps, k, k) array
-        Matrices of one mesh cycle [mixed].
-
-    Returns
-    -------
-    int
-        A power of two.
-
-    Examples
-    --------
-    >>> safe_length(np.tile(np.diag([1.0, 0.5]), (64, 1, 1)))
-    16
-    """
+    """Steps that may be multiplied before disturbances are made orthogonal again."""
     product, length = matrices[None], 1
     while product.shape[1] > 1:
         longer = _pairwise(product)
@@ -49,25 +30,7 @@ def safe_length(matrices: Array) -> int:
 
 
 def grouped_products(matrices: Array, length: int) -> Array:
-    """Products of every ``length`` steps of every mesh cycle.
-
-    Parameters
-    ----------
-    matrices : (cycles, steps, k, k) array
-        Matrices of all steps [mixed].
-    length : int
-        Steps of one product, a power of two.
-
-    Returns
-    -------
-    (cycles, groups, k, k) array
-        In the order of time.
-
-    Examples
-    --------
-    >>> grouped_products(np.full((1, 3, 1, 1), 2.0), 2)[0, :, 0, 0]
-    array([4., 2.])
-    """
+    """Products of every ``length`` steps of every mesh cycle."""
     while length > 1:
         matrices, length = _pairwise(matrices), length // 2
     return matrices

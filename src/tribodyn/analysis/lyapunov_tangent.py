@@ -12,63 +12,26 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.coordinates import orbit_coordinates
 from tribodyn.dynamics.load_friction import push_with_friction
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.program import Nodes
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["TangentTables", "contact_sides", "within"]
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Places = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 #: Terms of the exponential series of a matrix no larger than a quarter: exact to rounding.
 _TAYLOR = 12
 
 
-def contact_sides(deflection: Array, gap: Array, dead: Flags) -> Array:
-    """Tell on which side of its dead zone every contact is.
-
-    Parameters
-    ----------
-    deflection, gap : (..., contacts) array
-        Compression and half of the dead zone [m].
-    dead : (contacts,) bool array
-        Whether a contact has a dead zone.
-
-    Returns
-    -------
-    (..., contacts) array
-        1 on the driving flank, -1 on the back flank, 0 in between; 1 without a dead zone.
-
-    Examples
-    --------
-    >>> contact_sides(np.array([2.0, 0.5]), np.array([1.0, 1.0]), np.array([True, True]))
-    array([1., 0.])
-    """
+def contact_sides(deflection: Array, gap: Array, dead: Mask) -> Array:
+    """Tell on which side of its dead zone every contact is."""
     side = np.where(deflection > gap, 1.0, np.where(deflection < -gap, -1.0, 0.0))
     return np.where(dead, side, 1.0)
 
 
 class TangentTables:
-    """Matrices of the disturbances of one system on its grid.
-
-    Parameters
-    ----------
-    compiled : Compiled
-        The system on its grid.
-    mesh_frequency : float
-        Mesh frequency [Hz].
-
-    Raises
-    ------
-    InputError
-        If a friction bends with the load, so that no matrix holds for all motions.
-    """
+    """Matrices of the disturbances of one system on its grid."""
 
     def __init__(self, compiled: Compiled, mesh_frequency: float) -> None:
         system, nodes = compiled.system, _with_friction(compiled)
@@ -102,37 +65,13 @@ class TangentTables:
         self.push = np.concatenate((none, nodes.force_direction @ speed), axis=-1)
         self._known: dict[int, tuple[Array, Array]] = {}
 
-    def rate_matrix(self, push: Array, spring: Array, damp: Array, touching: Flags) -> Array:
-        """Matrix of the equations of a disturbance.
-
-        Parameters
-        ----------
-        push, spring, damp : (..., contacts, k) array
-            Rows at one place each [mixed].
-        touching : (..., contacts) bool array
-            Which contacts carry.
-
-        Returns
-        -------
-        (..., k, k) array
-            In 1/s.
-        """
+    def rate_matrix(self, push: Array, spring: Array, damp: Array, touching: Mask) -> Array:
+        """Matrix of the equations of a disturbance."""
         carried = touching[..., None] * spring + (touching | self.in_gap)[..., None] * damp
         return np.asarray(self._rigid - np.swapaxes(push, -1, -2) @ carried)
 
-    def whole_steps(self, touching: Flags) -> tuple[Array, Array]:
-        """Matrices of all steps of a mesh cycle for one set of contacts that carry.
-
-        Parameters
-        ----------
-        touching : (contacts,) bool array
-            Which contacts carry.
-
-        Returns
-        -------
-        tuple of (steps, k, k) array and (steps,) array
-            Matrix of each step, and the integral of the trace of the equations over it.
-        """
+    def whole_steps(self, touching: Mask) -> tuple[Array, Array]:
+        """Matrices of all steps of a mesh cycle for one set of contacts that carry."""
         key = int(sum(1 << j for j in np.flatnonzero(touching)))
         if key not in self._known:
             wide = np.broadcast_to(touching, self.push.shape[:3])
@@ -141,23 +80,9 @@ class TangentTables:
         return self._known[key]
 
     def part_steps(
-        self, steps: Places, begin: Array, end: Array, touching: Flags
+        self, steps: Index, begin: Array, end: Array, touching: Mask
     ) -> tuple[Array, Array]:
-        """Matrices of parts of steps.
-
-        Parameters
-        ----------
-        steps : (m,) int array
-            Numbers of the steps within the mesh cycle.
-        begin, end : (m,) array
-            Where the parts begin and end, as fractions of the step [-].
-        touching : (m, contacts) bool array
-            Which contacts carry.
-
-        Returns
-        -------
-        tuple of (m, k, k) array and (m,) array
-        """
+        """Matrices of parts of steps."""
         taus = np.stack((begin, 0.5 * (begin + end), end), axis=1)
         push, spring, damp = (
             within(item, steps, taus) for item in (self.push, self._spring, self.damp)
@@ -189,28 +114,8 @@ def _with_friction(compiled: Compiled) -> Nodes:
     return nodes._replace(force_direction=push_with_friction(system, nodes, coefficients[..., 0]))
 
 
-def within(values: Array, steps: Places, taus: Array) -> Array:
-    """Interpolate rows quadratically within their steps, as the integrator does.
-
-    Parameters
-    ----------
-    values : (steps, 3, ...) array
-        Rows at the left end, middle and right end of every step.
-    steps : (m,) int array
-        Numbers of the steps.
-    taus : (m, p) array
-        Fractions of the step [-].
-
-    Returns
-    -------
-    (m, p, ...) array
-        In the unit of the values.
-
-    Examples
-    --------
-    >>> within(np.array([[0.0, 1.0, 4.0]]), np.array([0]), np.array([[0.25]]))
-    array([[0.25]])
-    """
+def within(values: Array, steps: Index, taus: Array) -> Array:
+    """Interpolate rows quadratically within their steps, as the integrator does."""
     weights = ((1 - taus) * (1 - 2 * taus), 4 * taus * (1 - taus), taus * (2 * taus - 1))
     chosen = values[steps]
     shape = (*taus.shape, *(1,) * (values.ndim - 2))

@@ -5,16 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.order_map_resampling import angular_resampling, shaft_rotation
 from tribodyn.analysis.order_map_result import OrderMap
 from tribodyn.analysis.spectrum_input import checked_rising, checked_signal, window_values
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-
-__all__ = ["order_map"]
-
-Array = NDArray[np.float64]
 
 
 def order_map(

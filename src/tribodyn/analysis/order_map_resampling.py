@@ -6,14 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_input import checked_rising, checked_signal, refuse_above_half
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["AngularSignal", "angular_resampling", "shaft_rotation"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Most samples over the rotation before the filter, and samples per period for cubic pieces.
 _MOST = 20_000_000
@@ -46,27 +42,7 @@ class AngularSignal:
 
 
 def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
-    """Rotation of a shaft, given as it is or by its speed.
-
-    Parameters
-    ----------
-    rotation : (n,) array or None
-        Rotation [rad].
-    speed : float, (n,) array or None
-        Rotational speed [rad/s], positive, where there is no rotation.
-    time : (n,) array
-        Time [s].
-
-    Returns
-    -------
-    (n,) array
-        Rotation [rad], of a speed the integral of its cubic spline from the first sample.
-
-    Raises
-    ------
-    InputError
-        If neither or both are given, they do not fit the times, or the shaft does not turn on.
-    """
+    """Rotation of a shaft, given as it is or by its speed."""
     if (rotation is None) == (speed is None):
         raise InputError(
             Problem(

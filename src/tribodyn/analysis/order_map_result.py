@@ -6,17 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_peaks import window_gain
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["OrderCut", "OrderMap"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

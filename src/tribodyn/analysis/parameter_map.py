@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.analysis.bifurcation import signal_name
 from tribodyn.analysis.parameter_map_march import Field, Plan, march_field
@@ -18,10 +18,7 @@ from tribodyn.dynamics.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["SCALES", "parameter_map"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Factors of the system that a lane can have of its own.
 SCALES = (
@@ -175,7 +172,7 @@ def _rates(
     return np.asarray(rate * factor[row])
 
 
-def _steps(number: Array, steps: int | None) -> NDArray[np.int64]:
+def _steps(number: Array, steps: int | None) -> Index:
     if steps is None:
         needed = np.maximum(number / _NUMBER, _FEWEST)
         return np.asarray(2 ** np.ceil(np.log2(needed)).astype(np.int64))

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.bifurcation_statistics import measure
@@ -18,11 +17,7 @@ from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError
 from tribodyn.progress import Progress
-
-__all__ = ["Field", "Plan", "march_field"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 #: Certified distance to the motion that repeats, relative to the state.
 _NEAR = 1e-5
@@ -34,46 +29,18 @@ _WIDTH = 64
 
 @dataclass(frozen=True)
 class Plan:
-    """What to do at every point.
-
-    Parameters
-    ----------
-    transient, cycles : int
-        Mesh cycles before, and those of the statistics of a motion that does not repeat.
-    signal : int or str
-        Contact whose compression is looked at, or name of a coordinate.
-    verdict : bool
-        Judge every motion by half the step.
-    keep_partial : bool
-        Whether an interruption leaves what is finished.
-    stop : threading.Event
-        Set by an interruption.
-    """
+    """What to do at every point."""
 
     transient: int
-    cycles: int
-    signal: int | str
-    verdict: bool
-    keep_partial: bool
+    cycles: int  #: mesh cycles before, and those of the statistics of a motion that does not repeat
+    signal: int | str  #: contact whose compression is looked at, or name of a coordinate
+    verdict: bool  #: judge every motion by half the step
+    keep_partial: bool  #: whether an interruption leaves what is finished
     stop: threading.Event = field(default_factory=threading.Event, repr=False, compare=False)
 
 
 class Field:
-    """All points of a map, filled while marching.
-
-    Parameters
-    ----------
-    shape : tuple of two int
-        Values of the two parameters.
-    frequency : (nx, ny) array
-        Mesh frequency [Hz].
-    scales : dict of str to (nx, ny) array
-        Factors of the system [-].
-    steps : (nx, ny) int array
-        Steps per mesh cycle.
-    step_number : (nx, ny) array
-        ``omega_max * dt`` [-].
-    """
+    """All points of a map, filled while marching."""
 
     def __init__(
         self, shape: tuple[int, int], frequency: Array, scales: dict[str, Array], steps: Index,
@@ -91,21 +58,7 @@ def march_field(
     points: Field, systems: list[tuple[System, slice]], start: Array | None, plan: Plan,
     progress: Progress,
 ) -> None:  # fmt: skip
-    """March and judge all points.
-
-    Parameters
-    ----------
-    points : Field
-        Receives the motions.
-    systems : list of (System, slice)
-        Systems, each with its rows of the map.
-    start : (2 n,) array, optional
-        Start of every motion [mixed]; the static equilibrium by default.
-    plan : Plan
-        What to do.
-    progress : Progress
-        Told about the points.
-    """
+    """March and judge all points."""
     for system, rows in systems:
         inside = np.zeros(points.steps.shape, dtype=bool)
         inside[rows] = True
@@ -177,7 +130,7 @@ def _judge(
         )  # fmt: skip
 
 
-def _comes_back(motions: Motions, again: Motions) -> NDArray[np.bool_]:
+def _comes_back(motions: Motions, again: Motions) -> Mask:
     """Motions whose period with half the step ends so near that both motions are the same."""
     same = np.zeros(motions.period.size, dtype=bool)
     reduce = again.coordinates.reduce

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.types import Array, Index, Mask
+
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["ParameterMap"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -48,14 +46,14 @@ class ParameterMap:
     units: tuple[str, str]
     first: Array = field(repr=False)
     second: Array = field(repr=False)
-    period: NDArray[np.int64] = field(repr=False)
+    period: Index = field(repr=False)
     rms: Array = field(repr=False)
     contact_loss_share: Array = field(repr=False)
-    steps: NDArray[np.int64] = field(repr=False)
+    steps: Index = field(repr=False)
     step_number: Array = field(repr=False)
     verdict: NDArray[np.str_] = field(repr=False)
     signal: str
-    finished: NDArray[np.bool_] = field(repr=False)
+    finished: Mask = field(repr=False)
 
     @property
     def complete(self) -> bool:
@@ -63,7 +61,7 @@ class ParameterMap:
         return bool(self.finished.all())
 
     @property
-    def ran_away(self) -> NDArray[np.bool_]:
+    def ran_away(self) -> Mask:
         """Which motions grew beyond all bounds without the step's doing, (nx, ny)."""
         lost = self.finished & ~np.isfinite(self.rms)
         return np.asarray(lost & (self.verdict != "step-limited"))

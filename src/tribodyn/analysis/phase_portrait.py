@@ -6,19 +6,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.poincare import poincare
 from tribodyn.dynamics.response import Response
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["PhasePortrait", "phase_portrait"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

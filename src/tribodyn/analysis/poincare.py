@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.analysis.poincare_march import (
     alternating_rms,
@@ -20,13 +20,11 @@ from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["PoincareSection", "poincare", "repeat_period"]
-
-Array = NDArray[np.float64]
 
 #: Points that differ by less than this, relative to their size, are the same.
 _SAME = 1e-5

@@ -5,17 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.verdict import Verdict, step_verdict
 from tribodyn.dynamics.coordinates import orbit_coordinates
 from tribodyn.dynamics.march import Compiled, compile_for, march
 from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError
-
-__all__ = ["MarchedSection", "alternating_rms", "judge_section", "march_section", "repeat_period"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Mesh cycles after which a motion may repeat.
 _PERIODS = 16
@@ -31,44 +27,15 @@ _REST = 1e-9
 
 
 class MarchedSection(NamedTuple):
-    """What a march gives.
+    """What a march gives."""
 
-    Parameters
-    ----------
-    states : (cycles, 2 n) array
-        Position and velocity at the mesh phase 0 [m or rad, m/s or rad/s].
-    reduced : (cycles, k) array
-        The same without free motions.
-    rms : float
-        Alternating rms of the compression of contact 0, or of coordinate 0 where there is no
-        contact [m or rad]; NaN where it was not asked.
-    """
-
-    states: Array
-    reduced: Array
-    rms: float
+    states: Array  #: position and velocity at the mesh phase 0 [m or rad, m/s or rad/s]
+    reduced: Array  #: the same without free motions
+    rms: float  #: [m or rad]
 
 
 def alternating_rms(signal: Array, weight: Array) -> float:
-    """Alternating rms of a signal; zero for rounding.
-
-    Parameters
-    ----------
-    signal : (samples,) array
-        Any signal.
-    weight : (samples,) array
-        Its weights, which need not add up to one [-].
-
-    Returns
-    -------
-    float
-        In the unit of the signal.
-
-    Examples
-    --------
-    >>> alternating_rms(np.array([3.0, 1.0]), np.array([1.0, 1.0]))
-    1.0
-    """
+    """Alternating rms of a signal; zero for rounding."""
     weight = weight / weight.sum()
     mean = float(weight @ signal)
     rms = float(np.sqrt(weight @ (signal - mean) ** 2))
@@ -76,28 +43,7 @@ def alternating_rms(signal: Array, weight: Array) -> float:
 
 
 def repeat_period(points: Array) -> int:
-    """Tell after how many points a sequence repeats.
-
-    Parameters
-    ----------
-    points : (m, k) array
-        Points in the order of time [any one unit].
-
-    Returns
-    -------
-    int
-        1 to 16, and at most half of the points; 0 if it does not repeat.
-
-    Notes
-    -----
-    Points are the same within 1e-5 of their size, or within 1e-3 as long as they approach each
-    other.
-
-    Examples
-    --------
-    >>> repeat_period(np.array([[1.0], [2.0]] * 8))
-    2
-    """
+    """Tell after how many points a sequence repeats."""
     largest = float(np.abs(points).max(initial=0.0))
     if not largest < _HUGE:
         return 0
@@ -115,31 +61,7 @@ def march_section(
     compiled: Compiled, mesh_frequency: float, state: Array, force: Array, cycles: int,
     transient: int, with_rms: bool,
 ) -> MarchedSection:  # fmt: skip
-    """March a system and keep its state once per mesh cycle.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    state : (2 n,) array
-        Position and velocity at the start [m or rad, m/s or rad/s].
-    force : (n,) array
-        Constant generalized force on top of the system's [N or N*m].
-    cycles, transient : int
-        Mesh cycles to keep, and before.
-    with_rms : bool
-        Whether to find the rms.
-
-    Returns
-    -------
-    MarchedSection
-
-    Raises
-    ------
-    ComputationError
-        If the motion grows beyond all bounds.
-    """
+    """March a system and keep its state once per mesh cycle."""
     size, steps, nodes = compiled.system.size, compiled.grid.steps, compiled.nodes
     coordinates = orbit_coordinates(compiled, mesh_frequency)
     period, now = np.array([1.0 / mesh_frequency]), state[None, :]
@@ -175,28 +97,7 @@ def judge_section(
     cycles: int,
     known: tuple[float, int, float],
 ) -> Verdict:
-    """Judge a section by one with shorter steps.
-
-    Parameters
-    ----------
-    system : System
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    state : (2 n,) array
-        Position and velocity at the start [m or rad, m/s or rad/s].
-    force : (n,) array
-        Constant generalized force on top of the system's [N or N*m].
-    steps : int
-        Shorter steps per mesh cycle.
-    transient, cycles : int
-        Mesh cycles before, and those to look at.
-    known : tuple of float, int and float
-        ``omega_max * dt`` [-], period and rms with the longer steps.
-
-    Returns
-    -------
-    "physical", "step-limited" or "undecided"
-    """
+    """Judge a section by one with shorter steps."""
     compiled = compile_for(system, mesh_frequency, steps)
     try:
         found = march_section(compiled, mesh_frequency, state, force, cycles, transient, True)

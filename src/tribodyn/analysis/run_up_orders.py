@@ -6,19 +6,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.order_map_result import OrderCut, OrderMap
 from tribodyn.analysis.spectrum_input import window_values
 from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OverallLevel", "Part", "order_cut", "overall_level", "run_up_order_map"]
 
-Array = NDArray[np.float64]
 Part = Literal["all", "up", "down"]
 
 #: Fewest and most mesh cycles in a block of one order.
@@ -75,7 +73,7 @@ class OverallLevel:
         )
 
 
-def _wholly(run: RunUp, starts: NDArray[np.int64], cycles: int, part: Part) -> NDArray[np.bool_]:
+def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
     """Tell which blocks lie wholly in a part of the run."""
     if part not in ("all", "up", "down"):
         raise InputError(Problem(f'part = "{part}"', "argument part", '"all", "up" or "down"'))
@@ -95,9 +93,7 @@ def _wholly(run: RunUp, starts: NDArray[np.int64], cycles: int, part: Part) -> N
     return np.asarray(found)
 
 
-def _starts(
-    run: RunUp, cycles: int, hop: int, part: Part
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _starts(run: RunUp, cycles: int, hop: int, part: Part) -> tuple[Index, Index]:
     """First mesh cycle of each block, and the sample in its middle."""
     total = run.cycles.time.size
     if total < cycles:
@@ -109,7 +105,7 @@ def _starts(
                 remedy="Take shorter blocks, or a longer run",
             )
         )
-    starts: NDArray[np.int64] = np.arange(0, total - cycles + 1, hop, dtype=np.int64)
+    starts: Index = np.arange(0, total - cycles + 1, hop, dtype=np.int64)
     starts = starts[_wholly(run, starts, cycles, part)]
     return starts, starts * run.samples + cycles * run.samples // 2
 

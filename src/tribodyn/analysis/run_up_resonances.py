@@ -6,16 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.run_up_orders import Part, order_cut
 from tribodyn.dynamics.natural_modes import NaturalModes
 from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between
-
-__all__ = ["RunUpResonance", "resonances"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Frequencies of the mains [Hz], and how near a peak has to be.
 _MAINS, _MAINS_NEAR = (50.0, 60.0), 0.02

@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_input import checked_signal, refuse_above_half
 from tribodyn.errors import ComputationError, InputError, Problem, require_positive
+from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Sidebands", "sidebands"]
-
-Array = NDArray[np.float64]
 
 #: Points over one period of the modulation.
 _POINTS = 1024
@@ -204,7 +202,7 @@ def sidebands(
     )
 
 
-def _fitted(values: Array, cycles: Array) -> NDArray[np.complex128]:
+def _fitted(values: Array, cycles: Array) -> ComplexArray:
     """Complex amplitudes of cosines with so many cycles per sample, fitted with a mean."""
     sample = np.arange(values.size)
     waves = np.exp(2j * np.pi * np.outer(sample, cycles))

@@ -6,17 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_input import checked_signal, window_values
 from tribodyn.errors import require_between, require_positive
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["Spectrogram", "spectrogram"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,11 @@ from __future__ import annotations
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_input import checked_signal, window_values
 from tribodyn.analysis.spectrum_result import SignalSpectrum
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-
-__all__ = ["spectrum"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Mask
 
 _SCALINGS = ("amplitude", "power", "density")
 
@@ -120,7 +116,7 @@ def spectrum(
     )
 
 
-def _single_sided(length: int) -> NDArray[np.bool_]:
+def _single_sided(length: int) -> Mask:
     """Lines that stand for a pair of a positive and a negative frequency."""
     pair = np.ones(length // 2 + 1, dtype=bool)
     pair[0] = False

@@ -5,36 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["checked_rising", "checked_signal", "refuse_above_half", "window_values"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
-    """Return a signal as floats, or say what is wrong with it.
-
-    Parameters
-    ----------
-    signal : (n,) array
-        Signal in any unit.
-    least : int
-        Least number of samples.
-    name : str
-        Name of the argument for the message.
-
-    Returns
-    -------
-    (n,) array
-
-    Raises
-    ------
-    InputError
-        If it is not one row of finite numbers, or too short.
-    """
+    """Return a signal as floats, or say what is wrong with it."""
     where = f"argument {name}"
     given = np.asarray(signal)
     if given.dtype.kind not in "biuf":
@@ -79,28 +56,7 @@ def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
 
 
 def checked_rising(values: Any, size: int, name: str, unit: str) -> Array:
-    """Return times or rotation angles that rise from sample to sample.
-
-    Parameters
-    ----------
-    values : (n,) array
-        Values in ``unit``.
-    size : int
-        Number of samples of the signal that they belong to.
-    name : str
-        Name of the argument for the message.
-    unit : str
-        Unit for the message.
-
-    Returns
-    -------
-    (n,) array
-
-    Raises
-    ------
-    InputError
-        If they are not finite, of another number or do not rise.
-    """
+    """Return times or rotation angles that rise from sample to sample."""
     rising = checked_signal(values, 2, name)
     if rising.size != size:
         raise InputError(
@@ -126,24 +82,7 @@ def checked_rising(values: Any, size: int, name: str, unit: str) -> Array:
 
 
 def refuse_above_half(highest: float, sampling_rate: float, what: str, where: str) -> None:
-    """Refuse a frequency that the sampling cannot tell from a lower one.
-
-    Parameters
-    ----------
-    highest : float
-        Highest frequency asked for [Hz].
-    sampling_rate : float
-        Samples per second [Hz].
-    what : str
-        What has this frequency, for the message.
-    where : str
-        Argument, for the message.
-
-    Raises
-    ------
-    InputError
-        If it is not below half the sampling rate, or the rate is not positive.
-    """
+    """Refuse a frequency that the sampling cannot tell from a lower one."""
     require_positive("sampling_rate", sampling_rate, "Hz")
     if not highest < 0.5 * sampling_rate:
         raise InputError(
@@ -158,25 +97,7 @@ def refuse_above_half(highest: float, sampling_rate: float, what: str, where: st
 
 
 def window_values(window: str, length: int) -> Array:
-    """Return a window of SciPy, periodic so that its lines fall on bins.
-
-    Parameters
-    ----------
-    window : str
-        Name as in :func:`scipy.signal.get_window`, for example ``"hann"`` or ``"flattop"``.
-    length : int
-        Number of samples.
-
-    Returns
-    -------
-    (length,) array
-        Weights [-].
-
-    Raises
-    ------
-    InputError
-        If there is no such window.
-    """
+    """Return a window of SciPy, periodic so that its lines fall on bins."""
     from scipy.signal import get_window
 
     try:

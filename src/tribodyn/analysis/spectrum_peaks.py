@@ -6,13 +6,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_input import window_values
-
-__all__ = ["Peak", "interpolated_peaks", "window_gain"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, ComplexArray
 
 #: Long windows have the transform of this one, as a function of the distance in bins.
 _LONGEST = 2048
@@ -42,23 +38,8 @@ class Peak:
 
 
 @lru_cache(maxsize=32)
-def window_gain(window: str, length: int) -> tuple[Array, NDArray[np.complex128]]:
-    """Transform of a window over the distance from its centre.
-
-    Parameters
-    ----------
-    window : str
-        Name of the window.
-    length : int
-        Number of samples.
-
-    Returns
-    -------
-    offset : (m,) array
-        Distance in bins [-], from -2 to 2, without 0.
-    gain : (m,) complex array
-        Transform over its value in the centre [-].
-    """
+def window_gain(window: str, length: int) -> tuple[Array, ComplexArray]:
+    """Transform of a window over the distance from its centre."""
     weights = window_values(window, min(length, _LONGEST))
     offset = np.linspace(-599.5, 599.5, 1200, dtype=np.float64) / 300.0
     turns = np.exp(-2j * np.pi * offset[:, None] * np.arange(weights.size) / weights.size)
@@ -73,28 +54,7 @@ def interpolated_peaks(
     length: int,
     count: int,
 ) -> list[Peak]:
-    """Largest local maxima, each as the sine that would make its three lines.
-
-    Parameters
-    ----------
-    frequency : (k,) array
-        Lines [Hz].
-    amplitude : (k,) array
-        Peak amplitudes, in the unit of the signal.
-    phase : (k,) array, optional
-        Phases [rad].
-    window : str
-        Window that made the spectrum.
-    length : int
-        Samples of the window.
-    count : int
-        Most peaks to return.
-
-    Returns
-    -------
-    list of Peak
-        From the largest down.
-    """
+    """Largest local maxima, each as the sine that would make its three lines."""
     inner = np.arange(1, amplitude.size - 1)
     high = (amplitude[inner] >= amplitude[inner - 1]) & (amplitude[inner] > amplitude[inner + 1])
     tops = inner[high]

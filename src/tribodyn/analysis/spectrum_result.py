@@ -6,17 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_peaks import Peak, interpolated_peaks
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["SignalSpectrum"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

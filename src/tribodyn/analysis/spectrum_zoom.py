@@ -10,8 +10,6 @@ from tribodyn.analysis.spectrum_input import checked_signal, refuse_above_half, 
 from tribodyn.analysis.spectrum_result import SignalSpectrum
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["zoom_spectrum"]
-
 
 def zoom_spectrum(
     signal: Any,

@@ -6,18 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.order_map_resampling import angular_resampling, shaft_rotation
 from tribodyn.analysis.spectrum_input import checked_rising, checked_signal
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["SynchronousAverage", "time_synchronous_average"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

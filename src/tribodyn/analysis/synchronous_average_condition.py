@@ -7,15 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis.spectrum_input import checked_signal
 from tribodyn.analysis.synchronous_average import SynchronousAverage
 from tribodyn.errors import ComputationError, Problem
-
-__all__ = ["ConditionIndicators", "condition_indicators", "kurtosis"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

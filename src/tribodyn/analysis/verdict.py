@@ -10,7 +10,6 @@ from tribodyn.dynamics.step_limit import LIMIT
 if TYPE_CHECKING:
     from tribodyn.analysis.lyapunov import LyapunovExponents
 
-__all__ = ["VERDICTS", "Verdict", "exponent_verdict", "step_verdict"]
 
 Verdict = Literal["physical", "step-limited", "undecided"]
 
@@ -27,40 +26,7 @@ _ERRORS, _EXPONENT, _ZERO = 3.0, 0.05, 1e-3
 def step_verdict(
     step_number: float, period: int, rms: float, refined_period: int, refined_rms: float
 ) -> Verdict:
-    """Judge a motion by the same computation with shorter steps.
-
-    Parameters
-    ----------
-    step_number : float
-        ``omega_max * dt`` of the motion [-].
-    period : int
-        Mesh cycles after which the motion repeats; 0 if it does not.
-    rms : float
-        Its alternating rms [any unit]; NaN for a motion that grew beyond all bounds.
-    refined_period : int
-        Period with shorter steps.
-    refined_rms : float
-        Alternating rms with shorter steps [same unit].
-
-    Returns
-    -------
-    "physical", "step-limited" or "undecided"
-        Step-limited beyond ``omega_max * dt`` = 2.7, or if the period changes; physical if period
-        and rms agree; undecided if only the rms differs, as beside a jump between two motions, or
-        if one of the two has not come to repeat yet but has the same rms.
-
-    Notes
-    -----
-    The rms of motions that repeat agrees within 1 %, that of others, which is known from a sample
-    only, within 10 %.
-
-    Examples
-    --------
-    >>> step_verdict(0.2, 1, 0.31, 1, 0.31)
-    'physical'
-    >>> step_verdict(3.1, 0, 0.9, 1, 0.31)
-    'step-limited'
-    """
+    """Judge a motion by the same computation with shorter steps."""
     if step_number > LIMIT:
         return "step-limited"
     unsettled = period == 0 or refined_period == 0
@@ -72,20 +38,7 @@ def step_verdict(
 
 
 def exponent_verdict(found: LyapunovExponents, refined: LyapunovExponents) -> Verdict:
-    """Judge Lyapunov exponents by those with shorter steps.
-
-    Parameters
-    ----------
-    found, refined : LyapunovExponents
-        As asked for, and with half the step.
-
-    Returns
-    -------
-    "physical", "step-limited" or "undecided"
-        Step-limited if only one of the two motions is chaotic, or both repeat, but after different
-        numbers of mesh cycles; physical if the largest exponents agree within 5 % or three standard
-        errors of their difference; else undecided.
-    """
+    """Judge Lyapunov exponents by those with shorter steps."""
     both_repeat = found.repeats > 0 and refined.repeats > 0
     if found.chaotic != refined.chaotic or (both_repeat and found.repeats != refined.repeats):
         return "step-limited"

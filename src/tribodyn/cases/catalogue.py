@@ -10,8 +10,6 @@ from importlib.metadata import entry_points
 from importlib.resources import files
 from pathlib import Path
 
-__all__ = ["case_files", "cases"]
-
 
 def case_files() -> dict[str, Path]:
     """Files of all named cases.

@@ -11,8 +11,6 @@ from tribodyn.progress import SILENT, Progress
 if TYPE_CHECKING:
     from tribodyn.study import Case, Result
 
-__all__ = ["run"]
-
 
 def run(case: Case | str | os.PathLike[str], progress: Progress = SILENT) -> Result:
     """Compute a case.

@@ -13,8 +13,6 @@ from tribodyn.errors import InputError, Problem
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["load_case"]
-
 
 def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     """Load a built-in case or a case file.

@@ -8,8 +8,6 @@ from cyclopts import App, Parameter
 
 import tribodyn
 
-__all__ = ["COMMANDS", "WELCOME", "make_app"]
-
 WELCOME = """\
 tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
 

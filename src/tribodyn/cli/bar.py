@@ -7,8 +7,6 @@ from typing import Any
 
 from tribodyn.progress import SILENT, Progress
 
-__all__ = ["Bar", "progress_bar"]
-
 
 class Bar:
     """Progress drawn by rich while the block runs; nothing of it stays on the screen."""

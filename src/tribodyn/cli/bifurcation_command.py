@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from tribodyn.study.bifurcation_findings import Findings
     from tribodyn.study.case import Case
 
-__all__ = ["bifurcation"]
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
 #: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.

@@ -8,8 +8,6 @@ from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table
 
-__all__ = ["cases"]
-
 
 def cases(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
     """List the built-in cases.

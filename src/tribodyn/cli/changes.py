@@ -11,8 +11,6 @@ from tribodyn.errors import InputError, Problem
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["changed_case", "read_changes", "read_value"]
-
 
 def read_changes(settings: Sequence[str]) -> dict[str, Any]:
     """Read ``KEY=VALUE`` words as in a case file, where quotes may be left out.

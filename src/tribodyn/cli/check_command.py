@@ -9,8 +9,6 @@ from cyclopts import Parameter
 from tribodyn.cli.changes import changed_case
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
 
-__all__ = ["check"]
-
 
 def check(
     case: str,

@@ -10,8 +10,6 @@ from cyclopts import Parameter
 from tribodyn.cli.screen import say, say_json
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["cite"]
-
 
 def cite(
     result: Path,

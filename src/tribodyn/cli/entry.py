@@ -17,7 +17,6 @@ from tribodyn.cli.interrupt import interruptible
 if TYPE_CHECKING:
     from tribodyn.errors import Problem
 
-__all__ = ["INTERRUPTED", "call", "main"]
 
 #: Exit code of a command that was stopped by Ctrl-C.
 INTERRUPTED = 130

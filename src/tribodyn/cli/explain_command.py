@@ -10,8 +10,6 @@ from cyclopts import Parameter
 from tribodyn.cli.screen import say, say_json
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["explain"]
-
 
 def explain(symbol: str, /, *, json: Annotated[bool, Parameter(negative="")] = False) -> None:
     """Explain a symbol, quantity, key, model, law, warning code or summary figure.

@@ -14,8 +14,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["interruptible"]
-
 #: Time to get out of the callback before the interruption is repeated [s].
 _MOMENT = 0.05
 

@@ -10,8 +10,6 @@ from cyclopts import Parameter
 from tribodyn.cli.screen import say, say_json, tell
 from tribodyn.errors import InputError, OutputExistsError, Problem
 
-__all__ = ["new"]
-
 
 def new(
     path: Path,

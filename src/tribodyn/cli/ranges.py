@@ -9,8 +9,6 @@ from typing import Any
 from tribodyn.cli.changes import read_value
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["GRAMMAR", "RANGE", "read_ranges"]
-
 RANGE = 'Write "operation.speed=400..3500 rpm:60"'
 GRAMMAR = f'{RANGE} or "operation.torque=50,150,300 N*m"'
 

@@ -14,7 +14,6 @@ from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
 if TYPE_CHECKING:
     from tribodyn.study.result import Result
 
-__all__ = ["run"]
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
 

@@ -9,8 +9,6 @@ from typing import Any
 
 from tribodyn.errors import Problem
 
-__all__ = ["say", "say_json", "show_problems", "show_warnings", "table", "tell"]
-
 
 def say(text: str) -> None:
     """Write a line of data to stdout.

@@ -14,7 +14,6 @@ from tribodyn.cli.screen import say, say_json, table, tell
 if TYPE_CHECKING:
     from tribodyn.study.sweep_result import Sweep
 
-__all__ = ["sweep"]
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
 #: Exit code of a sweep that was stopped by Ctrl-C; what was done is kept.

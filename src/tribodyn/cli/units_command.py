@@ -8,8 +8,6 @@ from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table
 
-__all__ = ["units"]
-
 
 def units(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
     """List the units of all quantities and the spellings that are understood besides.

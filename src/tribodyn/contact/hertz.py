@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
 from tribodyn.gear import Material
-
-__all__ = ["HertzLine", "effective_modulus", "hertz_line"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)

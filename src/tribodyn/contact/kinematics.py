@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-__all__ = ["Kinematics"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact.path import PathOfContact, path_of_contact
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.gear import SpurPair
-
-__all__ = ["equal_share", "gear_loss_factor"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 

@@ -13,16 +13,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.contact.kinematics import Kinematics
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.gear import SpurPair
-
-__all__ = ["PathOfContact", "path_of_contact"]
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from tribodyn.types import Array, Mask
 
 #: Distance over the base pitch, or difference of mesh phases, that counts as rounding.
 _ROUNDING = 1e-12

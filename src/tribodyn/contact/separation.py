@@ -10,15 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between
 from tribodyn.gear import SpurGear, SpurPair
-
-__all__ = ["ExtendedContact", "extended_contact"]
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from tribodyn.types import Array, Mask
 
 #: Flank missing above the form circle, over the module, that a pair is allowed to lack.
 _ROUNDING = 1e-6
@@ -59,11 +55,7 @@ def _curvature(gear: SpurGear, radius: float) -> float:
 
 
 def _corner(gear: SpurGear, mate: SpurGear, length: float, reach: Array) -> _Corner:
-    """Corner of a gear's tip against its mate, with the gear's base tangent point as origin.
-
-    The axes lie along the line of action and across it. ``reach`` is where on the line of action
-    the two involutes would touch if the gear's did not end at its tip.
-    """
+    """Corner of a gear's tip against its mate, with the gear's base tangent point as origin."""
     tip, base, mate_base = _curvature(gear, gear.tip_radius), gear.base_radius, mate.base_radius
     turned = (reach - tip) / base
     cosine, sine = np.cos(turned), np.sin(turned)

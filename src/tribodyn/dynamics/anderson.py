@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["anderson"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def anderson(

@@ -5,15 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
+from tribodyn.types import Array, ComplexArray, Mask
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["Branch", "SpecialPoint"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -46,7 +41,7 @@ class SpecialPoint:
     mesh_frequency: float
     position: Array = field(repr=False)
     velocity: Array = field(repr=False)
-    floquet_multipliers: NDArray[np.complex128] = field(repr=False)
+    floquet_multipliers: ComplexArray = field(repr=False)
     rms: Array = field(repr=False)
     peak_to_peak: Array = field(repr=False)
     period: int = 1
@@ -111,8 +106,8 @@ class Branch:
     peak_force: Array = field(repr=False)
     contact_loss: Array = field(repr=False)
     clearance: Array = field(repr=False)
-    floquet_multipliers: NDArray[np.complex128] = field(repr=False)
-    stable: NDArray[np.bool_] = field(repr=False)
+    floquet_multipliers: ComplexArray = field(repr=False)
+    stable: Mask = field(repr=False)
     error: Array = field(repr=False)
     special_points: tuple[SpecialPoint, ...]
     ending: str

@@ -6,73 +6,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.response import Response, build_response
 from tribodyn.dynamics.start import _lowest_of_each_law
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["OrbitFigures", "measure", "signal_names"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)
 class OrbitFigures:
-    """Figures of one orbit.
+    """Figures of one orbit."""
 
-    Parameters
-    ----------
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    position, velocity : (n,) array
-        State at mesh phase 0 [m or rad, m/s or rad/s].
-    mean, rms, peak_to_peak : (signals,) array
-        Mean, alternating rms and range of each signal, in its unit.
-    peak_force : (contacts,) array
-        Largest force [N].
-    contact_loss : (contacts,) array
-        Part of the time off the driving flank [-].
-    clearance : (contacts,) array
-        Least compression beyond the gap [m].
-    opening : float
-        The least clearance of those contacts that can open [m]; NaN if there are none.
-    """
-
-    mesh_frequency: float
-    position: Array
-    velocity: Array
+    mesh_frequency: float  #: mesh frequency [Hz]
+    position: Array  #: [m or rad, m/s or rad/s]
+    velocity: Array  #: [m or rad, m/s or rad/s]
     mean: Array
     rms: Array
     peak_to_peak: Array
-    peak_force: Array
-    contact_loss: Array
-    clearance: Array
-    opening: float
+    peak_force: Array  #: largest force [N]
+    contact_loss: Array  #: part of the time off the driving flank [-]
+    clearance: Array  #: least compression beyond the gap [m]
+    opening: float  #: the least clearance of those contacts that can open [m]
 
 
 def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...]:
-    """Names of the signals to measure.
-
-    Parameters
-    ----------
-    system : System
-    wanted : sequence of str, optional
-        Names of coordinates, ``"deflection"`` for the compression of the first contact, or
-        ``"deflection 1"`` and so on for that of another.
-
-    Returns
-    -------
-    tuple of str
-        By default the compression of the first contact, or without contacts all coordinates.
-
-    Raises
-    ------
-    InputError
-        If there is no such signal.
-    """
+    """Names of the signals to measure."""
     count = len(system.contacts)
     known = ("deflection",)[:count] + tuple(f"deflection {j}" for j in range(1, count))
     if wanted is None:
@@ -107,20 +67,7 @@ def _extremes(signal: Array) -> tuple[Array, Array]:
 
 
 def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures:
-    """Record one orbit and measure it.
-
-    Parameters
-    ----------
-    mapping : OrbitMap
-    y : (k,) array
-        Reduced vector of the orbit [m/s].
-    signals : sequence of str
-        Names from :func:`signal_names`.
-
-    Returns
-    -------
-    OrbitFigures
-    """
+    """Record one orbit and measure it."""
     states, extra = mapping.record(y)
     frequency = 1.0 / mapping.period
     response = build_response(mapping.compiled, frequency, states, extra)

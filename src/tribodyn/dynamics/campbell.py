@@ -7,19 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.natural_modes import natural_modes
 from tribodyn.dynamics.natural_modes_linear import ModePhase
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["Campbell", "Resonance", "campbell"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

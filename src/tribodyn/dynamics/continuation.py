@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.branch import Branch, SpecialPoint
 from tribodyn.dynamics.branch_figures import OrbitFigures, measure, signal_names
@@ -25,10 +25,7 @@ from tribodyn.dynamics.steady_state import TOLERANCE
 from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError, InputError, Problem, warn
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["continuation"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: A start this close to an orbit, relative to the motion, is taken for that orbit.
 _NEAR = 0.1

@@ -10,14 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.continuation_map import Jet, ParameterMap
 from tribodyn.errors import ComputationError
-
-__all__ = ["BranchPoint", "StalledError", "correct", "tangent_at"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, ComplexArray
 
 _ITERATIONS = 14
 _HALVINGS = 4
@@ -27,40 +23,18 @@ _CONTRACTION = 0.3
 
 @dataclass(frozen=True)
 class BranchPoint:
-    """A point of the branch.
+    """A point of the branch."""
 
-    Parameters
-    ----------
-    x : (k + 1,) array
-        Scaled state and parameter [-].
-    tangent : (k + 1,) array
-        Unit vector along the branch [-].
-    jet : Jet
-        The map at the point.
-    multipliers : (m,) complex array
-        Floquet multipliers, the largest first.
-    error : float
-        Distance to the branch relative to the size of the motion [-].
-    effort : int
-        Iterations of the corrector.
-    """
-
-    x: Array
-    tangent: Array
-    jet: Jet
-    multipliers: NDArray[np.complex128]
-    error: float
-    effort: int
+    x: Array  #: scaled state and parameter [-]
+    tangent: Array  #: unit vector along the branch [-]
+    jet: Jet  #: the map at the point
+    multipliers: ComplexArray  #: floquet multipliers, the largest first
+    error: float  #: distance to the branch relative to the size of the motion [-]
+    effort: int  #: iterations of the corrector
 
 
 class StalledError(Exception):
-    """The corrector found no point.
-
-    Parameters
-    ----------
-    residual : float
-        What the map adds to the last point, relative to the motion [-].
-    """
+    """The corrector found no point."""
 
     def __init__(self, residual: float) -> None:
         super().__init__(f"residual {residual:.2e}")
@@ -68,18 +42,7 @@ class StalledError(Exception):
 
 
 def tangent_at(jet: Jet, along: Array) -> Array:
-    """Direction of the branch at a point.
-
-    Parameters
-    ----------
-    jet : Jet
-    along : (k + 1,) array
-        Direction before; the new one does not turn back from it.
-
-    Returns
-    -------
-    (k + 1,) array
-    """
+    """Direction of the branch at a point."""
     last = np.zeros(along.size)
     last[-1] = 1.0
     found = np.linalg.lstsq(jet.border(along), last, rcond=None)[0]
@@ -97,29 +60,7 @@ def _norm(function: ParameterMap, x: Array, row: Array, guess: Array) -> tuple[A
 def correct(
     function: ParameterMap, guess: Array, row: Array, jet: Jet | None, tolerance: float
 ) -> BranchPoint:
-    """Find the point of the branch in the plane through the guess.
-
-    Parameters
-    ----------
-    function : ParameterMap
-    guess : (k + 1,) array
-        Where to begin.
-    row : (k + 1,) array
-        Normal of the plane: the last tangent, or (0, ..., 1) to hold the parameter.
-    jet : Jet, optional
-        The map near the guess; taken at the guess by default.
-    tolerance : float
-        Largest error of a point, relative to the motion.
-
-    Returns
-    -------
-    BranchPoint
-
-    Raises
-    ------
-    StalledError
-        If no point is found.
-    """
+    """Find the point of the branch in the plane through the guess."""
     x, fresh = guess.copy(), jet is None
     value, size = _norm(function, x, row, guess)
     if not np.isfinite(size):

@@ -10,17 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.coordinates import OrbitCoordinates
 from tribodyn.dynamics.march import Compiled, compile_for
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["Family", "Jet", "ParameterMap"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Half of the differences that give the matrix of a map with dead zones, and the slope along the
 #: parameter, relative to the motion and to the range.
@@ -28,25 +24,7 @@ _DISTURBANCE, _PARAMETER_DISTURBANCE = 3e-6, 1e-6
 
 
 class Family:
-    """Systems that differ by one parameter, each with its mesh frequency.
-
-    Parameters
-    ----------
-    make : System or function
-        A system, whose mesh frequency [Hz] is then the parameter; or a function of the parameter
-        that returns a system, or a system and its mesh frequency.
-    mesh_frequency : float, optional
-        Mesh frequency [Hz] of a function that returns systems only.
-    steps : int
-        Steps per mesh cycle.
-    lowest : float
-        Least value of the parameter.
-
-    Raises
-    ------
-    InputError
-        If the function returns something else, or the mesh frequency is missing.
-    """
+    """Systems that differ by one parameter, each with its mesh frequency."""
 
     def __init__(
         self,
@@ -80,49 +58,20 @@ class Family:
 
 @dataclass(frozen=True)
 class Jet:
-    """The map at one point with its derivatives, all scaled.
+    """The map at one point with its derivatives, all scaled."""
 
-    Parameters
-    ----------
-    residual : (k,) array
-        What the map adds to the point [-].
-    matrix : (k, k) array
-        Derivative with respect to the point, the monodromy matrix [-].
-    slope : (k,) array
-        Derivative with respect to the parameter [-].
-    """
-
-    residual: Array
-    matrix: Array
-    slope: Array
+    residual: Array  #: what the map adds to the point [-]
+    matrix: Array  #: derivative with respect to the point, the monodromy matrix [-]
+    slope: Array  #: derivative with respect to the parameter [-]
 
     def border(self, row: Array) -> Array:
-        """Matrix of Newton's method with one more equation.
-
-        Parameters
-        ----------
-        row : (k + 1,) array
-            Row of the further equation.
-
-        Returns
-        -------
-        (k + 1, k + 1) array
-        """
+        """Matrix of Newton's method with one more equation."""
         top = np.column_stack((self.matrix - np.eye(self.residual.size), self.slope))
         return np.vstack((top, row))
 
 
 class ParameterMap:
-    """The scaled map of a point ``x = (state / size, (parameter - low) / range)``.
-
-    Parameters
-    ----------
-    family : Family
-    periods : int
-        Mesh cycles of a period.
-    between : (float, float)
-        First and last parameter.
-    """
+    """The scaled map of a point ``x = (state / size, (parameter - low) / range)``."""
 
     def __init__(self, family: Family, periods: int, between: tuple[float, float]) -> None:
         self.family, self.periods = family, periods
@@ -133,30 +82,11 @@ class ParameterMap:
         self._kept: tuple[float, OrbitMap] | None = None
 
     def parameter(self, x: Array) -> float:
-        """Parameter of a point.
-
-        Parameters
-        ----------
-        x : (k + 1,) array
-
-        Returns
-        -------
-        float
-        """
+        """Parameter of a point."""
         return float(self.origin + self.range * x[-1])
 
     def at(self, parameter: float) -> OrbitMap:
-        """Take the map of one parameter.
-
-        Parameters
-        ----------
-        parameter : float
-
-        Returns
-        -------
-        OrbitMap
-            All share the coordinates of the first.
-        """
+        """Take the map of one parameter."""
         if self._kept is not None and self._kept[0] == parameter:
             return self._kept[1]
         compiled, frequency = self.family(parameter)
@@ -166,44 +96,17 @@ class ParameterMap:
         return made
 
     def reduced(self, x: Array) -> Array:
-        """Reduced vector of a point, without the scale.
-
-        Parameters
-        ----------
-        x : (k + 1,) array
-
-        Returns
-        -------
-        (k,) array
-        """
+        """Reduced vector of a point, without the scale."""
         return np.asarray(x[:-1] * self.size)
 
     def residual(self, x: Array) -> Array:
-        """What the map adds to a point.
-
-        Parameters
-        ----------
-        x : (k + 1,) array
-
-        Returns
-        -------
-        (k,) array
-        """
+        """What the map adds to a point."""
         y = self.reduced(x)
         self.cycles += self.periods
         return np.asarray((self.at(self.parameter(x))(y) - y) / self.size)
 
     def jet(self, x: Array) -> Jet:
-        """Evaluate the map at a point and next to it.
-
-        Parameters
-        ----------
-        x : (k + 1,) array
-
-        Returns
-        -------
-        Jet
-        """
+        """Evaluate the map at a point and next to it."""
         u, parameter = x[:-1], self.parameter(x)
         step, delta = _DISTURBANCE, _PARAMETER_DISTURBANCE
         sides = [self.at(parameter + sign * delta * self.range)(u * self.size) for sign in (-1, 1)]

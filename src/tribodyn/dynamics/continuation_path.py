@@ -6,15 +6,11 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.continuation_corrector import BranchPoint, StalledError, correct, tangent_at
 from tribodyn.dynamics.continuation_map import ParameterMap
 from tribodyn.progress import Progress
-
-__all__ = ["Stepping", "follow", "hold", "with_values"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Least cosine of the angle between neighbouring tangents: a larger turn may be another branch.
 _STRAIGHT = 0.8
@@ -28,21 +24,11 @@ _EASY, _HARD = 6, 9
 
 @dataclass(frozen=True)
 class Stepping:
-    """How to go along a branch.
+    """How to go along a branch."""
 
-    Parameters
-    ----------
-    longest : float
-        Longest step in the parameter, relative to the range.
-    points : int
-        Points at most.
-    tolerance : float
-        Largest error of a point, relative to the motion.
-    """
-
-    longest: float
-    points: int
-    tolerance: float
+    longest: float  #: longest step in the parameter, relative to the range
+    points: int  #: points at most
+    tolerance: float  #: largest error of a point, relative to the motion
 
 
 def _inside(x: Array) -> bool:
@@ -50,17 +36,7 @@ def _inside(x: Array) -> bool:
 
 
 def hold(size: int) -> Array:
-    """Plane of constant parameter.
-
-    Parameters
-    ----------
-    size : int
-        Length of a point.
-
-    Returns
-    -------
-    (size,) array
-    """
+    """Plane of constant parameter."""
     row = np.zeros(size)
     row[-1] = 1.0
     return row
@@ -95,22 +71,7 @@ def _at(
 def with_values(
     function: ParameterMap, points: list[BranchPoint], values: Array, tolerance: float
 ) -> list[BranchPoint]:
-    """Add the points of a branch at given parameters, as often as it passes them.
-
-    Parameters
-    ----------
-    function : ParameterMap
-    points : list of BranchPoint
-    values : (m,) array
-        Parameters.
-    tolerance : float
-        Largest error of a point, relative to the motion.
-
-    Returns
-    -------
-    list of BranchPoint
-        All points in the order of the branch.
-    """
+    """Add the points of a branch at given parameters, as often as it passes them."""
     scaled = (np.asarray(values, dtype=float) - function.origin) / function.range
     made = points[:1]
     for left, right in pairwise(points):
@@ -138,22 +99,7 @@ def _closes(points: list[BranchPoint], new: BranchPoint) -> bool:
 def follow(
     function: ParameterMap, first: BranchPoint, stepping: Stepping, progress: Progress
 ) -> tuple[list[BranchPoint], str, bool]:
-    """Go along a branch until it leaves the range, closes, ends or has enough points.
-
-    Parameters
-    ----------
-    function : ParameterMap
-    first : BranchPoint
-        Where to begin; its tangent says which way.
-    stepping : Stepping
-    progress : Progress
-        Told about every point.
-
-    Returns
-    -------
-    tuple of list of BranchPoint, str and bool
-        The points, why they end, and whether that is as it should be.
-    """
+    """Go along a branch until it leaves the range, closes, ends or has enough points."""
     points, length = [first], 0.25
     reason, worst = "", ""
     while not reason:

@@ -7,14 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.continuation_corrector import BranchPoint, StalledError, correct, tangent_at
 from tribodyn.dynamics.continuation_map import ParameterMap
 
-__all__ = ["Located", "Test", "locate", "tests_of_multipliers"]
-
-Array = NDArray[np.float64]
 Test = Callable[[BranchPoint], float]
 
 _ITERATIONS = 40
@@ -28,19 +24,10 @@ _UPRIGHT = 1e-7
 
 @dataclass(frozen=True)
 class Located:
-    """A special point.
+    """A special point."""
 
-    Parameters
-    ----------
-    kind : str
-        What happens there.
-    after : int
-        Number of the point of the branch before it.
-    point : BranchPoint
-    """
-
-    kind: str
-    after: int
+    kind: str  #: what happens there
+    after: int  #: number of the point of the branch before it
     point: BranchPoint
 
 
@@ -85,12 +72,7 @@ def _always(point: BranchPoint) -> bool:
 
 
 def tests_of_multipliers() -> dict[str, tuple[Test, Callable[[BranchPoint], bool]]]:
-    """Test functions of the multipliers by the kind of point, and what holds at such a point.
-
-    Returns
-    -------
-    dict
-    """
+    """Test functions of the multipliers by the kind of point, and what holds at such a point."""
     return {
         "fold": (_fold, _always),
         "period-doubling": (_period_doubling, _is_doubling),
@@ -107,26 +89,7 @@ def locate(
     holds: Callable[[BranchPoint], bool],
     tolerance: float,
 ) -> list[Located]:
-    """Find where a test function changes its sign.
-
-    Parameters
-    ----------
-    function : ParameterMap
-    points : list of BranchPoint
-        The branch.
-    kind : str
-        What a change of sign means.
-    test : callable
-        Test function.
-    holds : callable
-        Tells a genuine point from another zero of the test function.
-    tolerance : float
-        Largest error of a point, relative to the motion.
-
-    Returns
-    -------
-    list of Located
-    """
+    """Find where a test function changes its sign."""
     values = [test(point) for point in points]
     found = []
     for number, (left, right) in enumerate(pairwise(values)):

@@ -11,68 +11,32 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.march import Compiled
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["OrbitCoordinates", "orbit_coordinates", "refuse_disconnected"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _RANK = 1e-9
 
 
 @dataclass(frozen=True)
 class OrbitCoordinates:
-    """Change between a state and the reduced vector in which an orbit closes.
+    """Change between a state and the reduced vector in which an orbit closes."""
 
-    Parameters
-    ----------
-    lower : (n, n) array
-        Cholesky factor of the mass matrix.
-    elastic : (n, e) array
-        Orthonormal basis, in the mass metric, of positions that matter.
-    moving : (n, v) array
-        The same for velocities.
-    free : (n, r) array
-        Free motions: neither position nor velocity matters.
-    rate : float
-        Weight of positions against velocities [rad/s].
-    """
-
-    lower: Array
-    elastic: Array
-    moving: Array
-    free: Array
-    rate: float
+    lower: Array  #: cholesky factor of the mass matrix
+    elastic: Array  #: orthonormal basis, in the mass metric, of positions that matter
+    moving: Array  #: the same for velocities
+    free: Array  #: free motions: neither position nor velocity matters
+    rate: float  #: weight of positions against velocities [rad/s]
 
     def reduce(self, state: Array) -> Array:
-        """State (..., 2 n) to reduced vector (..., e + v).
-
-        Parameters
-        ----------
-        state : (..., 2 n) array
-
-        Returns
-        -------
-        (..., e + v) array
-        """
+        """State (..., 2 n) to reduced vector (..., e + v)."""
         size = self.lower.shape[0]
         q, v = state[..., :size] @ self.lower, state[..., size:] @ self.lower
         return np.concatenate((self.rate * (q @ self.elastic), v @ self.moving), axis=-1)
 
     def expand(self, reduced: Array) -> Array:
-        """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest.
-
-        Parameters
-        ----------
-        reduced : (..., e + v) array
-
-        Returns
-        -------
-        (..., 2 n) array
-        """
+        """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest."""
         inverse = np.linalg.inv(self.lower)
         count = self.elastic.shape[1]
         q = reduced[..., :count] @ self.elastic.T / self.rate
@@ -80,33 +44,13 @@ class OrbitCoordinates:
         return np.concatenate((q @ inverse, v @ inverse), axis=-1)
 
     def free_velocity(self, state: Array) -> Array:
-        """Velocity of the free motions, (..., r), in the mass metric.
-
-        Parameters
-        ----------
-        state : (..., 2 n) array
-
-        Returns
-        -------
-        (..., r) array
-        """
+        """Velocity of the free motions, (..., r), in the mass metric."""
         size = self.lower.shape[0]
         return np.asarray(state[..., size:] @ self.lower @ self.free)
 
 
 def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:
-    """Find the coordinates that matter.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    mesh_frequency : float
-        Mesh frequency [Hz].
-
-    Returns
-    -------
-    OrbitCoordinates
-    """
+    """Find the coordinates that matter."""
     system, nodes = compiled.system, compiled.nodes
     lower = np.linalg.cholesky(np.asarray(system.mass))
     inverse = np.linalg.inv(lower)
@@ -120,17 +64,7 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
 
 
 def refuse_disconnected(compiled: Compiled) -> None:
-    """Refuse a coordinate that no spring, damper or contact joins to anything.
-
-    Parameters
-    ----------
-    compiled : Compiled
-
-    Raises
-    ------
-    InputError
-        If there is one beside others that vibrate; the message names it.
-    """
+    """Refuse a coordinate that no spring, damper or contact joins to anything."""
     system, nodes = compiled.system, compiled.nodes
     held = np.zeros(system.size, dtype=bool)
     for name in ("stiffness", "damping"):

@@ -11,15 +11,10 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.kernel import I64, INNER, compression, dead_zone, step
 from tribodyn.dynamics.lanes import above, first_lane, store
-
-__all__ = ["MAX_SPLITS", "MAX_TRIES", "find_sides", "row_within", "set_sides", "split_step"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: A step is split at most this often. More means a grazing contact, whose excursions within one
 #: step are then too small to matter; the step is taken as it stands.
@@ -89,11 +84,7 @@ def row_within(code: Index, rows: Array, base: int, tau: float, part: Array, nod
 def _first_beyond(
     code: Index, reads: Index, part: Array, w: Array, known: int
 ) -> tuple[Any, float, float, float]:
-    """Contact that seems to have left its side first: its number, direction, clearances.
-
-    Compares the state in buffer 0 at the left row of ``part`` with that in buffer 2 at the right
-    row; the contact ``known`` is passed over. The number is -1 if all are on their sides.
-    """
+    """Contact that seems to have left its side first: its number, direction, clearances."""
     found: Any = I64(-1)
     direction, g_start, g_end, least = 0.0, 0.0, 0.0, 2.0
     for j in range(code[1]):
@@ -138,13 +129,7 @@ def split_step(
     w: Array,
     parts: Array,
 ) -> int:
-    """March one lane by one step in parts; returns the number of crossings.
-
-    The state in buffer 0 and the sides are those at the left end; the new state is left in
-    buffer 2, and the sides are updated. Crossings are found by the Illinois method on the step
-    itself, so that they are as accurate as the step. The number of the parts and what
-    :func:`~tribodyn.dynamics.moments.gather_parts` needs of each are left in ``parts``.
-    """
+    """March one lane by one step in parts; returns the number of crossings."""
     n, right, sides = code[0], 2 * code[2], 8 * code[0] + code[1]
     start, target, contact, splits, probe, tries = 0.0, 1.0, I64(-1), 0, 0, 0
     parts[0] = 0.0

@@ -5,17 +5,13 @@ from __future__ import annotations
 from typing import NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.load_friction import friction_tangent, push_with_friction
 from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError, Problem
-
-__all__ = ["probable_cause", "report_divergence"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: ``omega_max * dt`` above which the step itself is a suspect.
 _SUSPECT_STEP = 2.0
@@ -34,31 +30,7 @@ def report_divergence(
     lane: int | None,
     factors: Array,
 ) -> NoReturn:
-    """Raise the error that tells when and where a motion ran away, and why that may be.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-    grid : Grid
-    step_number : float
-        ``omega_max * dt`` of the integration [-].
-    states : (steps + 1, 2 n) array
-        States of the mesh cycle in which it did.
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    cycles : int
-        Mesh cycles before this one.
-    lane : int or None
-        Number of the lane; None for a single motion.
-    factors : (6,) array
-        What the lane scales: stiffness, damping, friction, error, gap, force [1].
-
-    Raises
-    ------
-    ComputationError
-        Always.
-    """
+    """Raise the error that tells when and where a motion ran away, and why that may be."""
     size = system.size
     finite = np.all(np.isfinite(states), axis=1)
     last = int(np.argmin(finite)) - 1 if not finite.all() else len(states) - 2
@@ -88,23 +60,7 @@ def report_divergence(
 def probable_cause(
     system: System, nodes: Nodes, step_number: float, factors: Array
 ) -> tuple[str, str]:
-    """Look for what can make a motion grow.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-        The system on its grid.
-    step_number : float
-        ``omega_max * dt`` of the integration [-].
-    factors : (6,) array
-        What the lane scales [1].
-
-    Returns
-    -------
-    tuple of str
-        The probable cause, and a remedy.
-    """
+    """Look for what can make a motion grow."""
     stiff, damp = factors[:2]
     for kind, entry, factor, unit in (
         ("stiffness", nodes.stiffness, stiff, "N/m"), ("damping", nodes.damping, damp, "N*s/m"),

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.dormand_prince_failure import report_failure
 from tribodyn.dynamics.dormand_prince_table import PhaseTable, build_table
@@ -25,10 +25,7 @@ from tribodyn.dynamics.program import compile_system, lane_load
 from tribodyn.dynamics.step_limit import largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_between
-
-__all__ = ["AdaptiveEngine", "AdaptiveRun", "adaptive_engine", "march_adaptive"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Lanes of one block.
 _WIDTHS = (1, 16)
@@ -37,57 +34,27 @@ _SAMPLE = 64
 
 @dataclass(frozen=True)
 class AdaptiveRun:
-    """What a march gives.
+    """What a march gives."""
 
-    Parameters
-    ----------
-    state : (lanes, 2 n) array
-        Position and velocity at the end.
-    steps, rejections, crossings : int
-        Accepted steps, steps repeated for their error, and changes of side of contacts, summed
-        over blocks of lanes.
-    widest : float
-        Widest step in mesh phase [-].
-    trail : (steps, 3 + 6 n) array
-        Steps of a single lane: phase and width, position, velocity, acceleration, mean velocity,
-        and velocity and acceleration at the end.
-    memory : (blocks, ...) array
-        Step sizes and sizes of the state, to go on with.
-    """
-
-    state: Array
+    state: Array  #: position and velocity at the end
     steps: int
     rejections: int
     crossings: int
-    widest: float
+    widest: float  #: widest step in mesh phase [-]
     trail: Array
-    memory: Array
+    memory: Array  #: step sizes and sizes of the state, to go on with
 
 
 @dataclass(frozen=True)
 class AdaptiveEngine:
-    """A system with its phase table and tolerances.
-
-    Parameters
-    ----------
-    system : System
-    table : PhaseTable
-    rtol : float
-        Error over the largest size so far of each state [-].
-    atol : (2 n,) array
-        Error allowed on top of that [m or rad, m/s or rad/s].
-    rate : float
-        Fastest motion of the system [rad/s].
-    safety : float
-        Error of a step over the tolerance [-].
-    """
+    """A system with its phase table and tolerances."""
 
     system: System
     table: PhaseTable
-    rtol: float
-    atol: Array
-    rate: float
-    safety: float
+    rtol: float  #: error over the largest size so far of each state [-]
+    atol: Array  #: error allowed on top of that [m or rad, m/s or rad/s]
+    rate: float  #: fastest motion of the system [rad/s]
+    safety: float  #: error of a step over the tolerance [-]
 
     def march(
         self,
@@ -103,49 +70,10 @@ class AdaptiveEngine:
         width: int | None = None,
         threads: int | None = None,
         scales: Array | None = None,
-        numbers: NDArray[np.int64] | None = None,
+        numbers: Index | None = None,
         elapsed: int = 0,
     ) -> AdaptiveRun:
-        """March lanes by whole mesh cycles.
-
-        Parameters
-        ----------
-        period : (lanes,) array
-            Mesh period [s].
-        state : (lanes, 2 n) array
-            Position and velocity.
-        cycles : int
-            Mesh cycles.
-        extra_force : (lanes, n) array, optional
-            Constant generalized force on top of the system's [N or N*m].
-        points : (steps,) array, optional
-            Mesh phases to record at, rising from 0 [-].
-        record : (cycles * steps + 1, 2 n, lanes) array, optional
-            Receives the states there and at the end.
-        memory : array, optional
-            Of the run that this one continues.
-        room : int
-            Steps of a single lane to keep.
-        width : int, optional
-            Lanes per block; chosen by the number of lanes by default.
-        threads : int, optional
-            Blocks marched at a time; the number of processors by default.
-        scales : (lanes, 6) array, optional
-            Factors of contact stiffness, contact damping, friction, error, dead zone and force [1].
-        numbers : (lanes,) int array, optional
-            What the lanes are called where one fails; as they come by default.
-        elapsed : int
-            Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
-
-        Returns
-        -------
-        AdaptiveRun
-
-        Raises
-        ------
-        ComputationError
-            If a step falls below all bounds, or a contact chatters.
-        """
+        """March lanes by whole mesh cycles."""
         lanes, double = state.shape
         width = width or (_WIDTHS[0] if lanes < 4 else _WIDTHS[1])
         extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
@@ -208,7 +136,7 @@ class AdaptiveEngine:
         record: Array,
         trail: Array,
         report: Array,
-        index: NDArray[np.int64],
+        index: Index,
         elapsed: int,
     ) -> None:
         from tribodyn.dynamics.dormand_prince_kernel import own_slots
@@ -248,45 +176,7 @@ def adaptive_engine(
     table: PhaseTable | None = None,
     parameters: LaneParameters | None = None,
 ) -> AdaptiveEngine:
-    """Prepare a system for adaptive steps.
-
-    Parameters
-    ----------
-    system : System
-    mesh_frequency : float or (lanes,) array
-        Mesh frequency [Hz].
-    cycles : int
-        Mesh cycles to march: the longer, the more errors of steps can add up.
-    rtol : float
-        Error over the largest size so far of each state [-].
-    atol : float, (position, velocity) or (2 n,) array, optional
-        Error allowed on top of that [m or rad, m/s or rad/s].
-    table : PhaseTable, optional
-        Of the same system, to spare building it again.
-    parameters : LaneParameters, optional
-        Factors by which lanes scale the system.
-
-    Returns
-    -------
-    AdaptiveEngine
-
-    Raises
-    ------
-    InputError
-        If a tolerance is out of range, an entry jumps at a phase that is not an event, or the
-        entries are too rough for the tolerance.
-
-    Notes
-    -----
-    By default ``atol`` is 0.001 ``rtol`` times the size of the static state: every position
-    ``s / sqrt(m_i)`` with ``s`` the largest ``sqrt(m_i) |q_i|`` of the static deflection, and
-    every velocity ``sqrt(f.q / m_i)``, that of the work of the mean load. It only matters for
-    states that stay near zero.
-
-    The error of a step is held to a fraction of the tolerance, the smaller the longer the motion
-    remembers it: 0.015, with dead zones 0.001, or 3 over the angle through which its least damped
-    mode turns while it decays or while the march lasts.
-    """
+    """Prepare a system for adaptive steps."""
     require_between("rtol", rtol, 1e-12, 1e-2)
     scaled = parameters is not None and parameters.scales_contacts
     split = parameters is not None and parameters.scales_friction
@@ -328,42 +218,7 @@ def march_adaptive(
     record: Array | None = None,
     threads: int | None = None,
 ) -> Array:
-    """March lanes by whole mesh cycles; returns their new state.
-
-    Parameters
-    ----------
-    compiled : Compiled
-        Its grid is the one to record on; its step limit does not matter.
-    period : (lanes,) array
-        Mesh period [s].
-    state : (lanes, 2 n) array
-        Position and velocity.
-    cycles : int
-        Mesh cycles.
-    rtol : float
-        Error over the largest size so far of each state [-].
-    atol : float, (position, velocity) or (2 n,) array, optional
-        Error allowed on top of that [m or rad, m/s or rad/s].
-    extra_force : (lanes, n) array, optional
-        Constant generalized force on top of the system's [N or N*m].
-    parameters : LaneParameters, optional
-        Factors by which each lane scales its system.
-    record : (steps * cycles + 1, 2 n, lanes) array, optional
-        Receives every state on the grid.
-    threads : int, optional
-        Blocks marched at a time; the number of processors by default.
-
-    Returns
-    -------
-    (lanes, 2 n) array
-
-    Raises
-    ------
-    InputError
-        If a tolerance is out of range.
-    ComputationError
-        If a step falls below all bounds, or a contact chatters.
-    """
+    """March lanes by whole mesh cycles; returns their new state."""
     period = np.asarray(period, dtype=float)
     scales = None if parameters is None else parameters.table(period.size)
     everyone = np.arange(period.size)

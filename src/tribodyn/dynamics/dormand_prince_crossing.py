@@ -11,7 +11,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.dormand_prince_kernel import (
     between,
@@ -24,11 +23,7 @@ from tribodyn.dynamics.dormand_prince_kernel import (
 )
 from tribodyn.dynamics.kernel import I64, INNER, acceleration
 from tribodyn.dynamics.lanes import load
-
-__all__ = ["MAX_CHANGES", "NARROWEST", "advance_lane", "growth", "keep_points", "keep_step"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Changes of side of one lane within this much mesh phase; more is chatter, and is reported.
 MAX_CHANGES, CHATTER = 64, 1e-6
@@ -264,11 +259,7 @@ def advance_lane(
     report: Array,
     w: Array,
 ) -> None:
-    """March one lane from its state in buffer 0 to its state in buffer 0 at the phase ``end``.
-
-    The acceleration at the start is that of stage 0; that at the end is left to the caller.
-    ``report`` counts steps, rejections and crossings and takes the reason of a failure.
-    """
+    """March one lane from its state in buffer 0 to its state in buffer 0 at the phase ``end``."""
     one = (0.0,)
     n, contacts = code[0], code[1]
     fresh = own + 19 * n + 2 + 10 * contacts

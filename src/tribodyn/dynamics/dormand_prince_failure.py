@@ -5,17 +5,13 @@ from __future__ import annotations
 from typing import NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.divergence import probable_cause
 from tribodyn.dynamics.grid import system_events
 from tribodyn.dynamics.program import compile_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError, Problem
-
-__all__ = ["report_failure"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _SAMPLE = 64
 
@@ -29,29 +25,7 @@ def report_failure(
     factors: Array,
     lane: int,
 ) -> NoReturn:
-    """Raise the error that tells when and where a march ended.
-
-    Parameters
-    ----------
-    report : (10,) array
-        As the compiled march leaves it.
-    period : float
-        Mesh period [s].
-    state : (2 n,) array
-        State at the failed step [m or rad, m/s or rad/s].
-    scale : (2 n,) array
-        Size of each state at rest [same units].
-    system : System
-    factors : (6,) array
-        What the trajectory scales: stiffness, damping, friction, error, gap, force [1].
-    lane : int
-        Number of the trajectory; -1 for a single one.
-
-    Raises
-    ------
-    ComputationError
-        Always.
-    """
+    """Raise the error that tells when and where a march ended."""
     cycle, phase = int(report[9]), float(report[5])
     n = system.size
     where = f"time {(cycle + phase) * period:.6g} s, mesh cycle {cycle + 1}, phase {phase:.6g}"

@@ -20,27 +20,10 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.kernel import I64, INNER, acceleration, compression, dead_zone
 from tribodyn.dynamics.lanes import any_negative, greatest, load, store
-
-__all__ = [
-    "MATRIX",
-    "NODES",
-    "WEIGHT_ERROR",
-    "between",
-    "clearances",
-    "fill_row",
-    "find_cell",
-    "may_cross",
-    "own_slots",
-    "set_scale",
-    "try_step",
-]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Places of the stages, their weights (the last row is the step itself) and those of the error.
 NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
@@ -61,17 +44,7 @@ WEIGHT_ERROR = np.array(
 
 
 def own_slots(n: int, contacts: int) -> int:
-    """Slots of a lane on top of those of the program.
-
-    Parameters
-    ----------
-    n, contacts : int
-        Coordinates and contacts.
-
-    Returns
-    -------
-    int
-    """
+    """Slots of a lane on top of those of the program."""
     return 19 * n + 2 + 13 * contacts
 
 
@@ -130,11 +103,7 @@ def try_step(
     own: int,
     w: Array,
 ) -> float:
-    """Step every lane by ``width`` in phase, from buffer 0 to buffer 2; returns the worst error.
-
-    The acceleration at the start is that of stage 0 already. The error is the norm over the state
-    in units of the tolerance, infinite if a number is not finite.
-    """
+    """Step every lane by ``width`` in phase, from buffer 0 to buffer 2; returns the worst error."""
     n, contacts = code[0], code[1]
     first, rate, mean = own, own + 7 * n, own + 14 * n
     period = load(lanes, w, own + 19 * n + 1)
@@ -210,10 +179,7 @@ def between(lanes: Any, n: int, own: int, theta: float, h: Any, speed: bool, w: 
 def clearances(
     lanes: Any, code: Index, reads: Index, row: Array, buffer: int, slot: int, w: Array
 ) -> None:
-    """Distances of every contact to the boundaries of its side, two slots each from ``slot``.
-
-    On a flank both are the same; in the gap they are those to the two flanks.
-    """
+    """Distances of every contact to the boundaries of its side, two slots each from ``slot``."""
     n, contacts = code[0], code[1]
     at, read, here = I64(4), buffer * code[3], I64(0)
     for j in range(contacts):
@@ -245,11 +211,7 @@ def may_cross(
     own: int,
     w: Array,
 ) -> bool:
-    """Tell whether a contact of any lane may have left its side within the step just tried.
-
-    Clearances at both ends and at the quarters are compared with the parabolas through them, with
-    a margin, so that an excursion between two places is seen.
-    """
+    """Tell whether a contact of any lane may have left its side within the step just tried."""
     n, contacts = code[0], code[1]
     h, table = load(lanes, w, 9 * n + 2 * contacts + 1), own + 19 * n + 2
     here = cell

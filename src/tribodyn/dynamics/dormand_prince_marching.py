@@ -11,7 +11,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
 from tribodyn.dynamics.crossing import find_sides
@@ -31,11 +30,7 @@ from tribodyn.dynamics.dormand_prince_kernel import (
 )
 from tribodyn.dynamics.kernel import I64, INNER, JIT, acceleration
 from tribodyn.dynamics.lanes import address
-
-__all__ = ["march_adaptive_block"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
 _SOURCES = (
@@ -135,43 +130,7 @@ def _build(digest: str) -> Any:
         trail: Array,
         report: Array,
     ) -> None:
-        """March every lane by ``cycles`` mesh cycles.
-
-        Parameters
-        ----------
-        lanes : tuple of float
-            As long as there are lanes.
-        code, reads
-            The program.
-        constant, edge, degree, start, coefficients, varying, events, first
-            The phase table.
-        work : array of zeros
-            Room for the slots of all lanes, the slots of one lane and one row.
-        own, slots : int
-            First slot that the program does not use, and slots in all.
-        period : (lanes,) array
-            Mesh period [s].
-        load : (lanes, n + 6) array
-            Constant acceleration; factors of contact stiffness, contact damping, friction, error,
-            dead zone and load.
-        state : (lanes, 2 n) array
-            Position and velocity; overwritten.
-        memory : (2 + 2 n * lanes,) array
-            Next step and last error, largest size of each state; overwritten.
-        rtol, atol
-            Relative tolerance; absolute tolerance of each state.
-        cycles : int
-            Mesh cycles.
-        points : (steps,) array
-            Mesh phases to record at, from 0.
-        record : (cycles * steps + 1, 2 n, lanes) array
-            Receives the dense output there and at the end; empty to record nothing.
-        trail : (room, 2 + 6 n) array
-            Receives the steps of a single lane; empty to keep nothing.
-        report : (10,) array
-            Steps, rejections, crossings, widest step, reason of a failure (0 none, 1 step too
-            narrow, 2 chatter), its phase, lane and contact, steps in the trail, cycle.
-        """
+        """March every lane by ``cycles`` mesh cycles."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, contacts, width_of_block = code[0], code[1], len(lanes)
         count = varying.size

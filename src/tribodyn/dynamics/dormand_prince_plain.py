@@ -9,34 +9,20 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.dormand_prince_kernel import MATRIX, NODES, WEIGHT_ERROR
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.program import compile_on
 from tribodyn.dynamics.system import System
-
-__all__ = ["PlainStep", "step_plain"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 class PlainStep(NamedTuple):
-    """A step and its error.
+    """A step and its error."""
 
-    Parameters
-    ----------
-    state : (2 n,) array
-        Position and velocity at the end [m or rad, m/s or rad/s].
-    error : (2 n,) array
-        Difference between the solutions of fifth and fourth order, in the same units.
-    middle : (2 n,) array
-        Dense output in the middle of the step, in the same units.
-    """
-
-    state: Array
-    error: Array
-    middle: Array
+    state: Array  #: position and velocity at the end [m or rad, m/s or rad/s]
+    error: Array  #: difference between the solutions of fifth and fourth order, in the same units
+    middle: Array  #: dense output in the middle of the step, in the same units
 
 
 def _acceleration(system: System, phase: float, beat: float, y: Array, side: Array) -> Array:
@@ -58,24 +44,7 @@ def _acceleration(system: System, phase: float, beat: float, y: Array, side: Arr
 def step_plain(
     system: System, mesh_frequency: float, phase: float, width: float, state: Array, side: Array
 ) -> PlainStep:
-    """Step one trajectory within a segment between two events.
-
-    Parameters
-    ----------
-    system : System
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    phase, width : float
-        Mesh phase at the start and width of the step [-].
-    state : (2 n,) array
-        Position and velocity.
-    side : (contacts,) array
-        1 or -1 on a flank, 0 in the gap.
-
-    Returns
-    -------
-    PlainStep
-    """
+    """Step one trajectory within a segment between two events."""
     n, h = system.size, width / mesh_frequency
     slopes = np.zeros((7, 2 * n))
     y = np.asarray(state, dtype=float)
@@ -87,10 +56,7 @@ def step_plain(
 
 
 def _middle(start: Array, end: Array, first: Array, last: Array, h: float) -> Array:
-    """Quintic polynomial through position, velocity and acceleration at both ends, at its middle.
-
-    ``first`` and ``last`` are the time derivatives of the states ``start`` and ``end``.
-    """
+    """Middle of the quintic through position, velocity and acceleration at both ends."""
     n = start.size // 2
     q0, q1, v0, v1, a0, a1 = start[:n], end[:n], first[:n], last[:n], first[n:], last[n:]
     position = 0.5 * (q0 + q1) + 5.0 / 32.0 * h * (v0 - v1) + h**2 / 64.0 * (a0 + a1)

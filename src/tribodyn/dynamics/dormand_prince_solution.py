@@ -6,20 +6,18 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.dormand_prince import adaptive_engine
 from tribodyn.dynamics.dormand_prince_tolerance import Tolerance
 from tribodyn.dynamics.simulate import read_start, require_cycles
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["AdaptiveSolution", "solve_adaptive"]
-
-Array = NDArray[np.float64]
 
 #: Steps of a mesh cycle for which room is made at first.
 _ROOM = 4096
@@ -156,11 +154,7 @@ class AdaptiveSolution:
 
 
 def _hermite(parts: Array, h: Array, theta: Array) -> Array:
-    """Quintic Hermite interpolant of steps ``h`` and its derivative at the fractions ``theta``.
-
-    ``parts`` holds position, velocity, acceleration and mean velocity of the step, then velocity
-    and acceleration at its end.
-    """
+    """Quintic Hermite interpolant of steps ``h`` and its derivative at the fractions ``theta``."""
     q0, v0, a0, mean, v1, a1 = (parts[:, k] for k in range(6))
     s, h = theta[:, None], h[:, None]
     position = q0 + h * (

@@ -12,17 +12,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.program import Nodes, Program, build_program, compile_on
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["PhaseTable", "build_table", "row_at"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Highest degree of a polynomial.
 _DEGREE = 10
@@ -49,42 +44,18 @@ _FIRST, _SAMPLE = 16, 256
 
 
 class PhaseTable(NamedTuple):
-    """Rows of a program as polynomials of the mesh phase.
+    """Rows of a program as polynomials of the mesh phase."""
 
-    Parameters
-    ----------
-    program : Program
-        The terms, and the rows at sample points.
-    events : (segments + 1,) array
-        Mesh phases of the events, of kinks of the entries between them, and 1 [-].
-    first : (segments + 1,) int array
-        First cell of each segment, and the number of cells.
-    edge : (cells + 1,) array
-        Mesh phases between which the cells lie [-].
-    degree : (cells,) int array
-        Degree of the polynomials of each cell.
-    start : (cells,) int array
-        Where the coefficients of each cell begin.
-    coefficients : array
-        Powers of the local coordinate in [-1, 1], lowest first, for each varying factor in turn.
-    varying : (m,) int array
-        Columns of the factors that vary.
-    constant : (columns,) array
-        The row; right where nothing varies.
-    error : float
-        Mean deviation from the entries over the mesh cycle, over the largest size of a factor [-].
-    """
-
-    program: Program
-    events: Array
-    first: Index
-    edge: Array
-    degree: Index
-    start: Index
+    program: Program  #: the terms, and the rows at sample points
+    events: Array  #: mesh phases of the events, of kinks of the entries between them, and 1 [-]
+    first: Index  #: first cell of each segment, and the number of cells
+    edge: Array  #: mesh phases between which the cells lie [-]
+    degree: Index  #: degree of the polynomials of each cell
+    start: Index  #: where the coefficients of each cell begin
     coefficients: Array
-    varying: Index
-    constant: Array
-    error: float
+    varying: Index  #: columns of the factors that vary
+    constant: Array  #: the row
+    error: float  #: [-]
 
 
 class _Rows:
@@ -168,33 +139,7 @@ def _noise(system: System, nodes: Nodes, program: Program) -> Array:
 
 
 def build_table(system: System, *, scaled: bool = False, split: bool = False) -> PhaseTable:
-    """Turn the entries of a system into polynomials of the mesh phase.
-
-    Parameters
-    ----------
-    system : System
-    scaled : bool
-        Whether lanes scale stiffness, damping or dead zone of the contacts.
-    split : bool
-        Whether lanes scale the friction of the contacts.
-
-    Returns
-    -------
-    PhaseTable
-
-    Raises
-    ------
-    InputError
-        If an entry jumps at a phase that is not declared as an event.
-
-    Examples
-    --------
-    >>> from tribodyn.dynamics import Contact, System
-    >>> contact = Contact([1.0], stiffness=lambda phase: 2.0 + np.cos(2 * np.pi * phase))
-    >>> table = build_table(System([[1.0]], [[0.0]], [[0.0]], [0.0], [contact]))
-    >>> bool(abs(row_at(table, 0.25)[0] - 2.0) < 1e-11)
-    True
-    """
+    """Turn the entries of a system into polynomials of the mesh phase."""
     events = np.array([*system_events(system), 1.0])
     rows = _Rows(system, events, scaled, split)
     for _ in range(8):
@@ -360,20 +305,7 @@ def _with_kinks(events: Array, left: Array, right: Array, spectrum: Array) -> Ar
 
 
 def row_at(table: PhaseTable, phase: float, *, before: bool = False) -> Array:
-    """One row at one mesh phase, in plain NumPy.
-
-    Parameters
-    ----------
-    table : PhaseTable
-    phase : float
-        Mesh phase [-].
-    before : bool
-        Take the value before an event that lies there; after it by default.
-
-    Returns
-    -------
-    (columns,) array
-    """
+    """One row at one mesh phase, in plain NumPy."""
     phase = phase % 1.0 if not before else (1.0 if phase % 1.0 == 0.0 else phase % 1.0)
     cell = int(np.searchsorted(table.edge, phase, side="left" if before else "right")) - 1
     cell = min(max(cell, 0), table.degree.size - 1)

@@ -6,15 +6,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.start import static_start
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["SMALL", "Tolerance", "read_atol", "static_scale", "step_share"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: An absolute tolerance: one number, one for positions and one for velocities, or one per state.
 Tolerance = float | Sequence[float] | ArrayLike
@@ -30,24 +27,7 @@ _SHARE, _SHARE_WITH_GAP, _BUDGET, _LEAST = 0.015, 0.001, 3.0, 1e-5
 
 
 def read_atol(atol: Tolerance, size: int) -> Array:
-    """Absolute tolerance of each state.
-
-    Parameters
-    ----------
-    atol : float, (position, velocity) or (2 n,) array
-        As given [m or rad, m/s or rad/s].
-    size : int
-        Number of coordinates.
-
-    Returns
-    -------
-    (2 n,) array
-
-    Raises
-    ------
-    InputError
-        If the shape is none of these or a number is not positive.
-    """
+    """Absolute tolerance of each state."""
     values = np.atleast_1d(np.asarray(atol, dtype=float))
     if values.shape == (2,):
         values = np.repeat(values, size)
@@ -64,25 +44,7 @@ def read_atol(atol: Tolerance, size: int) -> Array:
 
 
 def static_scale(compiled: Compiled, mesh_frequency: float) -> Array:
-    """Sizes of positions and velocities in the static state, in the metric of the mass.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    mesh_frequency : float
-        Mesh frequency [Hz].
-
-    Returns
-    -------
-    (2 n,) array
-        In m or rad, m/s or rad/s.
-
-    Notes
-    -----
-    Every position ``s / sqrt(m_i)`` with ``s`` the largest ``sqrt(m_i) |q_i|`` of the static
-    deflection, every velocity ``sqrt(f.q / m_i)``, that of the work of the mean load. Without a
-    load the error or the gap of the contacts takes the place of the deflection.
-    """
+    """Sizes of positions and velocities in the static state, in the metric of the mass."""
     system, nodes = compiled.system, compiled.nodes
     mass = np.sqrt(np.diag(np.asarray(system.mass)))
     position = static_start(compiled)[: system.size]
@@ -98,26 +60,7 @@ def static_scale(compiled: Compiled, mesh_frequency: float) -> Array:
 def step_share(
     compiled: Compiled, duration: float, stiffness_scale: float = 1.0, damping_scale: float = 1.0
 ) -> float:
-    """Error of a step over the tolerance of the motion.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    duration : float
-        Length of the motion [s].
-    stiffness_scale, damping_scale : float
-        Largest and smallest factor by which lanes scale the contacts [1].
-
-    Returns
-    -------
-    float
-        Between 1e-5 and 0.015 [-].
-
-    Notes
-    -----
-    The memory of the motion is the largest angle through which a mode turns while it decays, or in
-    the time given, with contacts closed at the mean of their stiffness, and with contacts open.
-    """
+    """Error of a step over the tolerance of the motion."""
     system, nodes = compiled.system, compiled.nodes
     size = system.size
     inverse = np.linalg.inv(np.asarray(system.mass))

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.grid import Grid, RowEvaluator
 from tribodyn.dynamics.load_friction import friction_force
@@ -19,10 +19,7 @@ from tribodyn.dynamics.march import Compiled, compile_for
 from tribodyn.dynamics.response import Response
 from tribodyn.dynamics.response_crossings import interpolate_rows, within_steps
 from tribodyn.dynamics.system import System
-
-__all__ = ["EnergyAudit", "energy_audit"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Mesh phases nearer than this are the same; one-sided values are taken a little off an event.
 _SAME = 1e-9

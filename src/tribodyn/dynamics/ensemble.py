@@ -25,10 +25,7 @@ from tribodyn.dynamics.simulate import Method, refuse_foreign
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["Ensemble", "LaneStatistics", "simulate_ensemble"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, ComplexArray
 
 #: Mean, mean square, minimum, maximum, share off the driving flank; see the compiled statistics.
 _PLAIN = 5
@@ -50,7 +47,7 @@ class LaneStatistics:
     rms: Array
     minimum: Array
     maximum: Array
-    harmonics: NDArray[np.complex128] = field(repr=False)
+    harmonics: ComplexArray = field(repr=False)
 
     @property
     def alternating_rms(self) -> Array:

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.dormand_prince import AdaptiveEngine, adaptive_engine
 from tribodyn.dynamics.dormand_prince_tolerance import Tolerance
@@ -20,10 +19,7 @@ from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.march import Compiled, Member
 from tribodyn.dynamics.newmark_engine import newmark_engine
 from tribodyn.dynamics.newmark_limit import refuse_newmark
-
-__all__ = ["Block", "adaptive_blocks", "march_blocks", "moments_taker", "newmark_blocks"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Marches the lanes of one block by some mesh cycles, after others, records them, and returns the
 #: new state.
@@ -34,18 +30,9 @@ _WIDTH, _TOLERANCE = 16, 1e-12
 
 
 class Block:
-    """Lanes that march side by side the same system.
+    """Lanes that march side by side the same system."""
 
-    Parameters
-    ----------
-    member : Member
-    lanes : (m,) int array
-        Their numbers.
-    advance : callable
-        Marches them.
-    """
-
-    def __init__(self, member: Member, lanes: NDArray[np.int64], advance: _Advance) -> None:
+    def __init__(self, member: Member, lanes: Index, advance: _Advance) -> None:
         self.member, self.lanes, self.advance = member, lanes, advance
 
 
@@ -61,35 +48,13 @@ def newmark_blocks(
     gamma: float,
     beta: float,
 ) -> list[Block]:
-    """Blocks that march by Newmark's scheme.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    period : (lanes,) array
-        Mesh period [s].
-    extra_force : (lanes, n) array
-        Constant generalized force on top of the system's [N or N*m].
-    parameters : LaneParameters or None
-        Factors of the lanes.
-    gamma, beta : float
-        Parameters of the scheme [-].
-
-    Returns
-    -------
-    list of Block
-
-    Raises
-    ------
-    InputError
-        If gamma or beta are out of range, or the step of a conditionally stable scheme is too long.
-    """
+    """Blocks that march by Newmark's scheme."""
     refuse_newmark(compiled, period, gamma, beta, parameters)
     engine = newmark_engine(compiled, np.array([gamma, beta, _TOLERANCE]), parameters)
     scales = None if parameters is None else parameters.table(period.size)
     members = _members(compiled, period.size)
 
-    def build(number: int, lanes: NDArray[np.int64]) -> Block:
+    def build(number: int, lanes: Index) -> Block:
         called = lanes if period.size > 1 else None
 
         def advance(state: Array, cycles: int, record: Array | None, elapsed: int) -> Array:
@@ -113,33 +78,7 @@ def adaptive_blocks(
     rtol: float,
     atol: Tolerance | None,
 ) -> list[Block]:
-    """Blocks that march in adaptive steps.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    period : (lanes,) array
-        Mesh period [s].
-    cycles : int
-        Mesh cycles in all.
-    extra_force : (lanes, n) array
-        Constant generalized force on top of the system's [N or N*m].
-    parameters : LaneParameters or None
-        Factors of the lanes.
-    rtol : float
-        Error over the largest size so far of each state [-].
-    atol : float, (position, velocity) or (2 n,) array, optional
-        Error allowed on top of that [m or rad, m/s or rad/s].
-
-    Returns
-    -------
-    list of Block
-
-    Raises
-    ------
-    InputError
-        If a tolerance is out of range or an entry jumps at a phase that is not an event.
-    """
+    """Blocks that march in adaptive steps."""
     scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)
     found = []
     for member in _members(compiled, period.size):
@@ -148,9 +87,7 @@ def adaptive_blocks(
             parameters=parameters,
         )  # fmt: skip
 
-        def build(
-            lanes: NDArray[np.int64], member: Member = member, engine: AdaptiveEngine = engine
-        ) -> Block:
+        def build(lanes: Index, member: Member = member, engine: AdaptiveEngine = engine) -> Block:
             memory: list[Array | None] = [None]
 
             def advance(state: Array, cycles: int, record: Array | None, elapsed: int) -> Array:
@@ -179,33 +116,7 @@ def march_blocks(
     threads: int | None,
     elapsed: int = 0,
 ) -> Array:
-    """March all blocks; where somebody takes them, mesh cycle by mesh cycle with their records.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    blocks : list of Block
-    state : (lanes, 2 n) array
-        Position and velocity.
-    cycles : int
-        Mesh cycles.
-    take : callable or None
-        Takes a block and the record (steps + 1, 2 n, lanes of the block) of one mesh cycle.
-    threads : int or None
-        Blocks marched at a time; the number of processors by default.
-    elapsed : int
-        Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
-
-    Returns
-    -------
-    (lanes, 2 n) array
-        New state.
-
-    Raises
-    ------
-    ComputationError
-        If a motion grows beyond all bounds.
-    """
+    """March all blocks; where somebody takes them, mesh cycle by mesh cycle with their records."""
     new = np.empty_like(state)
 
     def march(block: Block) -> None:
@@ -239,30 +150,7 @@ def moments_taker(
     share: float,
     moments: Array,
 ) -> Callable[[Block, Array], None]:
-    """Make what adds recorded mesh cycles to the moments of all lanes.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    period : (lanes,) array
-        Mesh period [s].
-    extra_force : (lanes, n) array
-        Constant generalized force on top of the system's [N or N*m].
-    parameters : LaneParameters or None
-        Factors of the lanes.
-    outputs : (m, 2 n) array
-        Linear outputs of the state.
-    waves : (steps, 3, harmonics, 2) array
-        Cosine and sine at the nodes.
-    share : float
-        Part of the averaging time that one mesh cycle takes [-].
-    moments : (signals, lanes) array
-        Changed in place.
-
-    Returns
-    -------
-    callable
-    """
+    """Make what adds recorded mesh cycles to the moments of all lanes."""
     scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)
 
     def take(block: Block, record: Array) -> None:

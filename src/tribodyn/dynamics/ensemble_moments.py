@@ -9,63 +9,31 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import Member
-
-__all__ = ["RecordedLanes", "add_moments"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Mean, mean square, minimum, maximum, share off the driving flank; see the compiled statistics.
 _PLAIN = 5
 
 
 class RecordedLanes(NamedTuple):
-    """One mesh cycle of lanes that march the same system.
+    """One mesh cycle of lanes that march the same system."""
 
-    Parameters
-    ----------
-    member : Member
-        The system on its grid.
-    grid : Grid
-    period : (lanes,) array
-        Mesh period [s].
-    extra_force : (lanes, n) array
-        Constant generalized force on top of the system's [N or N*m].
-    scales : (lanes, 6) array
-        Factors of contact stiffness, contact damping, friction, error, dead zone and force [1].
-    states : (steps + 1, 2 n, lanes) array
-        Position and velocity before every step and at the end.
-    """
-
-    member: Member
+    member: Member  #: the system on its grid
     grid: Grid
-    period: Array
-    extra_force: Array
-    scales: Array
-    states: Array
+    period: Array  #: mesh period [s]
+    extra_force: Array  #: constant generalized force on top of the system's [N or N*m]
+    scales: Array  #: [1]
+    states: Array  #: position and velocity before every step and at the end
 
 
 def add_moments(
     lanes: RecordedLanes, outputs: Array, waves: Array, share: float, moments: Array
 ) -> None:
-    """Add a mesh cycle to the moments.
-
-    Parameters
-    ----------
-    lanes : RecordedLanes
-    outputs : (m, 2 n) array
-        Linear outputs of the state.
-    waves : (steps, 3, harmonics, 2) array
-        Cosine and sine at the nodes.
-    share : float
-        Part of the averaging time that the cycle takes [-].
-    moments : (signals, lanes) array
-        Changed in place.
-    """
+    """Add a mesh cycle to the moments."""
     q, v = _hermite(lanes)
     d, force, side = _contacts(lanes, q, v)
     acceleration = _acceleration(lanes, q, v, force)

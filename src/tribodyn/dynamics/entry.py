@@ -5,36 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["Entry", "read_events"]
+from tribodyn.types import Array
 
 #: A constant, or a vectorized function of the mesh phase in [0, 1).
-Entry = float | ArrayLike | Callable[[NDArray[np.float64]], Any]
+Entry = float | ArrayLike | Callable[[Array], Any]
 
 
 def read_events(given: Any, where: str) -> tuple[float, ...]:
-    """Check mesh phases at which an entry jumps.
-
-    Parameters
-    ----------
-    given : sequence of float
-        Mesh phases [-].
-    where : str
-        Name for messages.
-
-    Returns
-    -------
-    tuple of float
-
-    Raises
-    ------
-    InputError
-        If a phase lies outside [0, 1).
-    """
+    """Check mesh phases at which an entry jumps."""
     events = tuple(float(event) for event in given)
     bad = [event for event in events if not 0.0 <= event < 1.0]
     if bad:

@@ -6,18 +6,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.load_friction import LoadFriction
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction
 
-__all__ = ["follow_load"]
-
-Array = NDArray[np.float64]
 
 #: Coordinates across the line of action, as the models name them.
 _ACROSS = ("x", "v")

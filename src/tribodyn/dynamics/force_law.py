@@ -13,18 +13,17 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.gear_pair import gear_contact
-from tribodyn.dynamics.system import Contact, Entry
+from tribodyn.dynamics.system import Contact
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshForceLaw, MeshFunctions
 
-__all__ = ["MeshForce", "carried", "gear_contacts", "law_contacts"]
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 MeshForce = Literal["stiffness", "tangent", "force-law"]
 
@@ -32,53 +31,12 @@ MeshForce = Literal["stiffness", "tangent", "force-law"]
 def gear_contacts(
     mesh: MeshFunctions, *, mesh_force: MeshForce = "stiffness", **options: Any
 ) -> tuple[Contact, ...]:
-    """Build the contacts of one gear pair; all have the same compression.
-
-    Parameters
-    ----------
-    mesh : MeshFunctions
-        Functions of the mesh phase.
-    mesh_force : "stiffness", "tangent" or "force-law"
-        How the teeth carry: with the mesh stiffness; with the tangent stiffness, displaced so that
-        the nominal load at rest gives the static transmission error; or with the force law.
-    **options
-        Those of :func:`~tribodyn.dynamics.gear_pair.gear_contact`.
-
-    Returns
-    -------
-    tuple of Contact
-        One, or as many as the force law has ramps: the first opens last and has all the damping.
-
-    Raises
-    ------
-    InputError
-        If ``mesh_force`` is none of the three, the mesh does not have what it needs, or a pair
-        touches before the play is used up.
-    """
+    """Build the contacts of one gear pair; all have the same compression."""
     return carried(gear_contact(mesh, **options), mesh, mesh_force)
 
 
 def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ...]:
-    """Turn the plain contact of a gear pair into those of the law by which its teeth carry.
-
-    Parameters
-    ----------
-    one : Contact
-        With the mesh stiffness.
-    mesh : MeshFunctions
-        Functions of the mesh phase.
-    mesh_force : "stiffness", "tangent" or "force-law"
-        As for :func:`gear_contacts`.
-
-    Returns
-    -------
-    tuple of Contact
-
-    Raises
-    ------
-    InputError
-        As for :func:`gear_contacts`.
-    """
+    """Turn the plain contact of a gear pair into those of the law by which its teeth carry."""
     if mesh_force == "stiffness":
         return (one,)
     if mesh_force == "tangent":

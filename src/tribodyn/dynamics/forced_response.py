@@ -6,24 +6,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.natural_modes_linear import LinearSystem, ModePhase, linear_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["ForcedResponse", "forced_response"]
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
 
 @dataclass(frozen=True)
 class ForcedResponse:
-    """Complex amplitudes of the motion that a harmonic error excites.
+    """ComplexArray amplitudes of the motion that a harmonic error excites.
 
     A signal is ``Re(amplitude*exp(2 pi i f t))`` where the error is ``Re(error*exp(2 pi i f t))``.
 
@@ -61,14 +57,14 @@ class ForcedResponse:
     frequency: Array
     error: float
     contact: tuple[int, ...]
-    position: Complex
-    transmission_error: Complex
-    deflection: Complex
-    contact_force: Complex
-    structure_force: Complex
+    position: ComplexArray
+    transmission_error: ComplexArray
+    deflection: ComplexArray
+    contact_force: ComplexArray
+    structure_force: ComplexArray
 
     @property
-    def mesh_force(self) -> Complex:
+    def mesh_force(self) -> ComplexArray:
         """Force of the contacts on which the error acts together, (f,) [N]."""
         return np.asarray(self.contact_force[:, list(self.contact)].sum(axis=1))
 
@@ -211,7 +207,7 @@ def forced_response(
     )
 
 
-def _solve(linear: LinearSystem, omega: Array, given: Array, friction: bool) -> Complex:
+def _solve(linear: LinearSystem, omega: Array, given: Array, friction: bool) -> ComplexArray:
     w = omega[:, None, None]
     spring = linear.stiffness + (linear.friction_stiffness if friction else 0.0)
     damper = linear.damping + (linear.friction_damping if friction else 0.0)

@@ -8,21 +8,20 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.force_law import MeshForce, carried
 from tribodyn.dynamics.fzg12_mesh import BASE_RADIUS, RectangularMesh
 from tribodyn.dynamics.gear_pair import Driver, TorqueBalance, balance_direction, torques
 from tribodyn.dynamics.shafts import Body, GearMesh, assemble, row_of, shaft_chain
-from tribodyn.dynamics.system import Entry, System
+from tribodyn.dynamics.system import System
 from tribodyn.errors import require_between
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
 
-__all__ = ["FZG12_LIGHT", "FZG12_MESH_FREQUENCY", "FZG12_NAMES", "fzg12"]
-
-Array = NDArray[np.float64]
 
 _BODIES = ("shaft1", "wheel", "pinion", "shaft2")
 FZG12_NAMES = tuple(f"{body}_{axis}" for body in _BODIES for axis in ("v", "w", "theta"))

@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.gear_pair import Driver
-
-__all__ = ["BASE_RADIUS", "RectangularMesh"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _MODULE, _TEETH = 4.5e-3, (16, 24)
 _COSINE = float(np.cos(np.radians(20.0)))
@@ -28,28 +24,13 @@ _BEGIN = 0.324239 * BASE_RADIUS[0]
 
 @dataclass(frozen=True)
 class RectangularMesh:
-    """Stiffness of one value while two pairs touch and of another while one does.
+    """Stiffness of one value while two pairs touch and of another while one does."""
 
-    Two pairs share the load equally. The path of contact of the test gears type A is taken as
-    ``1 + duty`` base pitches long.
-
-    Parameters
-    ----------
-    single, double : float
-        Mesh stiffness with one pair and with two pairs [N/m].
-    duty : float
-        Part of the mesh cycle with two pairs [1].
-    friction_coefficient : float
-        Constant friction coefficient [1].
-    driver : "pinion" or "wheel"
-        Which gear drives: contacts run away from its base tangent point.
-    """
-
-    single: float
-    double: float
-    duty: float = 1.0 / 3.0
-    friction_coefficient: float = 0.0
-    driver: Driver = "pinion"
+    single: float  #: [N/m]
+    double: float  #: [N/m]
+    duty: float = 1.0 / 3.0  #: part of the mesh cycle with two pairs [1]
+    friction_coefficient: float = 0.0  #: constant friction coefficient [1]
+    driver: Driver = "pinion"  #: which gear drives: contacts run away from its base tangent point
 
     @property
     def event_phases(self) -> tuple[float, ...]:
@@ -57,62 +38,19 @@ class RectangularMesh:
         return tuple(sorted({0.0, self.duty, self._travelled(_PITCH_POINT) % 1.0}))
 
     def stiffness(self, phase: Array) -> Array:
-        """Mesh stiffness.
-
-        Parameters
-        ----------
-        phase : (p,) array
-            Mesh phase.
-
-        Returns
-        -------
-        (p,) array
-            In N/m.
-        """
+        """Mesh stiffness."""
         return np.where(np.asarray(phase) < self.duty, self.double, self.single)
 
     def friction_sum(self, phase: Array) -> Array:
-        """Directed friction coefficient of all pairs, each with its share of the load.
-
-        Parameters
-        ----------
-        phase : (p,) array
-            Mesh phase.
-
-        Returns
-        -------
-        (p,) array
-        """
+        """Directed friction coefficient of all pairs, each with its share of the load."""
         return np.asarray(sum(pull for pull, _ in self._pairs(phase)))
 
     def friction_moment_pinion(self, phase: Array) -> Array:
-        """Friction moment on the pinion over the normal force.
-
-        Parameters
-        ----------
-        phase : (p,) array
-            Mesh phase.
-
-        Returns
-        -------
-        (p,) array
-            In m.
-        """
+        """Friction moment on the pinion over the normal force."""
         return np.asarray(sum(pull * lever for pull, lever in self._pairs(phase)))
 
     def friction_moment_wheel(self, phase: Array) -> Array:
-        """Friction moment on the wheel over the normal force.
-
-        Parameters
-        ----------
-        phase : (p,) array
-            Mesh phase.
-
-        Returns
-        -------
-        (p,) array
-            In m.
-        """
+        """Friction moment on the wheel over the normal force."""
         return np.asarray(sum(pull * (_LINE - lever) for pull, lever in self._pairs(phase)))
 
     def _travelled(self, lever: float) -> float:

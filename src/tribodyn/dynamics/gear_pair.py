@@ -6,49 +6,23 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.system import Contact, Entry
+from tribodyn.dynamics.entry import Entry
+from tribodyn.dynamics.system import Contact
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
 
-__all__ = ["Driver", "TorqueBalance", "balance_direction", "gear_contact", "pair_of", "torques"]
 
-Array = NDArray[np.float64]
 Driver = Literal["pinion", "wheel"]
 TorqueBalance = Literal["drive", "load", "both"]
 
 
 def pair_of(name: str, value: ArrayLike, unit: str, *, positive: bool = True) -> Array:
-    """Read one value for both gears, or (pinion, wheel).
-
-    Parameters
-    ----------
-    name : str
-        Argument name for messages.
-    value : float or (2,) array
-        Value in ``unit``.
-    unit : str
-        Unit for messages.
-    positive : bool
-        Whether zero is refused too.
-
-    Returns
-    -------
-    (2,) array
-
-    Raises
-    ------
-    InputError
-        If there are not one or two values, or one is out of range.
-
-    Examples
-    --------
-    >>> pair_of("mass", 2.0, "kg").tolist()
-    [2.0, 2.0]
-    """
+    """Read one value for both gears, or (pinion, wheel)."""
     array = np.asarray(value, dtype=float)
     if array.shape not in ((), (2,)):
         raise InputError(
@@ -84,42 +58,7 @@ def gear_contact(
     damping_in_gap: bool,
     supports: bool,
 ) -> Contact:
-    """Build the contact of one gear pair.
-
-    Parameters
-    ----------
-    mesh : MeshFunctions
-        Stiffness and friction sums over the mesh phase.
-    base_radius : (2,) array
-        Base radii (pinion, wheel) [m].
-    driver : "pinion" or "wheel"
-        Which gear drives.
-    mesh_damping : float or function
-        Damping along the line of action [N*s/m].
-    backlash : float
-        Total play along the line of action [m].
-    error : float or function
-        Displacement error taken off the compression [m].
-    damping_in_gap : bool
-        Keep the damping in free flight.
-    supports : bool
-        Whether the coordinates are (x, y, theta) of each gear, or theta alone.
-
-    Returns
-    -------
-    Contact
-
-    Raises
-    ------
-    InputError
-        If the backlash is negative or ``driver`` is neither gear.
-
-    Notes
-    -----
-    With the pinion driving ``delta = r_bp theta_p - r_bw theta_w + y_p - y_w - e``; with the
-    wheel driving every sign of ``h`` turns over, since the other flanks touch. Friction acts on
-    the pinion against its sliding over the wheel, whichever gear drives.
-    """
+    """Build the contact of one gear pair."""
     require_between("backlash", backlash, 0.0, np.inf, "m")
     sign = _sign(driver)
     radius_pinion, radius_wheel = base_radius
@@ -157,52 +96,12 @@ def _columns(function: Callable[[Array], Array], keep: slice | list[int]) -> Cal
 
 
 def torques(torque: Array, driver: Driver) -> Array:
-    """Torques in the running sense: positive on the driving gear, negative on the driven.
-
-    Parameters
-    ----------
-    torque : (2,) array
-        Sizes (pinion, wheel) [N*m].
-    driver : "pinion" or "wheel"
-        Which gear drives.
-
-    Returns
-    -------
-    (2,) array
-        In N*m.
-
-    Examples
-    --------
-    >>> torques(np.array([90.0, 135.0]), "wheel").tolist()
-    [-90.0, 135.0]
-    """
+    """Torques in the running sense: positive on the driving gear, negative on the driven."""
     return np.asarray(torque * np.array([1.0, -1.0]) * _sign(driver))
 
 
 def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | None:
-    """Direction (pinion, wheel) of the torque that is found, or None if both are held.
-
-    Parameters
-    ----------
-    torque_balance : "drive", "load" or "both"
-        Which torque is held when friction acts.
-    driver : "pinion" or "wheel"
-        Which gear drives.
-
-    Returns
-    -------
-    (2,) array or None
-
-    Raises
-    ------
-    InputError
-        If ``torque_balance`` is none of the three.
-
-    Examples
-    --------
-    >>> balance_direction("drive", "pinion").tolist()
-    [0.0, -1.0]
-    """
+    """Direction (pinion, wheel) of the torque that is found, or None if both are held."""
     drives = np.array([1.0, 0.0]) if _sign(driver) > 0 else np.array([0.0, 1.0])
     if torque_balance == "both":
         return None

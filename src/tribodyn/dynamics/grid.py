@@ -12,15 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["Grid", "RowEvaluator", "build_grid", "system_events"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index, Mask
 
 #: Events nearer than this are one event.
 _MERGE = 1e-10
@@ -32,23 +28,13 @@ _STENCIL = 1e-4
 
 @dataclass(frozen=True)
 class Grid:
-    """Steps of one mesh cycle in phase.
+    """Steps of one mesh cycle in phase."""
 
-    Parameters
-    ----------
-    left, width : (steps,) array
-        Phase at the left end of each step and its width [-].
-    after_event : (steps,) bool array
-        Whether an event lies at the left end.
-    segment_left, segment_right : (steps,) array
-        The events that enclose each step [-].
-    """
-
-    left: Array
-    width: Array
-    after_event: NDArray[np.bool_]
-    segment_left: Array
-    segment_right: Array
+    left: Array  #: [-]
+    width: Array  #: [-]
+    after_event: Mask  #: whether an event lies at the left end
+    segment_left: Array  #: [-]
+    segment_right: Array  #: [-]
 
     @property
     def steps(self) -> int:
@@ -57,24 +43,7 @@ class Grid:
 
 
 def system_events(*systems: System) -> tuple[float, ...]:
-    """Events of all contacts and frictions, sorted and merged.
-
-    Parameters
-    ----------
-    *systems : System
-
-    Returns
-    -------
-    tuple of float
-        Mesh phases in [0, 1), beginning with 0.
-
-    Examples
-    --------
-    >>> from tribodyn.dynamics import Contact, System
-    >>> contact = Contact(direction=[1.0], stiffness=1.0, events=(0.3,))
-    >>> system_events(System([[1.0]], [[0.0]], [[1.0]], [0.0], [contact]))
-    (0.0, 0.3)
-    """
+    """Events of all contacts and frictions, sorted and merged."""
     given = [part.events for system in systems for part in system.contacts]
     given += [part.events for system in systems for part in system.frictions]
     events = sorted({0.0, *(event for part in given for event in part)})
@@ -86,30 +55,7 @@ def system_events(*systems: System) -> tuple[float, ...]:
 
 
 def build_grid(events: tuple[float, ...], steps: int) -> Grid:
-    """Divide the mesh cycle so that every event is a grid point.
-
-    Parameters
-    ----------
-    events : tuple of float
-        Sorted mesh phases beginning with 0.
-    steps : int
-        Number of steps of the whole cycle.
-
-    Returns
-    -------
-    Grid
-        Steps of equal width within each segment between two events.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two steps per segment.
-
-    Examples
-    --------
-    >>> build_grid((0.0, 0.25), 8).left.tolist()
-    [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875]
-    """
+    """Divide the mesh cycle so that every event is a grid point."""
     edges = np.array([*events, 1.0])
     if steps < 2 * len(events):
         raise InputError(
@@ -138,7 +84,7 @@ def build_grid(events: tuple[float, ...], steps: int) -> Grid:
     )
 
 
-def _shares(lengths: Array, steps: int) -> NDArray[np.int64]:
+def _shares(lengths: Array, steps: int) -> Index:
     """Give each segment its part of the steps, at least two, by largest remainder."""
     free = steps - 2 * lengths.size
     ideal = lengths / lengths.sum() * steps - 2.0
@@ -152,12 +98,7 @@ def _shares(lengths: Array, steps: int) -> NDArray[np.int64]:
 
 
 class RowEvaluator:
-    """Evaluates entries on the three nodes of every step, one-sidedly at events.
-
-    Parameters
-    ----------
-    grid : Grid
-    """
+    """Evaluates entries on the three nodes of every step, one-sidedly at events."""
 
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
@@ -185,41 +126,11 @@ class RowEvaluator:
         return values.reshape(*phases.shape, size)
 
     def values(self, where: str, entry: Entry, size: int = 1) -> Array:
-        """Values on the nodes.
-
-        Parameters
-        ----------
-        where : str
-            Name for messages.
-        entry : float, array or function
-            Constant or vectorized function of the mesh phase.
-        size : int
-            Number of components.
-
-        Returns
-        -------
-        (steps, 3, size) array
-        """
+        """Values on the nodes."""
         return self._call(where, entry, self.nodes, size)
 
     def derivatives(self, where: str, entry: Entry, size: int = 1) -> Array:
-        """Derivatives with respect to phase on the nodes, from a five-point stencil.
-
-        The stencil stays within the segment between two events.
-
-        Parameters
-        ----------
-        where : str
-            Name for messages.
-        entry : float, array or function
-            Constant or vectorized function of the mesh phase.
-        size : int
-            Number of components.
-
-        Returns
-        -------
-        (steps, 3, size) array
-        """
+        """Derivatives with respect to phase on the nodes, from a five-point stencil."""
         if not _varies(entry):
             return np.zeros((*self.nodes.shape, size))
         span = self._high - self._low

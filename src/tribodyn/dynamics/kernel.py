@@ -17,25 +17,9 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.lanes import entry, greatest, least, load, negative_lanes, store
-
-__all__ = [
-    "I64",
-    "INNER",
-    "JIT",
-    "acceleration",
-    "compression",
-    "contact_forces",
-    "dead_zone",
-    "friction_forces",
-    "left_side",
-    "step",
-]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Without it every literal integer argument makes the compiler translate the callee anew.
 I64 = np.int64
@@ -189,11 +173,7 @@ def acceleration(
 
 @nb.njit(**INNER)
 def step(lanes: Any, code: Index, reads: Index, rows: Array, base: int, w: Array) -> None:
-    """March every lane by one step, from the state in buffer 0 to buffer 2.
-
-    Classical Runge-Kutta scheme for ``q' = v``, ``v' = a``; ``rows`` holds the left, middle and
-    right row of the step from ``base``.
-    """
+    """March every lane by one step, from the state in buffer 0 to buffer 2."""
     n, contacts, columns = code[0], code[1], code[2]
     first, middle, steady = 6 * n, 7 * n, 8 * n + 2 * contacts
     h = load(lanes, w, 9 * n + 2 * contacts + 1)

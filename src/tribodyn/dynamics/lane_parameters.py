@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["LaneParameters"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)

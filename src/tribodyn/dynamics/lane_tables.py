@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.grid import system_events
 from tribodyn.dynamics.lane_parameters import LaneParameters
@@ -15,8 +15,7 @@ from tribodyn.dynamics.program import compile_system
 from tribodyn.dynamics.step_limit import refuse_unstable_lanes
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["compile_lanes"]
+from tribodyn.types import Mask
 
 
 def compile_lanes(
@@ -27,37 +26,7 @@ def compile_lanes(
     *,
     any_step: bool = False,
 ) -> Compiled:
-    """Compile the systems of all lanes on one grid with the events of all.
-
-    Parameters
-    ----------
-    systems : System or sequence of System
-        One for all lanes, or one for each; lanes with the same object share their rows.
-    mesh_frequency : float or (lanes,) array
-        Mesh frequency [Hz].
-    steps : int
-        Steps per mesh cycle.
-    parameters : LaneParameters, optional
-        Factors by which each lane scales its system.
-    any_step : bool
-        Whether to take steps of any length, for engines that the step limit does not concern.
-
-    Returns
-    -------
-    Compiled
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, a step is too long, or the systems do not have the same
-        coordinates, contacts and frictions.
-
-    Examples
-    --------
-    >>> one, two = (System([[mass]], [[0.0]], [[4.0]], [0.0]) for mass in (1.0, 4.0))
-    >>> round(compile_lanes([one, two, one], 1.0, 64).step_number, 6)
-    0.03125
-    """
+    """Compile the systems of all lanes on one grid with the events of all."""
     given = [systems] if isinstance(systems, System) else list(systems)
     distinct = list({id(one): one for one in given}.values())
     if len(distinct) == 1 and not any_step:
@@ -132,7 +101,7 @@ def _refuse_different(systems: list[System]) -> None:
 
 
 def _refuse_mixed_gaps(members: list[Member]) -> None:
-    dead: list[NDArray[np.bool_]] = [np.any(one.nodes.gap > 0.0, axis=(0, 1)) for one in members]
+    dead: list[Mask] = [np.any(one.nodes.gap > 0.0, axis=(0, 1)) for one in members]
     for one, own in zip(members, dead, strict=True):
         apart = np.flatnonzero(own != dead[0])
         if apart.size:

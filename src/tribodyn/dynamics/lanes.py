@@ -17,32 +17,11 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, models, overload, register_model
 
-__all__ = [
-    "LaneType",
-    "above",
-    "address",
-    "any_negative",
-    "entry",
-    "first_lane",
-    "greatest",
-    "least",
-    "load",
-    "negative_lanes",
-    "open_rows",
-    "store",
-]
-
 _FLAGS = ("contract", "nsz")
 
 
 class LaneType(types.Type):
-    """Numba type of a vector with one float64 per lane.
-
-    Parameters
-    ----------
-    width : int
-        Number of lanes.
-    """
+    """Numba type of a vector with one float64 per lane."""
 
     def __init__(self, width: int) -> None:
         self.width = width
@@ -61,11 +40,7 @@ def _data(context: Any, builder: Any, kind: Any, array: Any) -> Any:
 
 @intrinsic
 def address(typing: Any, array: Any) -> Any:
-    """Tell where the numbers of a contiguous array begin; somebody must keep the array alive.
-
-    An address is one argument where an array is seven, is not counted whenever it is handed on,
-    and is indexed without a look for negative indices.
-    """
+    """Tell where the numbers of a contiguous array begin; somebody must keep the array alive."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return _data(context, builder, signature.args[0], arguments[0])
@@ -159,11 +134,7 @@ def above(typing: Any, left: Any, right: Any) -> Any:
 
 @intrinsic
 def open_rows(typing: Any, rows: Any) -> Any:
-    """Tell where a row table begins, so that its type tells whether lanes have their own rows.
-
-    A table (items,) that all lanes share becomes an address; a table (items, lanes) becomes a
-    tuple of one address.
-    """
+    """Tell where a row table begins, so that its type tells whether lanes have their own rows."""
     place = types.CPointer(rows.dtype)
     kind = place if rows.ndim == 1 else types.UniTuple(place, 1)
 

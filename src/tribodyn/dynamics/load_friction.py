@@ -11,29 +11,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.entry import Entry, read_events
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.grid import RowEvaluator
     from tribodyn.dynamics.program import Nodes
     from tribodyn.dynamics.system import System
 
-__all__ = [
-    "LoadFriction",
-    "carried_load",
-    "coefficient_count",
-    "friction_coefficients",
-    "friction_directions",
-    "friction_force",
-    "friction_secant",
-    "friction_tangent",
-    "push_with_friction",
-]
-
-Array = NDArray[np.float64]
 
 #: Phases at which a function tells how many coefficients it returns; no likely number of these.
 _PROBE = 37
@@ -107,23 +94,7 @@ class LoadFriction:
 
 
 def coefficient_count(where: str, friction: LoadFriction) -> int:
-    """Number of coefficients of one row.
-
-    Parameters
-    ----------
-    where : str
-        Name for messages.
-    friction : LoadFriction
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    InputError
-        If the coefficients are neither a number nor a row of numbers.
-    """
+    """Number of coefficients of one row."""
     given = friction.coefficients
     probe = (np.arange(_PROBE) + 0.5) / _PROBE
     values = np.asarray(given(probe) if callable(given) else given, dtype=float)
@@ -142,17 +113,7 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
 
 
 def friction_directions(system: System, rows: RowEvaluator) -> Array:
-    """Directions of all frictions on the rows.
-
-    Parameters
-    ----------
-    system : System
-    rows : RowEvaluator
-
-    Returns
-    -------
-    (steps, 3, frictions, n) array
-    """
+    """Directions of all frictions on the rows."""
     out = np.zeros((*rows.nodes.shape, len(system.frictions), system.size))
     for f, one in enumerate(system.frictions):
         out[:, :, f] = rows.values(f"frictions[{f}].direction", one.direction, system.size)
@@ -160,17 +121,7 @@ def friction_directions(system: System, rows: RowEvaluator) -> Array:
 
 
 def friction_coefficients(system: System, rows: RowEvaluator) -> Array:
-    """Coefficients of all frictions on the rows, filled up with zeros.
-
-    Parameters
-    ----------
-    system : System
-    rows : RowEvaluator
-
-    Returns
-    -------
-    (steps, 3, frictions, m) array
-    """
+    """Coefficients of all frictions on the rows, filled up with zeros."""
     names = [f"frictions[{f}].coefficients" for f in range(len(system.frictions))]
     pairs = list(zip(names, system.frictions, strict=True))
     counts = [coefficient_count(name, one) for name, one in pairs]
@@ -181,24 +132,12 @@ def friction_coefficients(system: System, rows: RowEvaluator) -> Array:
 
 
 def carried_load(system: System, contact_force: Array) -> Array:
-    """Force N that each friction follows.
-
-    Parameters
-    ----------
-    system : System
-    contact_force : (..., contacts) array
-        Force of the contacts [N].
-
-    Returns
-    -------
-    (..., frictions) array
-        In N.
-    """
+    """Force N that each friction follows."""
     columns = [contact_force[..., list(one.contacts)].sum(axis=-1) for one in system.frictions]
     return np.stack(columns, axis=-1) if columns else np.zeros((*contact_force.shape[:-1], 0))
 
 
-def _ratio(system: System, load: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _ratio(system: System, load: Array) -> tuple[Array, Mask]:
     """Load over the nominal load, and whether it is below the limit."""
     nominal = np.array([one.load for one in system.frictions])
     limit = np.array([one.limit for one in system.frictions])
@@ -214,58 +153,18 @@ def _polynomial(coefficients: Array, x: Array) -> Array:
 
 
 def friction_secant(system: System, coefficients: Array, load: Array) -> Array:
-    """Friction over contact force, ``F/N``.
-
-    Parameters
-    ----------
-    system : System
-    coefficients : (..., frictions, m) array
-        Coefficients on the rows [1].
-    load : (..., frictions) array
-        Force N [N].
-
-    Returns
-    -------
-    (..., frictions) array
-    """
+    """Friction over contact force, ``F/N``."""
     return _polynomial(coefficients, _ratio(system, load)[0])
 
 
 def friction_force(system: System, coefficients: Array, contact_force: Array) -> Array:
-    """Force of each friction.
-
-    Parameters
-    ----------
-    system : System
-    coefficients : (..., frictions, m) array
-        Coefficients on the rows [1].
-    contact_force : (..., contacts) array
-        Force of the contacts [N].
-
-    Returns
-    -------
-    (..., frictions) array
-        In N, along ``-direction``.
-    """
+    """Force of each friction."""
     load = carried_load(system, contact_force)
     return load * friction_secant(system, coefficients, load)
 
 
 def friction_tangent(system: System, coefficients: Array, load: Array) -> Array:
-    """Change of friction with contact force, ``dF/dN``.
-
-    Parameters
-    ----------
-    system : System
-    coefficients : (..., frictions, m) array
-        Coefficients on the rows [1].
-    load : (..., frictions) array
-        Force N [N].
-
-    Returns
-    -------
-    (..., frictions) array
-    """
+    """Change of friction with contact force, ``dF/dN``."""
     x, below = _ratio(system, load)
     # d(x P)/dx = sum (k + 1) c_k x^k; beyond the limit P stays.
     rising = _polynomial(coefficients * np.arange(1, coefficients.shape[-1] + 1), x)
@@ -273,20 +172,7 @@ def friction_tangent(system: System, coefficients: Array, load: Array) -> Array:
 
 
 def push_with_friction(system: System, nodes: Nodes, ratio: Array) -> Array:
-    """Generalized force per unit force of each contact, all friction included.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-        The system on its grid.
-    ratio : (..., frictions) array
-        Friction over contact force, or its change with it [1].
-
-    Returns
-    -------
-    (..., contacts, n) array
-    """
+    """Generalized force per unit force of each contact, all friction included."""
     push = nodes.force_direction
     for f, one in enumerate(system.frictions):
         push = push.copy() if f == 0 else push

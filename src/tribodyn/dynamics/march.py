@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.divergence import report_divergence
 from tribodyn.dynamics.grid import Grid
@@ -16,10 +16,7 @@ from tribodyn.dynamics.program import Nodes, Program, build_program, compile_sys
 from tribodyn.dynamics.step_limit import refuse_unstable_lanes, refuse_unstable_step
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["Compiled", "Member", "compile_for", "march"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index, Mask
 
 #: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
 #: stay in the first cache, which 64 lanes of a pair of gears overflow.
@@ -30,62 +27,30 @@ _OWN_ROWS = 4
 
 @dataclass(frozen=True)
 class Member:
-    """One of several systems on a common grid, with the lanes that march it.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-    lanes : (m,) int array
-        Numbers of its lanes.
-    """
+    """One of several systems on a common grid, with the lanes that march it."""
 
     system: System
     nodes: Nodes
-    lanes: NDArray[np.int64]
+    lanes: Index  #: numbers of its lanes
 
 
 @dataclass(frozen=True)
 class Compiled:
-    """A system on its grid, checked for one highest step size.
-
-    Parameters
-    ----------
-    system : System
-    grid : Grid
-    nodes : Nodes
-    program : Program
-    step_number : float
-        ``omega_max * dt`` of the slowest mesh frequency [-].
-    members : tuple of Member
-        Systems of the lanes where these differ; empty where all lanes march ``system``.
-    parameters : LaneParameters, optional
-        Factors of the lanes for which the step was checked.
-    """
+    """A system on its grid, checked for one highest step size."""
 
     system: System
     grid: Grid
     nodes: Nodes
     program: Program
-    step_number: float
-    members: tuple[Member, ...] = ()
-    parameters: LaneParameters | None = None
+    step_number: float  #: ``omega_max * dt`` of the slowest mesh frequency [-]
+    members: tuple[Member, ...] = ()  #: systems of the lanes where these differ
+    parameters: LaneParameters | None = None  #: factors of the lanes for which the step was checked
     _programs: dict[tuple[bool, bool], tuple[Program, ...]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
     def programs(self, parameters: LaneParameters | None = None) -> tuple[Program, ...]:
-        """Programs of all members, or of the one system, all with the same terms.
-
-        Parameters
-        ----------
-        parameters : LaneParameters, optional
-            What the lanes scale.
-
-        Returns
-        -------
-        tuple of Program
-        """
+        """Programs of all members, or of the one system, all with the same terms."""
         scaled = parameters is not None and parameters.scales_contacts
         split = parameters is not None and parameters.scales_friction
         if not (scaled or split or self.members):
@@ -94,7 +59,7 @@ class Compiled:
             pairs = [(one.system, one.nodes) for one in self.members]
             pairs = pairs or [(self.system, self.nodes)]
 
-            def build(pattern: NDArray[np.bool_] | None) -> tuple[Program, ...]:
+            def build(pattern: Mask | None) -> tuple[Program, ...]:
                 return tuple(
                     build_program(pair[0], self.grid, pair[1], scaled=scaled, split=split,
                                   pattern=pattern)
@@ -114,33 +79,7 @@ def compile_for(
     steps: int,
     parameters: LaneParameters | None = None,
 ) -> Compiled:
-    """Compile a system and refuse a step that the integrator cannot follow.
-
-    Parameters
-    ----------
-    system : System
-    mesh_frequency : float or (lanes,) array
-        Mesh frequency [Hz].
-    steps : int
-        Steps per mesh cycle.
-    parameters : LaneParameters, optional
-        Factors by which each lane scales the system.
-
-    Returns
-    -------
-    Compiled
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range or ``omega_max * dt`` exceeds 2.7.
-
-    Examples
-    --------
-    >>> system = System([[1.0]], [[0.0]], [[1.0]], [0.0])
-    >>> round(compile_for(system, 1.0, 64).step_number, 6)
-    0.015625
-    """
+    """Compile a system and refuse a step that the integrator cannot follow."""
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     if int(steps) != steps or steps < 1:
         raise InputError(
@@ -172,49 +111,7 @@ def march(
     any_step: bool = False,
     elapsed: int = 0,
 ) -> Array:
-    """March lanes by whole mesh cycles; returns their new state.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    period : (lanes,) array
-        Mesh period [s].
-    state : (lanes, 2 n) array
-        Position and velocity.
-    cycles : int
-        Mesh cycles.
-    extra_force : (lanes, n) array, optional
-        Constant generalized force on top of the system's [N or N*m].
-    parameters : LaneParameters, optional
-        Factors by which each lane scales its system.
-    record : (steps * cycles + 1, 2 n, lanes) array, optional
-        Receives every state; single block only.
-    outputs : (m, 2 n) array, optional
-        Linear outputs for the statistics.
-    waves : (steps, 3, harmonics, 2) array, optional
-        Cosine and sine at the nodes; needed with ``moments``.
-    moments : (signals, lanes) array, optional
-        Every lane holds the moments before the first step; receives the statistics.
-    width : int, optional
-        Lanes per block; chosen by the number of lanes by default.
-    threads : int, optional
-        Blocks marched at a time; the number of processors by default.
-    any_step : bool
-        Take the step of every lane as it is: the caller knows it, and judges what comes of it.
-    elapsed : int
-        Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
-
-    Returns
-    -------
-    (lanes, 2 n) array
-
-    Raises
-    ------
-    InputError
-        If parameters that were not compiled make the step of a lane too long.
-    ComputationError
-        If a state grows beyond all bounds.
-    """
+    """March lanes by whole mesh cycles; returns their new state."""
     lanes = state.shape[0]
     if not any_step and parameters is not None and parameters is not compiled.parameters:
         _check_parameters(compiled, 1.0 / period, parameters)
@@ -290,7 +187,7 @@ class _Run:
 
     def block(
         self,
-        index: NDArray[np.int64],
+        index: Index,
         state: Array,
         cycles: int,
         record: Array | None,
@@ -320,7 +217,7 @@ class _Run:
         )  # fmt: skip
 
 
-def _report(run: _Run, lanes: NDArray[np.int64], step: int, elapsed: int) -> None:
+def _report(run: _Run, lanes: Index, step: int, elapsed: int) -> None:
     """Find the lane that ran away, march it once more and tell how it did."""
     compiled, steps = run.compiled, run.compiled.grid.steps
     # The step counted from the start is at the end of a mesh cycle. A lane marched by itself is

@@ -9,18 +9,13 @@ import numba as nb
 import numpy as np
 from numba import types
 from numba.extending import overload
-from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
 from tribodyn.dynamics.crossing import MAX_SPLITS, set_sides, split_step
 from tribodyn.dynamics.kernel import I64, INNER, JIT, left_side, step
 from tribodyn.dynamics.lanes import address, open_rows
 from tribodyn.dynamics.moments import gather, gather_parts
-
-__all__ = ["march_block"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
 _SOURCES = ("lanes", "kernel", "crossing", "moments", "marching")
@@ -148,44 +143,7 @@ def _build(digest: str) -> Any:
         harmonics: int,
         moments: Any,
     ) -> int:
-        """March every lane by ``cycles`` mesh cycles.
-
-        Parameters
-        ----------
-        lanes : tuple of float
-            As long as there are lanes.
-        code, reads, rows, share, restart
-            The program; ``share`` is its ``width``. Rows of shape (items, lanes) belong to one
-            lane each.
-        work : array of zeros
-            Room for the slots of all lanes, the slots of one lane and six rows. It comes from
-            outside because its owner has to outlive the addresses.
-        period : (lanes,) array
-            Mesh period [s].
-        load : (lanes, n) or (lanes, n + 6) array
-            Constant acceleration, and what the lane scales: factors of contact stiffness, contact
-            damping, friction, error, dead zone and load.
-        state : (lanes, 2 n) array
-            Position and velocity; overwritten.
-        cycles : int
-            Mesh cycles.
-        record : (points, 2 n, lanes) array
-            Receives the state before every step and at the end; empty to record nothing.
-        outputs : (m, 2 n) array
-            Linear outputs of the state for the statistics.
-        waves : (steps * 3 * 2 * harmonics,) array
-            Cosine and sine of every harmonic at the nodes.
-        harmonics : int
-            Number of harmonics.
-        moments : array or None
-            Receives the statistics, see :mod:`tribodyn.dynamics.moments`; None to gather nothing,
-            which also spares the compiler that code.
-
-        Returns
-        -------
-        int
-            -1 when done, else the step, counted from the start, after which a state is not finite.
-        """
+        """March every lane by ``cycles`` mesh cycles."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, columns, width = code[0], code[2], len(lanes)
         h = 9 * n + 2 * code[1] + 1

@@ -14,16 +14,11 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.crossing import row_within, set_sides
 from tribodyn.dynamics.kernel import I64, INNER, acceleration, compression
 from tribodyn.dynamics.lanes import greatest, least, load, store
-
-__all__ = ["PLAIN_MOMENTS", "gather", "gather_parts"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Per signal: mean, mean square, minimum, maximum, share of the time off the driving flank.
 #: Signals of the contacts are followed by a cosine and a sine part per harmonic.
@@ -82,11 +77,7 @@ def gather(
     harmonics: int,
     m: Array,
 ) -> None:
-    """Add one step, whose ends are in buffers 0 and 2, to the moments ``m``.
-
-    ``share`` is the part of the averaging time that the step takes, ``waves`` holds cosine and
-    sine of every harmonic at the three nodes of the step from ``wave``.
-    """
+    """Add one step, whose ends are in buffers 0 and 2, to the moments ``m``."""
     n, contacts, columns = code[0], code[1], code[2]
     long = PLAIN_MOMENTS + 2 * harmonics
     _middle(lanes, code, w)
@@ -127,10 +118,7 @@ def gather(
 def _waves_within(
     waves: Array, wave: int, harmonics: int, tau: float, near: Array, node: int
 ) -> None:
-    """Cosine and sine of every harmonic at the fraction ``tau`` of a step, into ``near``.
-
-    The angle of a wave grows evenly; by how much in half a step tell its first two nodes.
-    """
+    """Cosine and sine of every harmonic at the fraction ``tau`` of a step, into ``near``."""
     for item in range(0, 2 * harmonics, 2):
         c0, s0 = waves[wave + item], waves[wave + item + 1]
         half = wave + 2 * harmonics + item
@@ -158,11 +146,7 @@ def gather_parts(
     near: Array,
     m: Array,
 ) -> None:
-    """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``.
-
-    ``width`` is the time that the whole step takes, ``share`` its part of the averaging time;
-    ``part`` and ``near`` are room for the rows and waves of a part. Leaves its marks in ``w``.
-    """
+    """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``."""
     n, contacts = code[0], code[1]
     one, at = 9 * n + 2 * contacts, I64(1)
     for _ in range(I64(parts[0])):

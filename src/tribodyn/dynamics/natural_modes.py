@@ -7,19 +7,17 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.natural_modes_elements import structure_elements
 from tribodyn.dynamics.natural_modes_linear import LinearSystem, ModePhase, linear_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["NaturalModes", "natural_modes"]
-
-Array = NDArray[np.float64]
 
 #: Squared frequencies below this share of the largest are rounding: the mode is rigid.
 _RIGID = 1e-12
@@ -72,8 +70,8 @@ class NaturalModes:
     elements: tuple[str, ...]
     strain_share: Array
     contacts: int
-    eigenvalues: NDArray[np.complex128]
-    complex_shape: NDArray[np.complex128]
+    eigenvalues: ComplexArray
+    complex_shape: ComplexArray
     linear: LinearSystem = field(repr=False)
 
     @property
@@ -287,12 +285,8 @@ def _shares(matrices: Array, frequency: Array, shape: Array) -> Array:
 
 def _damped(
     linear: LinearSystem, frequency: Array, shape: Array, friction: bool
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Eigenvalues and shapes in the undamped modes, without the place of the rigid ones.
-
-    Nothing depends on that place. Its eigenvalue zero, which is double without a damper, would
-    come out with half of the digits only; it is put in exactly.
-    """
+) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues and shapes in the undamped modes, without the place of the rigid ones."""
     spring = linear.stiffness + (linear.friction_stiffness if friction else 0.0)
     damper = linear.damping + (linear.friction_damping if friction else 0.0)
     size, rigid = len(frequency), int(np.count_nonzero(frequency == 0.0))
@@ -306,7 +300,7 @@ def _damped(
     values, vectors = np.linalg.eig(state)
     values = np.concatenate((np.zeros(rigid), values)).astype(complex)
     # Displacement and velocity of a mode are proportional.
-    moved: NDArray[np.complex128] = np.vstack(
+    moved: ComplexArray = np.vstack(
         (shape[:rigid].astype(complex), vectors[swinging:].T @ shape)
     ).astype(complex)
     order = np.lexsort((values.imag, np.abs(values).round(6)))

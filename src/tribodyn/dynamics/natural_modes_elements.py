@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["structure_elements"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Entries below this share of the row's largest are rounding of the sums.
 _ROUNDING = 1e-12
@@ -21,37 +18,7 @@ _ROUNDING = 1e-12
 def structure_elements(
     system: System, elements: Mapping[str, ArrayLike] | None = None
 ) -> dict[str, Array]:
-    """Name the springs of the structure.
-
-    Parameters
-    ----------
-    system : System
-    elements : mapping of str to (n, n) array, optional
-        Stiffness matrices of the springs [N/m, N*m/rad, ...]; read off the stiffness matrix by
-        default.
-
-    Returns
-    -------
-    dict
-        Name and stiffness matrix of each spring; they add up to the stiffness of the structure.
-
-    Raises
-    ------
-    InputError
-        If the stiffness matrix is not symmetric, or the given matrices do not add up to it.
-
-    Notes
-    -----
-    ``q.K q = sum_i (sum_j K_ij) q_i^2 - sum_(i<j) K_ij (q_i - q_j)^2``: springs to the ground and
-    between two coordinates. That is what a chain of discs and bearings consists of; for beams,
-    whose coordinates differ in unit, give the elements.
-
-    Examples
-    --------
-    >>> chain = System(np.eye(2), np.zeros((2, 2)), [[3.0, -2.0], [-2.0, 2.0]], [0.0, 0.0])
-    >>> list(structure_elements(chain))
-    ['q0', 'q0 - q1']
-    """
+    """Name the springs of the structure."""
     matrix = np.asarray(system.stiffness)
     size = float(np.abs(matrix).max(initial=0.0))
     if np.abs(matrix - matrix.T).max(initial=0.0) > 1e-9 * size:

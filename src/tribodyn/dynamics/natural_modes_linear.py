@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import system_events
 from tribodyn.dynamics.load_friction import (
@@ -22,10 +21,8 @@ from tribodyn.dynamics.load_friction import (
 from tribodyn.dynamics.program import Nodes, compile_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.types import Array, Index, Mask
 
-__all__ = ["LinearSystem", "ModePhase", "linear_system"]
-
-Array = NDArray[np.float64]
 ModePhase = Literal["mean"] | float
 
 #: Steps over which the mean of a cycle is taken, and rounds in which ramps open and close.
@@ -34,78 +31,25 @@ _STEPS, _ROUNDS = 256, 50
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """Matrices of a system about its static load.
+    """Matrices of a system about its static load."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Names of the coordinates.
-    mass, damping, stiffness : (n, n) array
-        With the contacts in touch, without friction [kg or kg*m^2, N*s/m, N/m, ...].
-    friction_damping, friction_stiffness : (n, n) array
-        What friction adds; not symmetric [N*s/m, N/m, ...].
-    contact_stiffness : (contacts, n, n) array
-        Share of each contact in ``stiffness`` [N/m, ...].
-    contact_damping : (contacts, n, n) array
-        Share of each contact in ``damping`` [N*s/m, ...].
-    direction, push : (contacts, n) array
-        Compression per displacement, and generalized force per contact force, mean over the
-        closed part of the cycle [1 or m].
-    spring : (contacts,) array
-        Stiffness of each contact, mean over the cycle [N/m].
-    damper : (contacts,) array
-        Damping of each contact, mean over the cycle [N*s/m].
-    bundle : (contacts,) int array
-        Number of the force law to which each contact belongs.
-    """
-
-    names: tuple[str, ...]
-    mass: Array
-    damping: Array
-    stiffness: Array
+    names: tuple[str, ...]  #: names of the coordinates
+    mass: Array  #: [kg or kg*m^2, N*s/m, N/m, ...]
+    damping: Array  #: [kg or kg*m^2, N*s/m, N/m, ...]
+    stiffness: Array  #: [kg or kg*m^2, N*s/m, N/m, ...]
     friction_damping: Array
     friction_stiffness: Array
-    contact_stiffness: Array
-    contact_damping: Array
-    direction: Array
-    push: Array
-    spring: Array
-    damper: Array
-    bundle: NDArray[np.int64]
+    contact_stiffness: Array  #: share of each contact in ``stiffness`` [N/m, ...]
+    contact_damping: Array  #: share of each contact in ``damping`` [N*s/m, ...]
+    direction: Array  #: [1 or m]
+    push: Array  #: [1 or m]
+    spring: Array  #: stiffness of each contact, mean over the cycle [N/m]
+    damper: Array  #: damping of each contact, mean over the cycle [N*s/m]
+    bundle: Index  #: number of the force law to which each contact belongs
 
 
 def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
-    """Replace every contact by the spring and the damper that act at the static load.
-
-    Parameters
-    ----------
-    system : System
-    phase : "mean" or float
-        Mean over the mesh cycle, or one mesh phase in [0, 1); at an event the value after it.
-
-    Returns
-    -------
-    LinearSystem
-
-    Raises
-    ------
-    InputError
-        If the phase is neither "mean" nor lies in [0, 1).
-
-    Notes
-    -----
-    ``K + sum_j <k_j h_j h_j^T>`` over the contacts that carry; the equilibrium is sought at
-    every phase by itself. A contact that carries nothing at rest stays closed unless it is a
-    further ramp of a force law. Friction adds ``sum_j <k_j s_j h_j^T>``; one that follows the
-    load counts with its tangent at the static load.
-
-    Examples
-    --------
-    >>> from tribodyn.dynamics import Contact
-    >>> pair = Contact([1.0], stiffness=lambda p: 2.0 + np.cos(2 * np.pi * p), gap=1.0)
-    >>> linear_system(System([[1.0]], [[0.1]], [[3.0]], [5.0], [pair])).stiffness.round(9)
-    array([[5.]])
-    """
+    """Replace every contact by the spring and the damper that act at the static load."""
     nodes, weight = _rows(system, phase)
     closed, push = _at_rest(system, nodes)
     outer = np.einsum("rsji,rsjk->rsjik", nodes.direction, nodes.direction)
@@ -156,11 +100,8 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
     return single, np.ones((1, 1))
 
 
-def _at_rest(system: System, nodes: Nodes) -> tuple[NDArray[np.bool_], Array]:
-    """Contacts that carry at rest, and what a further newton of each pushes, friction included.
-
-    Shapes (rows, stages, contacts) and (rows, stages, contacts, n).
-    """
+def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
+    """Contacts that carry at rest, and what a further newton of each pushes, friction included."""
     kept = np.broadcast_to(_lowest(nodes), nodes.stiffness.shape)
     push = nodes.force_direction
     if kept.all() and not system.frictions:
@@ -186,10 +127,10 @@ def _at_rest(system: System, nodes: Nodes) -> tuple[NDArray[np.bool_], Array]:
     return closed, push_with_friction(system, nodes, tangent)
 
 
-def _lowest(nodes: Nodes) -> NDArray[np.bool_]:
+def _lowest(nodes: Nodes) -> Mask:
     """Tell which contacts begin lowest in their force law; they stay closed."""
     places, bundle = nodes.gap.mean(axis=(0, 1)), _bundles(nodes)
-    stiff: NDArray[np.bool_] = np.asarray(nodes.stiffness.any(axis=(0, 1)))
+    stiff: Mask = np.asarray(nodes.stiffness.any(axis=(0, 1)))
     kept = np.zeros(places.size, dtype=bool)
     for number in np.unique(bundle):
         members = np.flatnonzero(bundle == number)
@@ -211,7 +152,7 @@ def _equilibrium(system: System, nodes: Nodes, carrying: Array, push: Array) -> 
     return np.asarray(scale * np.einsum("rsik,rsk->rsi", inverse, scale * force))
 
 
-def _bundles(nodes: Nodes) -> NDArray[np.int64]:
+def _bundles(nodes: Nodes) -> Index:
     """Number the force laws: contacts with the same direction and error belong to one."""
     count = nodes.stiffness.shape[2]
     numbers = np.arange(count)

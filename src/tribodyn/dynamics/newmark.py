@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.march import Compiled
@@ -21,10 +21,7 @@ from tribodyn.dynamics.program import compile_system
 from tribodyn.dynamics.step_limit import largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["NEWMARK_PRESETS", "compile_newmark", "march_newmark", "newmark_law"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Named pairs (gamma, beta). "seed" is what a source prints as "lambda = beta = 0.5" if that is
 #: taken in the notation used here; in the notation where it means average acceleration it is
@@ -45,30 +42,7 @@ _FINEST = 1e-14
 def newmark_law(
     gamma: float | None = None, beta: float | None = None, preset: str | None = None
 ) -> tuple[float, float]:
-    """Parameters of the scheme, given or by name.
-
-    Parameters
-    ----------
-    gamma, beta : float, optional
-        1/2 and 1/4 (average acceleration) by default [-].
-    preset : str, optional
-        One of :data:`NEWMARK_PRESETS` instead.
-
-    Returns
-    -------
-    tuple of float
-        gamma, beta [-].
-
-    Raises
-    ------
-    InputError
-        If there is no such preset, or parameters are given beside it.
-
-    Examples
-    --------
-    >>> newmark_law(preset="seed"), newmark_law(gamma=0.6)
-    ((0.5, 0.5), (0.6, 0.25))
-    """
+    """Parameters of the scheme, given or by name."""
     if preset is None:
         return 0.5 if gamma is None else gamma, 0.25 if beta is None else beta
     if preset not in NEWMARK_PRESETS or gamma is not None or beta is not None:
@@ -92,35 +66,7 @@ def compile_newmark(
     gamma: float = 0.5,
     beta: float = 0.25,
 ) -> Compiled:
-    """Compile a system for :func:`march_newmark`: no step is too long for a stable scheme.
-
-    Parameters
-    ----------
-    system : System
-    mesh_frequency : float or (lanes,) array
-        Mesh frequency [Hz].
-    steps : int
-        Steps per mesh cycle.
-    gamma, beta : float
-        Parameters of the scheme [-].
-
-    Returns
-    -------
-    Compiled
-        Its ``step_number`` states ``omega_max * dt``, however large.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, or the scheme is only conditionally stable and the step is
-        beyond its limit.
-
-    Examples
-    --------
-    >>> stiff = System([[1.0]], [[0.0]], [[1e8]], [0.0])
-    >>> round(compile_newmark(stiff, 1.0, 64).step_number, 3)
-    156.25
-    """
+    """Compile a system for :func:`march_newmark`: no step is too long for a stable scheme."""
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     if int(steps) != steps or steps < 1:
         raise InputError(

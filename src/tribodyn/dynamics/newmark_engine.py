@@ -7,17 +7,13 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.divergence import probable_cause
 from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.march import Compiled, Member
 from tribodyn.dynamics.newmark_tables import NewmarkTables, newmark_tables
 from tribodyn.errors import ComputationError, Problem
-
-__all__ = ["NewmarkEngine", "newmark_engine"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Lanes of one block.
 _WIDTHS = (1, 16)
@@ -27,39 +23,15 @@ _HUGE = 1e100
 
 @dataclass(frozen=True)
 class NewmarkEngine:
-    """Systems laid out for Newmark's scheme.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    members : tuple of Member
-        Systems with their lanes; one for all lanes has no lane numbers.
-    tables : tuple of NewmarkTables
-        One for each member.
-    law : (3,) array
-        gamma, beta, tolerance [-].
-    """
+    """Systems laid out for Newmark's scheme."""
 
     compiled: Compiled
-    members: tuple[Member, ...]
-    tables: tuple[NewmarkTables, ...]
-    law: Array
+    members: tuple[Member, ...]  #: systems with their lanes
+    tables: tuple[NewmarkTables, ...]  #: one for each member
+    law: Array  #: gamma, beta, tolerance [-]
 
-    def blocks(self, lanes: int, member: int = -1) -> list[tuple[int, NDArray[np.int64]]]:
-        """Lanes that march side by side.
-
-        Parameters
-        ----------
-        lanes : int
-            Number of all lanes.
-        member : int
-            Number of the member that all of them march; those of the members by default.
-
-        Returns
-        -------
-        list of (int, array)
-            Number of the member and of its lanes.
-        """
+    def blocks(self, lanes: int, member: int = -1) -> list[tuple[int, Index]]:
+        """Lanes that march side by side."""
         found = []
         for number, one in enumerate(self.members):
             if member not in (-1, number):
@@ -79,45 +51,11 @@ class NewmarkEngine:
         scales: Array | None = None,
         record: Array | None = None,
         member: int = -1,
-        numbers: NDArray[np.int64] | None = None,
+        numbers: Index | None = None,
         threads: int | None = None,
         elapsed: int = 0,
     ) -> Array:
-        """March lanes by whole mesh cycles.
-
-        Parameters
-        ----------
-        period : (lanes,) array
-            Mesh period [s].
-        state : (lanes, 2 n) array
-            Position and velocity.
-        cycles : int
-            Mesh cycles.
-        extra_force : (lanes, n) array, optional
-            Constant generalized force on top of the system's [N or N*m].
-        scales : (lanes, 6) array, optional
-            Factors of contact stiffness, contact damping, friction, error, dead zone and force [1].
-        record : (steps * cycles + 1, 2 n, lanes) array, optional
-            Receives every state.
-        member : int
-            Number of the member that all lanes march; by default each marches its own.
-        numbers : (lanes,) int array, optional
-            What the lanes are called where one fails; as they come by default.
-        threads : int, optional
-            Blocks marched at a time; the number of processors by default.
-        elapsed : int
-            Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
-
-        Returns
-        -------
-        (lanes, 2 n) array
-            New state.
-
-        Raises
-        ------
-        ComputationError
-            If a state grows beyond all bounds or contact forces are not found.
-        """
+        """March lanes by whole mesh cycles."""
         lanes, double = state.shape
         extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
         factors = np.ones((lanes, 6)) if scales is None else scales
@@ -191,8 +129,8 @@ class NewmarkEngine:
     def _report(
         self,
         number: int,
-        index: NDArray[np.int64],
-        called: NDArray[np.int64],
+        index: Index,
+        called: Index,
         period: Array,
         load: Array,
         state: Array,
@@ -251,20 +189,7 @@ class NewmarkEngine:
 def newmark_engine(
     compiled: Compiled, law: Array, parameters: LaneParameters | None = None
 ) -> NewmarkEngine:
-    """Lay out all systems of the lanes.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    law : (3,) array
-        gamma, beta, tolerance [-].
-    parameters : LaneParameters, optional
-        What the lanes scale.
-
-    Returns
-    -------
-    NewmarkEngine
-    """
+    """Lay out all systems of the lanes."""
     whole = Member(compiled.system, compiled.nodes, np.zeros(0, dtype=np.int64))
     members = compiled.members or (whole,)
     split = parameters is not None and parameters.scales_friction

@@ -10,25 +10,11 @@ from __future__ import annotations
 from typing import Any
 
 import numba as nb
-import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.kernel import INNER
 from tribodyn.dynamics.lanes import least, load, store
 from tribodyn.dynamics.newmark_lanes import below, magnitude
-
-__all__ = [
-    "SINGLE",
-    "compression",
-    "contact_law",
-    "friction_law",
-    "frictions_of",
-    "rate_of",
-    "row_length",
-    "slots",
-]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Single slots of a lane; its factors begin at the third.
 SINGLE = 9
@@ -38,16 +24,7 @@ SINGLE = 9
 def slots(
     shape: tuple[int, int, int, int],
 ) -> tuple[int, int, int, int, int, int, int, int, int, int]:
-    """Where a lane keeps what.
-
-    Position, velocity and acceleration at 0, n, 2n and, at the end of the step, at 3n, 4n, 5n;
-    a sum at 6n, the constant load at 7n, then the slots returned: sides of the dead zones, contact
-    forces, compressions and rates without them, frictions with their slopes, accelerations
-    per unit of each force, their effect on compressions and on rates, Newton's matrix, its right
-    side, single slots (step, mesh frequency, zero, then the lane's factors of contact stiffness,
-    contact damping, friction, error, dead zone and force) and, :data:`SINGLE` further on, the
-    inverse matrices.
-    """
+    """Where a lane keeps what."""
     n, m, frictions, _ = shape
     side = 8 * n
     rub = side + 4 * m
@@ -69,10 +46,7 @@ def row_length(shape: tuple[int, int, int, int]) -> int:
 
 @nb.njit(**INNER)
 def compression(lanes: Any, n: int, rows: Array, at: int, q: int, error: Any, w: Array) -> Any:
-    """Compression of the contact whose row begins at ``at``, from the positions at slot ``q``.
-
-    ``error`` is the lane's factor of the error.
-    """
+    """Compression of the contact whose row begins at ``at``, from the positions at slot ``q``."""
     d = error * (0.0 - rows[at + 2])
     for i in range(n):
         d = d + rows[at + 5 + i] * load(lanes, w, q + i)
@@ -107,10 +81,7 @@ def contact_law(
 def friction_law(
     rows: Array, at: int, count: int, scale: float, limit: float, carried: Any, zero: Any
 ) -> tuple[Any, Any]:
-    """Friction of a load, and its derivative by the load; ``count`` coefficients from ``at``.
-
-    ``F = N P(x)`` with ``x = min(|N| scale, limit)``, hence ``dF/dN = P + x P'`` below the limit.
-    """
+    """Friction of a load, and its derivative by the load; ``count`` coefficients from ``at``."""
     ratio = magnitude(carried) * scale
     x = least(ratio, zero + limit)
     value, slope = zero, zero
@@ -129,11 +100,7 @@ def frictions_of(
     row: int,
     w: Array,
 ) -> None:
-    """Every friction and its slope from the contact forces.
-
-    ``facts`` holds for each contact one if it is damped in its gap; then for each friction the
-    inverse of its load, its limit, and one for each contact that it follows.
-    """
+    """Every friction and its slope from the contact forces."""
     n, m, frictions, coefficients = shape
     _, forces, _, _, place, _, _, _, _, single = slots(shape)
     zero, scale = load(lanes, w, single + 2), load(lanes, w, single + 5)

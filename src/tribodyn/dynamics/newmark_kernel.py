@@ -19,8 +19,6 @@ from __future__ import annotations
 from typing import Any
 
 import numba as nb
-import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.kernel import INNER
 from tribodyn.dynamics.lanes import greatest, load, store
@@ -33,11 +31,7 @@ from tribodyn.dynamics.newmark_force import (
     slots,
 )
 from tribodyn.dynamics.newmark_lanes import any_above, any_negative, magnitude, quotient
-
-__all__ = ["PASSES", "beyond", "newmark_step", "start_acceleration"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Passes of Newton's method. Between contact changes two are enough, unless friction follows the
 #: load.
@@ -271,10 +265,7 @@ def newmark_step(
     inverse: int,
     w: Array,
 ) -> bool:
-    """March every lane by one step; ``row`` is the row at its end, every contact keeps its side.
-
-    Returns False if the contact forces were not found.
-    """
+    """March every lane by one step; ``row`` is the row at its end, every contact keeps its side."""
     n, m, frictions, _ = shape
     _, forces, _, _, place, push, _, _, _, single = slots(shape)
     _without_contacts(lanes, shape, law, structure, rows, row, inverse, w)

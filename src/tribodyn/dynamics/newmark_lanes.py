@@ -9,8 +9,6 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-__all__ = ["any_above", "any_negative", "below", "magnitude", "quotient"]
-
 
 @intrinsic
 def quotient(typing: Any, left: Any, right: Any) -> Any:

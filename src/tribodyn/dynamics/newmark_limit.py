@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.march import Compiled, Member
@@ -14,10 +13,7 @@ from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.step_limit import largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["refuse_newmark"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def refuse_newmark(
@@ -27,23 +23,7 @@ def refuse_newmark(
     beta: float,
     parameters: LaneParameters | None = None,
 ) -> None:
-    """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    period : (lanes,) array
-        Mesh period [s].
-    gamma, beta : float
-        Parameters of the scheme [-].
-    parameters : LaneParameters, optional
-        What the lanes scale.
-
-    Raises
-    ------
-    InputError
-        If gamma or beta are out of range, or a lane is beyond ``1/sqrt(gamma/2 - beta)``.
-    """
+    """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
     if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
         raise InputError(
             Problem(

@@ -12,7 +12,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
 from tribodyn.dynamics.crossing import MAX_SPLITS, MAX_TRIES
@@ -20,11 +19,7 @@ from tribodyn.dynamics.kernel import I64, INNER, JIT
 from tribodyn.dynamics.lanes import address, first_lane, load
 from tribodyn.dynamics.newmark_force import SINGLE, compression, row_length, slots
 from tribodyn.dynamics.newmark_kernel import beyond, newmark_step, start_acceleration
-
-__all__ = ["newmark_block"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Every file whose code or constants end up in the compiled kernel.
 _OWN = ("newmark_lanes", "newmark_force", "newmark_kernel", "newmark_marching")
@@ -113,11 +108,7 @@ def _clearance(
 def _first_beyond(
     shape: tuple[int, int, int, int], dead: Index, part: Array, right: int, known: int, w: Array
 ) -> tuple[Any, float, float, float]:
-    """Contact that seems to have left its side first: its number, direction, clearances.
-
-    ``part`` holds the row at the start and, from ``right``, that at the end; the contact ``known``
-    is passed over. The number is -1 if all are on their sides.
-    """
+    """Contact that seems to have left its side first: its number, direction, clearances."""
     n, m = shape[0], shape[1]
     sides, _, _, _, _, _, _, _, _, single = slots(shape)
     found: Any = I64(-1)
@@ -152,12 +143,7 @@ def _split_step(
     part: Array,
     w: Array,
 ) -> bool:
-    """March one lane by one step in parts; returns False if contact forces were not found.
-
-    State, acceleration and sides are those at the left end; the new state is left where a step
-    leaves it, and the sides are updated. Crossings are found by the Illinois method on the step
-    itself.
-    """
+    """March one lane by one step in parts; returns False if contact forces were not found."""
     n = shape[0]
     columns = row_length(shape)
     sides, _, _, _, _, _, _, _, _, single = slots(shape)
@@ -255,52 +241,7 @@ def _build(digest: str) -> Any:
         place: int,
         count: int,
     ) -> int:
-        """March every lane by ``cycles`` mesh cycles.
-
-        Parameters
-        ----------
-        lanes : tuple of float
-            As long as there are lanes.
-        shape : tuple of four int
-            Coordinates, contacts, frictions and their coefficients.
-        law : (3,) array
-            gamma, beta, tolerance.
-        first, columns, factors : arrays
-            Damping and stiffness by row, only what is not zero.
-        matrices : (4 n^2,) array
-            Mass, damping, stiffness, inverse mass.
-        rows : (steps * 3 * columns,) array
-            Row table.
-        share, kind, restart : (steps,) array
-            Phase width of each step, its number among the different widths, whether an event
-            lies at its left end.
-        dead : (m,) array
-            Whether a contact has a dead zone.
-        facts : array
-            What does not vary, see :func:`~tribodyn.dynamics.newmark_force.frictions_of`.
-        work : array
-            Slots of all lanes with the inverse matrices of every width, slots of one lane, two
-            rows.
-        period : (width,) array
-            Mesh period [s].
-        load_ : (width, n + 6) array
-            Constant extra force; factors of contact stiffness, contact damping, friction, error,
-            dead zone and force.
-        state : (width, 2 n) array
-            Position and velocity; overwritten.
-        cycles : int
-            Mesh cycles.
-        record : (points, 2 n, lanes) array
-            Receives the state before every step and at the end; empty to record nothing.
-        place, count : int
-            First lane of the block in the record, and lanes to record.
-
-        Returns
-        -------
-        int
-            -1 when done; else twice the number of steps marched, plus one if contact forces were
-            not found in the last of them.
-        """
+        """March every lane by ``cycles`` mesh cycles."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, m = shape[0], shape[1]
         width = len(lanes)

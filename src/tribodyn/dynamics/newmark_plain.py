@@ -10,15 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.system import System
-
-__all__ = ["newmark_plain"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _PASSES = 25
 _SPLITS = 16
@@ -172,28 +168,7 @@ def newmark_plain(
     system: System, grid: Grid, nodes: Nodes, mesh_frequency: float, cycles: int, state: Array,
     gamma: float = 0.5, beta: float = 0.25,
 ) -> Array:  # fmt: skip
-    """March one trajectory.
-
-    Parameters
-    ----------
-    system : System
-    grid : Grid
-    nodes : Nodes
-        The system on its grid.
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    cycles : int
-        Mesh cycles.
-    state : (2 n,) array
-        Position and velocity.
-    gamma, beta : float
-        Parameters of the scheme [-].
-
-    Returns
-    -------
-    (cycles * steps + 1, 2 n) array
-        State before every step and at the end.
-    """
+    """March one trajectory."""
     lane = _Lane(system, mesh_frequency, gamma, beta)
     dead = np.any(nodes.gap > 0.0, axis=(0, 1))
     q, v = np.split(np.asarray(state, dtype=float), 2)

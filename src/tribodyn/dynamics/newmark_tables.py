@@ -5,70 +5,33 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.system import System
-
-__all__ = ["NewmarkTables", "newmark_tables"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 _MATRICES = ("mass", "damping", "stiffness")
 
 
 @dataclass(frozen=True)
 class NewmarkTables:
-    """What the lanes share, in flat arrays.
-
-    Parameters
-    ----------
-    shape : tuple of four int
-        Coordinates, contacts, frictions that follow their load, and their coefficients.
-    structure : tuple of arrays
-        Damping and stiffness by row, only what is not zero: first items, columns, factors.
-    matrices : (4 n^2,) array
-        Mass, damping, stiffness and inverse mass.
-    rows : (steps * 3 * columns,) array
-        Row table, see :mod:`~tribodyn.dynamics.newmark_force`.
-    widths : (kinds,) array
-        Different phase widths of steps [-].
-    kind : (steps,) array
-        Which of them each step has.
-    dead : (contacts,) array
-        Whether a contact has a dead zone.
-    facts : array
-        Numbers of contacts and frictions that do not vary.
-    """
+    """What the lanes share, in flat arrays."""
 
     shape: tuple[int, int, int, int]
-    structure: tuple[NDArray[np.int64], NDArray[np.int64], Array]
-    matrices: Array
-    rows: Array
-    widths: Array
-    kind: NDArray[np.int64]
-    dead: NDArray[np.int64]
-    facts: Array
+    structure: tuple[Index, Index, Array]
+    matrices: Array  #: mass, damping, stiffness and inverse mass
+    rows: Array  #: row table, see :mod:`~tribodyn.dynamics.newmark_force`
+    widths: Array  #: different phase widths of steps [-]
+    kind: Index  #: which of them each step has
+    dead: Index  #: whether a contact has a dead zone
+    facts: Array  #: numbers of contacts and frictions that do not vary
 
 
 def newmark_tables(
     system: System, nodes: Nodes, grid: Grid, *, split: bool = False
 ) -> NewmarkTables:
-    """Lay out a system on its grid for Newmark's scheme.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-    grid : Grid
-    split : bool
-        Whether lanes scale the friction of the contacts, which is then a force of its own.
-
-    Returns
-    -------
-    NewmarkTables
-    """
+    """Lay out a system on its grid for Newmark's scheme."""
     n, contacts = system.size, len(system.contacts)
     mass, damping, stiffness = (np.asarray(getattr(system, name)) for name in _MATRICES)
     both = np.hstack((stiffness, damping))

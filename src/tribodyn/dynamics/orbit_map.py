@@ -7,7 +7,6 @@ the period is what the torque has to take away.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.coordinates import (
     OrbitCoordinates,
@@ -17,34 +16,11 @@ from tribodyn.dynamics.coordinates import (
 from tribodyn.dynamics.march import Compiled, march
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["OrbitMap"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, ComplexArray
 
 
 class OrbitMap:
-    """The reduced state, and the balancing torque if there is one, over one period.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    periods : int
-        Mesh cycles of a period.
-    coordinates : OrbitCoordinates, optional
-        Those of a neighbouring system, so that reduced vectors of both can be compared.
-    width : int, optional
-        Lanes per block of fewer than 32 vectors, marched at a time; None for as many lanes as
-        suit them, one block after the other.
-
-    Raises
-    ------
-    InputError
-        If a balancing torque is asked for that drives no free motion, or a coordinate is
-        connected to nothing.
-    """
+    """The reduced state, and the balancing torque if there is one, over one period."""
 
     def __init__(
         self,
@@ -65,18 +41,7 @@ class OrbitMap:
         self.balance = _balance_direction(compiled.system, self.coordinates)
 
     def split(self, y: Array) -> tuple[Array, Array]:
-        """Take a reduced vector apart.
-
-        Parameters
-        ----------
-        y : (k,) or (m, k) array
-            Reduced vectors [m/s].
-
-        Returns
-        -------
-        tuple of (m, 2 n) array and (m, n) array
-            States and extra forces.
-        """
+        """Take a reduced vector apart."""
         y = np.atleast_2d(y)
         if self.balance is None:
             return self.coordinates.expand(y), np.zeros((y.shape[0], self.compiled.system.size))
@@ -109,18 +74,7 @@ class OrbitMap:
         return np.column_stack((reduced, y[:, -1] - gained))
 
     def follow(self, y: Array) -> tuple[Array, Array]:
-        """Map one vector and keep every state on the way.
-
-        Parameters
-        ----------
-        y : (k,) array
-            Reduced vector [m/s].
-
-        Returns
-        -------
-        tuple of (k,) array and (points, 2 n) array
-            Image, and states as they come.
-        """
+        """Map one vector and keep every state on the way."""
         state, extra = self.split(y)
         record = np.empty((self.periods * self.compiled.grid.steps + 1, state.shape[1], 1))
         new = march(
@@ -138,36 +92,14 @@ class OrbitMap:
             return False
         return not any(code[4 + 4 * j + 2] for j in range(self.contacts))
 
-    def multipliers(self, matrix: Array) -> NDArray[np.complex128]:
-        """Floquet multipliers under a held torque, the largest first.
-
-        Parameters
-        ----------
-        matrix : (k, k) array
-            Derivative of the map [-].
-
-        Returns
-        -------
-        (m,) complex array
-            Without the free motion of the whole drive and without the unknown torque.
-        """
+    def multipliers(self, matrix: Array) -> ComplexArray:
+        """Floquet multipliers under a held torque, the largest first."""
         inner = matrix if self.balance is None else matrix[:-1, :-1]
         values = np.linalg.eigvals(inner).astype(complex)
         return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
     def record(self, y: Array) -> tuple[Array, Array]:
-        """March one period and keep every state.
-
-        Parameters
-        ----------
-        y : (k,) array
-            Reduced vector [m/s].
-
-        Returns
-        -------
-        tuple of (points, 2 n) array and (n,) array
-            States, free of drift, and the extra force.
-        """
+        """March one period and keep every state."""
         state, extra = self.split(y)
         steps = self.compiled.grid.steps
         record = np.empty((self.periods * steps + 1, state.shape[1], 1))
@@ -178,17 +110,7 @@ class OrbitMap:
         return self.without_drift(record[:, :, 0]), extra[0]
 
     def without_drift(self, states: Array) -> Array:
-        """Take the mean speed and mean acceleration out of the free motions, in place.
-
-        Parameters
-        ----------
-        states : (points, 2 n) array
-            States over one period.
-
-        Returns
-        -------
-        (points, 2 n) array
-        """
+        """Take the mean speed and mean acceleration out of the free motions, in place."""
         c, size = self.coordinates, self.compiled.system.size
         phase = np.concatenate(
             [cycle + self.compiled.nodes.phase[:, 0] for cycle in range(self.periods)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.orbit_search import (
@@ -15,10 +14,7 @@ from tribodyn.dynamics.orbit_search import (
     finish_orbit,
     motion_size,
 )
-
-__all__ = ["MOST_PERIODS", "AnyOrbit", "find_any_orbit", "shortest_period"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: States one period apart that differ by less than this part of the motion are the same.
 _REPEATS = 1e-5
@@ -36,43 +32,17 @@ _UNBOUNDED = 1e9
 
 @dataclass
 class AnyOrbit:
-    """What was found.
+    """What was found."""
 
-    Parameters
-    ----------
-    mapping : OrbitMap
-        The map over as many mesh cycles as the orbit has.
-    orbit : OrbitPoint
-        The stable orbit, or that of one mesh cycle if there is none.
-    found : bool
-        Whether the orbit is stable and within the tolerance.
-    apart : (8,) array
-        How far the marched motion is from itself 1 to 8 mesh cycles earlier, over its size [-];
-        infinite if it grows without bounds, empty if it was not marched that far.
-    cycles : int
-        Mesh cycles marched in all.
-    """
-
-    mapping: OrbitMap
-    orbit: OrbitPoint
-    found: bool
-    apart: Array
-    cycles: int
+    mapping: OrbitMap  #: the map over as many mesh cycles as the orbit has
+    orbit: OrbitPoint  #: the stable orbit, or that of one mesh cycle if there is none
+    found: bool  #: whether the orbit is stable and within the tolerance
+    apart: Array  #: [-]
+    cycles: int  #: mesh cycles marched in all
 
 
 def shortest_period(mapping: OrbitMap, states: Array) -> int:
-    """Mesh cycles after which a recorded orbit repeats: a divisor of those recorded.
-
-    Parameters
-    ----------
-    mapping : OrbitMap
-    states : (points, 2 n) array
-        The orbit over one period of the map, free of drift.
-
-    Returns
-    -------
-    int
-    """
+    """Mesh cycles after which a recorded orbit repeats: a divisor of those recorded."""
     steps, whole = mapping.compiled.grid.steps, mapping.periods
     reduced = mapping.coordinates.reduce(states[: whole * steps : steps])
     size = max(float(np.linalg.norm(mapping.coordinates.reduce(states), axis=1).max()), 1e-300)
@@ -120,26 +90,7 @@ def _finish(
 
 
 def find_any_orbit(first: OrbitMap, y: Array, tolerance: float) -> AnyOrbit:
-    """Look for a stable orbit of 1 to 8 mesh cycles, the shortest that the motion approaches.
-
-    Parameters
-    ----------
-    first : OrbitMap
-        Map over one mesh cycle.
-    y : (k,) array
-        Reduced vector to start from [m/s].
-    tolerance : float
-        Certified error that is good enough [-].
-
-    Returns
-    -------
-    AnyOrbit
-
-    Notes
-    -----
-    The motion is followed, and Newton's method applied over the periods after which it nearly
-    repeats. If it does not repeat, the orbit of one mesh cycle is looked for that it left.
-    """
+    """Look for a stable orbit of 1 to 8 mesh cycles, the shortest that the motion approaches."""
     if first.affine:
         orbit = finish_orbit(first, y, tolerance)
         return AnyOrbit(first, orbit, _stable(orbit, tolerance), np.zeros(0), first.cycles)

@@ -6,23 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.anderson import anderson
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.orbit_touch import FlankWatch
-
-__all__ = [
-    "PATIENCE",
-    "OrbitPoint",
-    "approach_orbit",
-    "find_orbit",
-    "finish_orbit",
-    "motion_size",
-    "newton_step",
-]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, ComplexArray
 
 #: Plain periods with dead zones at most, if the flanks part: they keep a start in its own basin
 #: of attraction. A linear system has one orbit and needs none.
@@ -43,33 +31,15 @@ _DISTURBANCE = 1e-7
 
 @dataclass
 class OrbitPoint:
-    """A point of the map with its residual and the matrix of the map.
+    """A point of the map with its residual and the matrix of the map."""
 
-    Parameters
-    ----------
-    point, residual : (k,) array
-        Reduced vector and what the map adds to it [m/s].
-    matrix : (k, k) array
-        Derivative of the map, the monodromy matrix [-].
-    scale : float
-        Size of the motion [m/s].
-    multipliers : (m,) complex array
-        Floquet multipliers, the largest first.
-    states : (points, 2 n) array
-        The motion over one period.
-    slopes : (k, points, 2 n) array
-        Its derivative by the reduced vector; empty for a linear map.
-    search : int
-        Mesh cycles marched one after the other before Newton's method found this point.
-    """
-
-    point: Array
-    residual: Array
-    matrix: Array
-    scale: float
-    multipliers: NDArray[np.complex128]
-    states: Array
-    slopes: Array
+    point: Array  #: [m/s]
+    residual: Array  #: [m/s]
+    matrix: Array  #: derivative of the map, the monodromy matrix [-]
+    scale: float  #: size of the motion [m/s]
+    multipliers: ComplexArray  #: floquet multipliers, the largest first
+    states: Array  #: the motion over one period
+    slopes: Array  #: its derivative by the reduced vector
     search: int = 0
 
     @property
@@ -89,46 +59,14 @@ class OrbitPoint:
 
 
 def newton_step(matrix: Array, residual: Array) -> tuple[Array, float]:
-    """Step to the fixed point of a map, and the distance to it.
-
-    Parameters
-    ----------
-    matrix : (k, k) array
-        Derivative of the map [-].
-    residual : (k,) array
-        What the map adds to the point [m/s].
-
-    Returns
-    -------
-    tuple of (k,) array and float
-        Step and distance [m/s]. A motion that a constant force drives through its play has no
-        orbit beside it: what no step takes away counts as it is.
-
-    Examples
-    --------
-    >>> step, distance = newton_step(np.array([[1.0, 1.0], [0.0, 1.0]]), np.array([0.0, 0.1]))
-    >>> np.abs(step).max() < 1e-12, round(distance, 12)
-    (np.True_, 0.1)
-    """
+    """Step to the fixed point of a map, and the distance to it."""
     slope = np.eye(matrix.shape[0]) - matrix
     step = np.asarray(np.linalg.lstsq(slope, residual, rcond=None)[0], dtype=float)
     return step, float(np.linalg.norm(step) + np.linalg.norm(residual - slope @ step))
 
 
 def motion_size(mapping: OrbitMap, states: Array) -> float:
-    """Size of a motion, free of drift.
-
-    Parameters
-    ----------
-    mapping : OrbitMap
-    states : (points, 2 n) array
-        States over one period.
-
-    Returns
-    -------
-    float
-        Largest reduced vector [m/s].
-    """
+    """Size of a motion, free of drift."""
     reduced = mapping.coordinates.reduce(mapping.without_drift(states.copy()))
     return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
 
@@ -154,21 +92,7 @@ def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> Or
 
 
 def finish_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
-    """Newton's method from a point near the orbit.
-
-    Parameters
-    ----------
-    mapping : OrbitMap
-    y : (k,) array
-        Reduced vector [m/s].
-    tolerance : float
-        Certified error that is good enough [-].
-
-    Returns
-    -------
-    OrbitPoint
-        The best point, whether or not it meets the tolerance.
-    """
+    """Newton's method from a point near the orbit."""
     search = mapping.cycles
     best = _examine(mapping, y)
     for _ in range(_NEWTON_LIMIT):
@@ -189,11 +113,7 @@ def _good(orbit: OrbitPoint, tolerance: float) -> bool:
 def _settle(
     mapping: OrbitMap, y: Array, periods: int, tolerance: float, unstable: OrbitPoint | None
 ) -> tuple[Array, bool, OrbitPoint | None]:
-    """March plain periods until little changes, or the orbit is known to be reached in touch.
-
-    Beside an unstable orbit little changes at first. Returns the point, whether little changes,
-    and the orbit if it is known.
-    """
+    """March plain periods until little changes, or the orbit is known to be reached in touch."""
     watch, candidate, spent = FlankWatch(mapping), None, 0
     for count in range(1, periods + 1):
         new, states = mapping.follow(y)
@@ -226,25 +146,7 @@ def approach_orbit(
     periods: int = _SETTLE,
     unstable: OrbitPoint | None = None,
 ) -> tuple[OrbitPoint | None, Array]:
-    """Follow a motion until it is known which stable orbit it approaches.
-
-    Parameters
-    ----------
-    mapping : OrbitMap
-    y : (k,) array
-        Reduced vector to start from [m/s].
-    tolerance : float
-        Certified error that is good enough [-].
-    periods : int
-        Plain periods at most.
-    unstable : OrbitPoint, optional
-        Orbit that the motion leaves.
-
-    Returns
-    -------
-    tuple of OrbitPoint or None and (k,) array
-        The orbit, if it is known, and where the motion has come.
-    """
+    """Follow a motion until it is known which stable orbit it approaches."""
     y, settled, known = _settle(mapping, y, periods, tolerance, unstable)
     if known is None and settled:
         orbit = finish_orbit(mapping, y, tolerance)
@@ -268,29 +170,7 @@ def _attempt(
 def find_orbit(
     mapping: OrbitMap, y: Array, tolerance: float, patience: Sequence[int] = PATIENCE
 ) -> OrbitPoint:
-    """Settle, accelerate, finish; with more and more plain marching if that is not enough.
-
-    Parameters
-    ----------
-    mapping : OrbitMap
-    y : (k,) array
-        Reduced vector to start from [m/s].
-    tolerance : float
-        Certified error that is good enough [-].
-    patience : sequence of int
-        Plain periods of each further attempt with dead zones.
-
-    Returns
-    -------
-    OrbitPoint
-        The last attempt, whether or not it meets the tolerance.
-
-    Notes
-    -----
-    A linear map needs one step of Newton's method. With dead zones a start belongs to the orbit
-    that its motion approaches. While the flanks are in touch that is known after a few periods;
-    otherwise the motion is followed for up to 24 periods.
-    """
+    """Settle, accelerate, finish; with more and more plain marching if that is not enough."""
     if mapping.affine:
         return finish_orbit(mapping, y, tolerance)
     orbit = _attempt(mapping, y, _SETTLE, tolerance, None)

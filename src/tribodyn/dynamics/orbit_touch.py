@@ -8,30 +8,16 @@ left of the distance to it. A start whose flanks stay in touch all the way belon
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.orbit_map import OrbitMap
-
-__all__ = ["FlankWatch"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Periods looked ahead at most, and the part of the distance at which there is nothing to fear.
 _HORIZON, _GONE = 2000, 1e-3
 
 
 class FlankWatch:
-    """Compressions beyond the play of the meshes that have one.
-
-    Parameters
-    ----------
-    mapping : OrbitMap
-
-    Notes
-    -----
-    Contacts with the same direction and error are the ramps of one mesh, which parts when the
-    lowest opens. A mesh with a contact without play never parts.
-    """
+    """Compressions beyond the play of the meshes that have one."""
 
     def __init__(self, mapping: OrbitMap) -> None:
         nodes = mapping.compiled.nodes
@@ -57,82 +43,26 @@ class FlankWatch:
         self._size = mapping.compiled.system.size
 
     def compression(self, states: Array) -> Array:
-        """Compression of each mesh at both ends of every step, (periods, steps, 2, meshes).
-
-        Parameters
-        ----------
-        states : (points, 2 n) array
-
-        Returns
-        -------
-        array
-            In m.
-        """
+        """Compression of each mesh at both ends of every step, (periods, steps, 2, meshes)."""
         q = states[:, : self._size]
         ends = np.stack((q[:-1], q[1:]), axis=1).reshape(-1, self._steps, 2, self._size)
         return np.asarray(np.einsum("rsji,crsi->crsj", self._direction, ends) - self._error)
 
     def clearance(self, compression: Array) -> Array:
-        """Distance of each mesh from parting, on the flank on which it begins.
-
-        Parameters
-        ----------
-        compression : (periods, steps, 2, meshes) array
-            In m.
-
-        Returns
-        -------
-        array
-            In m; negative where the flanks are apart.
-        """
+        """Distance of each mesh from parting, on the flank on which it begins."""
         return self.flank(compression) * compression - self._gap
 
     @staticmethod
     def flank(compression: Array) -> Array:
-        """Side of the play on which each mesh begins, (meshes,): 1 or -1.
-
-        Parameters
-        ----------
-        compression : (periods, steps, 2, meshes) array
-            In m.
-
-        Returns
-        -------
-        (meshes,) array
-        """
+        """Side of the play on which each mesh begins, (meshes,): 1 or -1."""
         return np.where(compression[0, 0, 0] < 0.0, -1.0, 1.0)
 
     def in_touch(self, states: Array) -> bool:
-        """Whether no mesh parts on the way.
-
-        Parameters
-        ----------
-        states : (points, 2 n) array
-
-        Returns
-        -------
-        bool
-        """
+        """Whether no mesh parts on the way."""
         return bool(np.all(self.clearance(self.compression(states)) > 0.0))
 
     def stays(self, states: Array, slopes: Array, matrix: Array, distance: Array) -> bool:
-        """Whether a motion beside an orbit reaches it without parting.
-
-        Parameters
-        ----------
-        states : (points, 2 n) array
-            The orbit.
-        slopes : (k, points, 2 n) array
-            Derivative of its states by the reduced vector at its beginning.
-        matrix : (k, k) array
-            Derivative of the map [-].
-        distance : (k,) array
-            Where the motion begins, from the orbit [m/s].
-
-        Returns
-        -------
-        bool
-        """
+        """Whether a motion beside an orbit reaches it without parting."""
         compression = self.compression(states)
         room = self.clearance(compression).reshape(-1)
         if np.any(room <= 0.0):

@@ -9,15 +9,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.system import System
-
-__all__ = ["march_plain"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 class _Row(NamedTuple):
@@ -144,26 +140,7 @@ class _Lane:
 def march_plain(
     system: System, grid: Grid, nodes: Nodes, mesh_frequency: float, cycles: int, state: Array
 ) -> Array:
-    """March one trajectory.
-
-    Parameters
-    ----------
-    system : System
-    grid : Grid
-    nodes : Nodes
-        The system on its grid.
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    cycles : int
-        Mesh cycles.
-    state : (2 n,) array
-        Position and velocity.
-
-    Returns
-    -------
-    (cycles * steps + 1, 2 n) array
-        State before every step and at the end.
-    """
+    """March one trajectory."""
     lane = _Lane(system, mesh_frequency)
     dead = np.any(nodes.gap > 0.0, axis=(0, 1))
     y = np.asarray(state, dtype=float)

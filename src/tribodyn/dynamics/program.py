@@ -12,7 +12,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.falling_force import refuse_falling_force
 from tribodyn.dynamics.grid import Grid, RowEvaluator, build_grid, system_events
@@ -23,55 +22,19 @@ from tribodyn.dynamics.load_friction import (
 )
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = [
-    "Nodes",
-    "Program",
-    "Slots",
-    "build_program",
-    "compile_on",
-    "compile_system",
-    "lane_load",
-]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 
 class Program(NamedTuple):
-    """Everything that the kernel reads, in flat arrays, in the order in which it reads.
+    """Everything that the kernel reads, in flat arrays, in the order in which it reads."""
 
-    Parameters
-    ----------
-    code : (m,) int array
-        Coordinates, contacts, columns of the row table, reads per buffer; then four numbers per
-        contact (terms of its direction, terms of its slope, has a dead zone, damping acts in the
-        gap, plus 2 if lanes scale it); the number of frictions that follow the load, and two
-        numbers for each (contacts that it follows, coefficients); then the number of terms of
-        each coordinate's acceleration.
-    reads : (3 * stride,) int array
-        Slot that each term reads, for each of the three state buffers.
-    rows : (steps * 3 * columns,) array
-        Factor of each term at the left end, middle and right end of each step; every contact
-        begins with stiffness, damping, error, its slope and the gap, every friction is one over
-        its load, its limit and its coefficients.
-    width : (steps,) array
-        Phase width of each step [-].
-    restart : (steps,) bool array
-        Whether a step begins at an event.
-    constant_load : (n,) array
-        Part of the load that does not vary, as an acceleration.
-    pattern : (...,) bool array
-        Which of all possible terms are there.
-    """
-
-    code: Index
-    reads: Index
-    rows: Array
-    width: Array
-    restart: NDArray[np.bool_]
-    constant_load: Array
-    pattern: NDArray[np.bool_]
+    code: Index  #: coordinates, contacts, columns of the row table, reads per buffer
+    reads: Index  #: slot that each term reads, for each of the three state buffers
+    rows: Array  #: factor of each term at the left end, middle and right end of each step
+    width: Array  #: phase width of each step [-]
+    restart: Mask  #: whether a step begins at an event
+    constant_load: Array  #: part of the load that does not vary, as an acceleration
+    pattern: Mask  #: which of all possible terms are there
 
     @property
     def slots(self) -> Slots:
@@ -81,18 +44,7 @@ class Program(NamedTuple):
 
 
 class Slots:
-    """Slots of the work buffer: one number per lane in each.
-
-    Three state buffers (q, v) at 0, 2n and 4n, two sums, contact forces, sides of the dead
-    zones, constant accelerations; then, from ``one``: factor of the load, step, mesh frequency, one
-    minus the factor of the error, one over the step, and the factors of gap, stiffness, damping and
-    friction less one; then the friction forces. Zeros belong to a lane that scales nothing.
-
-    Parameters
-    ----------
-    n, contacts, frictions : int
-        Coordinates, contacts and frictions that follow the load.
-    """
+    """Slots of the work buffer: one number per lane in each."""
 
     def __init__(self, n: int, contacts: int, frictions: int) -> None:
         self.force = 8 * n
@@ -122,55 +74,13 @@ class Nodes(NamedTuple):
 def compile_system(
     system: System, steps: int, events: tuple[float, ...] | None = None
 ) -> tuple[Grid, Nodes, Program]:
-    """Evaluate a system on its event-aligned grid.
-
-    Parameters
-    ----------
-    system : System
-    steps : int
-        Steps per mesh cycle.
-    events : tuple of float, optional
-        Mesh phases that become grid points; those of the system by default.
-
-    Returns
-    -------
-    tuple of Grid, Nodes, Program
-
-    Raises
-    ------
-    InputError
-        If an entry has the wrong shape or is not finite, a gap is negative, or a force law falls.
-
-    Examples
-    --------
-    >>> from tribodyn.dynamics import Contact, System
-    >>> contact = Contact(direction=[1.0], stiffness=1.0)
-    >>> system = System([[1.0]], [[0.0]], [[1.0]], [0.0], [contact])
-    >>> int(compile_system(system, 16)[2].code[0])
-    1
-    """
+    """Evaluate a system on its event-aligned grid."""
     grid = build_grid(events or system_events(system), steps)
     return grid, *compile_on(system, grid)
 
 
 def compile_on(system: System, grid: Grid) -> tuple[Nodes, Program]:
-    """Evaluate a system on any grid.
-
-    Parameters
-    ----------
-    system : System
-    grid : Grid
-        Steps of any width in any order; terms that are zero on all of them are left out.
-
-    Returns
-    -------
-    tuple of Nodes, Program
-
-    Raises
-    ------
-    InputError
-        If an entry has the wrong shape or is not finite, a gap is negative, or a force law falls.
-    """
+    """Evaluate a system on any grid."""
     nodes = _evaluate(system, grid)
     return nodes, build_program(system, grid, nodes)
 
@@ -228,7 +138,7 @@ def _evaluate(system: System, grid: Grid) -> Nodes:
 class _Terms:
     """Collects factors and the slots that they multiply, in reading order."""
 
-    def __init__(self, steps: int, pattern: NDArray[np.bool_] | None) -> None:
+    def __init__(self, steps: int, pattern: Mask | None) -> None:
         self.shape = (steps, 3)
         self.factors: list[Array] = []
         self.slots: list[int] = []
@@ -289,7 +199,7 @@ def _friction_terms(
 
 def _coordinate_terms(
     system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
-) -> tuple[list[int], NDArray[np.bool_]]:
+) -> tuple[list[int], Mask]:
     """Number of terms of every coordinate, and whether its load varies."""
     inverse = np.linalg.inv(np.asarray(system.mass))
     along = nodes.direction if split else nodes.force_direction
@@ -324,26 +234,9 @@ def build_program(
     *,
     scaled: bool = False,
     split: bool = False,
-    pattern: NDArray[np.bool_] | None = None,
+    pattern: Mask | None = None,
 ) -> Program:
-    """Flatten a system on its grid.
-
-    Parameters
-    ----------
-    system : System
-    grid : Grid
-    nodes : Nodes
-    scaled : bool
-        Whether lanes scale stiffness, damping or dead zone of the contacts.
-    split : bool
-        Whether lanes scale the friction of the contacts.
-    pattern : (...,) bool array, optional
-        Which of all possible terms to keep; those that are not zero by default.
-
-    Returns
-    -------
-    Program
-    """
+    """Flatten a system on its grid."""
     size, contacts = system.size, len(system.contacts)
     slots = Slots(size, contacts, len(system.frictions) + (contacts if split else 0))
     terms = _Terms(grid.steps, pattern)
@@ -368,22 +261,7 @@ def build_program(
 
 
 def lane_load(program: Program, system: System, extra: Any, factor: Any = 1.0) -> Array:
-    """Constant acceleration of each lane: the constant part of the load plus an extra force.
-
-    Parameters
-    ----------
-    program : Program
-    system : System
-    extra : (lanes, n) array
-        Extra generalized force of each lane [N or N*m].
-    factor : float or (lanes,) array
-        Factor of the constant part [1].
-
-    Returns
-    -------
-    (lanes, n) array
-        In m/s^2 or rad/s^2.
-    """
+    """Constant acceleration of each lane: the constant part of the load plus an extra force."""
     inverse = np.linalg.inv(np.asarray(system.mass))
     own = np.multiply.outer(np.asarray(factor, dtype=float), program.constant_load)
     return np.asarray(own + np.asarray(extra, dtype=float) @ inverse.T)

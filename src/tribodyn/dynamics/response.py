@@ -6,18 +6,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.response_crossings import resample_crossings
+from tribodyn.types import Array, ComplexArray, Mask
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["FineSamples", "Response", "build_response"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -122,9 +118,7 @@ class Response:
     step_number: float
     error: float = float("nan")
     converged: bool = False
-    floquet_multipliers: NDArray[np.complex128] = field(
-        default_factory=lambda: np.zeros(0, dtype=complex)
-    )
+    floquet_multipliers: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
     cycles_used: int = 0
     search_cycles: int = 0
     extra_force: Array = field(default_factory=lambda: np.zeros(0))
@@ -202,24 +196,7 @@ class Response:
 def build_response(
     compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, **facts: Any
 ) -> Response:
-    """Evaluate contact forces and accelerations along recorded states.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    states : (cycles * steps + 1, 2 n) array
-        Position and velocity at every step and at the end.
-    extra_force : (n,) array
-        Constant generalized force on top of the system's [N or N*m].
-    **facts
-        Further fields of :class:`Response`.
-
-    Returns
-    -------
-    Response
-    """
+    """Evaluate contact forces and accelerations along recorded states."""
     nodes, steps = compiled.nodes, compiled.grid.steps
     cycles = (states.shape[0] - 1) // steps
     size = compiled.system.size
@@ -338,7 +315,7 @@ def _contact_force(compiled: Compiled, d: Array, rate: Array) -> Array:
     return np.asarray(spring + damped * nodes.damping * rate)
 
 
-def _sides(dead: NDArray[np.bool_], gap: Array, d: Array) -> Array:
+def _sides(dead: Mask, gap: Array, d: Array) -> Array:
     """Side of the dead zone on which every contact is; 1 where it has none."""
     beyond = np.where(d > gap, 1.0, np.where(d < -gap, -1.0, 0.0))
     return np.where(dead, beyond, 1.0)

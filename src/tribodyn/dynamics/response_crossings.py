@@ -10,17 +10,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.step_limit import LIMIT
-
-__all__ = ["Resampled", "interpolate_rows", "resample_crossings", "within_steps"]
-
-Array = NDArray[np.float64]
-Places = NDArray[np.int64]
+from tribodyn.types import Array, Index, Mask
 
 _ROWS = (
     "stiffness", "damping", "error", "error_slope", "gap", "direction", "direction_slope",
@@ -32,47 +27,20 @@ _TOGETHER = 1e-9
 
 
 class Resampled(NamedTuple):
-    """Three samples of each of some steps, in place of those that they had.
+    """Three samples of each of some steps, in place of those that they had."""
 
-    Parameters
-    ----------
-    step : (m,) int array
-        Numbers of the steps, counted from the beginning.
-    phase, weight : (m, 3) array
-        Mesh phase [cycles], weights whose sum is the part of the time [-].
-    position, velocity, acceleration : (m, 3, n) array
-        Coordinates and their derivatives [m or rad, ...].
-    deflection, force : (m, 3, contacts) array
-        Compression [m] and force [N] of the contacts.
-    """
-
-    step: Places
-    phase: Array
-    weight: Array
-    position: Array
-    velocity: Array
-    acceleration: Array
+    step: Index  #: numbers of the steps, counted from the beginning
+    phase: Array  #: [-]
+    weight: Array  #: [-]
+    position: Array  #: [m or rad, ...]
+    velocity: Array  #: [m or rad, ...]
+    acceleration: Array  #: [m or rad, ...]
     deflection: Array
     force: Array
 
 
-def interpolate_rows(rows: Array, step: Places, tau: Array) -> Array:
-    """Interpolate rows quadratically within their steps, as the integrator does.
-
-    Parameters
-    ----------
-    rows : (steps, 3, ...) array
-        Values at the left end, middle and right end of each step of a mesh cycle.
-    step : (m,) int array
-        Numbers of the steps; those of later mesh cycles begin anew.
-    tau : (m,) array
-        Fraction of the step [-].
-
-    Returns
-    -------
-    (m, ...) array
-        In the unit of the rows.
-    """
+def interpolate_rows(rows: Array, step: Index, tau: Array) -> Array:
+    """Interpolate rows quadratically within their steps, as the integrator does."""
     values = rows[step % rows.shape[0]]
     at = tau.reshape(-1, *(1,) * (values.ndim - 2))
     left, middle = (1.0 - at) * (1.0 - 2.0 * at), 4.0 * at * (1.0 - at)
@@ -81,22 +49,8 @@ def interpolate_rows(rows: Array, step: Places, tau: Array) -> Array:
     )
 
 
-def within_steps(grid: Grid, cycle: Places, phase: Array) -> tuple[Places, Array]:
-    """Find the steps in which triples of samples lie.
-
-    Parameters
-    ----------
-    grid : Grid
-    cycle : (m,) int array
-        Mesh cycle of each triple, counted from 0.
-    phase : (m, 3) array
-        Mesh phase of the samples [cycles]; the first and the last belong to the steps inwards.
-
-    Returns
-    -------
-    tuple of (m, 3) int array and (m, 3) array
-        Step within the mesh cycle and fraction of it [-].
-    """
+def within_steps(grid: Grid, cycle: Index, phase: Array) -> tuple[Index, Array]:
+    """Find the steps in which triples of samples lie."""
     edges = np.concatenate((grid.left, [1.0]))
     own = phase - cycle[:, None]
     inner = own + np.array([1e-12, 0.0, -1e-12])
@@ -113,17 +67,17 @@ class _Points:
         self.inverse = np.linalg.inv(np.asarray(self.system.mass)).T
         self.in_gap = np.array([one.damping_in_gap for one in self.system.contacts])
 
-    def row(self, name: str, step: Places, tau: Array) -> Array:
+    def row(self, name: str, step: Index, tau: Array) -> Array:
         """Interpolate rows of the table within steps."""
         return interpolate_rows(getattr(self.compiled.nodes, name), step, tau)
 
-    def compression(self, step: Places, tau: Array, q: Array) -> Array:
+    def compression(self, step: Index, tau: Array, q: Array) -> Array:
         """Compression of the contacts, (m, contacts)."""
         direction = self.row("direction", step, tau)
         place = np.einsum("mji,mi->mj", direction, q)
         return np.asarray(place - self.row("error", step, tau))
 
-    def at(self, step: Places, tau: Array, state: Array, side: Array) -> tuple[Array, ...]:
+    def at(self, step: Index, tau: Array, state: Array, side: Array) -> tuple[Array, ...]:
         """Compression and force of the contacts, acceleration."""
         rows: dict[str, Any] = {name: self.row(name, step, tau) for name in _ROWS}
         q, v = np.split(state, 2, axis=1)
@@ -140,7 +94,7 @@ class _Points:
             total = total - np.einsum("mfi,mf->mi", rows["friction_direction"], rub)
         return d, force, total @ self.inverse
 
-    def advance(self, step: Places, tau: Array, state: Array, side: Array) -> Array:
+    def advance(self, step: Index, tau: Array, state: Array, side: Array) -> Array:
         """March from the beginning of a step to a fraction of it by one Runge-Kutta step."""
         width = self.compiled.grid.width[step % self.compiled.grid.steps]
         h = (tau * width / self.frequency)[:, None]
@@ -159,27 +113,7 @@ class _Points:
 def resample_crossings(
     compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, sides: Array
 ) -> Resampled | None:
-    """Sample steps in which a contact opens or closes, and a neighbour of each, anew.
-
-    Parameters
-    ----------
-    compiled : Compiled
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    states : (cycles * steps + 1, 2 n) array
-        Position and velocity at every step and at the end.
-    extra_force : (n,) array
-        Constant generalized force on top of the system's [N or N*m].
-    sides : (cycles * steps, 2, contacts) array
-        Side of the dead zone of every contact at both ends of every step; 1 without one [-].
-
-    Returns
-    -------
-    Resampled or None
-        None where nothing is to be replaced. Steps with several crossings stay as they are, as do
-        those between two events, those beside another crossing, and all where the step is too
-        long for a Runge-Kutta step.
-    """
+    """Sample steps in which a contact opens or closes, and a neighbour of each, anew."""
     crossed = np.any(sides[:, 0] != sides[:, 1], axis=1)
     if not crossed.any() or compiled.step_number > LIMIT:
         return None
@@ -212,9 +146,7 @@ def resample_crossings(
     return Resampled(np.concatenate((first, first + 1)), joined[0], weight, *joined[1:])
 
 
-def _with_neighbours(
-    crossed: NDArray[np.bool_], after_event: NDArray[np.bool_]
-) -> tuple[Places, NDArray[np.bool_]]:
+def _with_neighbours(crossed: Mask, after_event: Mask) -> tuple[Index, Mask]:
     """Steps with a crossing that have a free neighbour, and whether it is the next one."""
     count, steps = crossed.size, after_event.size
     taken = crossed.copy()
@@ -232,11 +164,8 @@ def _with_neighbours(
     return np.array(chosen, dtype=np.int64), np.array(forward, dtype=bool)
 
 
-def _crossing(points: _Points, step: Places, state: Array, before: Array, after: Array) -> Array:
-    """Fraction of each step at which its contacts leave their sides; 0 where that is not one place.
-
-    Taken from the cubic through the motion that would go on as before.
-    """
+def _crossing(points: _Points, step: Index, state: Array, before: Array, after: Array) -> Array:
+    """Fraction of each step at which its contacts leave their sides; 0 if not one place."""
     size = state.shape[1] // 2
     end = points.advance(step, np.ones(step.size), state, before)
     h = (points.compiled.grid.width[step % points.compiled.grid.steps] / points.frequency)[:, None]
@@ -265,7 +194,7 @@ def _crossing(points: _Points, step: Places, state: Array, before: Array, after:
 
 
 def _part(
-    points: _Points, step: Places, phase: tuple[Array, Array], ends: tuple[Array, Array],
+    points: _Points, step: Index, phase: tuple[Array, Array], ends: tuple[Array, Array],
     side: Array,
 ) -> tuple[Array, ...]:  # fmt: skip
     """Both ends and the middle of a part of two steps, on one side of the contacts."""

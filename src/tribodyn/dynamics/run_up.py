@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.ensemble import LaneStatistics
 from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
@@ -22,10 +22,7 @@ from tribodyn.dynamics.steady_state import steady_state
 from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["read_outputs", "run_up"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Mesh cycles whose pace is found at a time.
 _CHUNK = 64
@@ -182,23 +179,7 @@ def _modes(system: System) -> NaturalModes | None:
 
 
 def read_outputs(outputs: Mapping[str, ArrayLike] | None, system: System) -> Array:
-    """Check linear outputs of the state.
-
-    Parameters
-    ----------
-    outputs : mapping of str to (2 n,) array, optional
-        Rows over (position, velocity).
-    system : System
-
-    Returns
-    -------
-    (o, 2 n) array
-
-    Raises
-    ------
-    InputError
-        If a row has another shape.
-    """
+    """Check linear outputs of the state."""
     rows = [np.asarray(row, dtype=float) for row in (outputs or {}).values()]
     for name, row in zip(outputs or {}, rows, strict=True):
         if row.shape != (2 * system.size,):
@@ -267,11 +248,7 @@ def _chunks(tables: Tables, path: SpeedProfile, count: int) -> Any:
 def _take_drift(
     marcher: CycleMarcher, states: Array, ends: Array, passed: Array, period: Array
 ) -> None:
-    """Take mean acceleration and mean speed of every cycle out of the free motion.
-
-    The free motion begins at rest; then it also ends where it began, as the orbits of
-    :func:`steady_state` do.
-    """
+    """Take mean acceleration and mean speed of every cycle out of the free motion."""
     size = marcher.size
     rise = (ends[:, size:] @ marcher.free)[:, None]
     travel = (ends[:, :size] @ marcher.free)[:, None] - 0.5 * period[:, None, None] * rise

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.coordinates import OrbitCoordinates, orbit_coordinates
 from tribodyn.dynamics.ensemble import _fresh_moments
@@ -15,10 +14,7 @@ from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
 from tribodyn.errors import ComputationError, Problem
-
-__all__ = ["CycleMarcher", "Pace"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Part of the unbalanced torque of a cycle that is taken away in the next, after the first cycles.
 _SERVO = 0.125
@@ -28,40 +24,16 @@ _SHIFT = 1e-8
 
 @dataclass(frozen=True)
 class Pace:
-    """Speed within some mesh cycles on one grid.
+    """Speed within some mesh cycles on one grid."""
 
-    Parameters
-    ----------
-    time : (cycles, steps + 1) array
-        Time at the ends of the steps [s].
-    share : (cycles, steps) array
-        Duration of each step over that of its cycle [-].
-    shift : (cycles, steps) array
-        Mesh phase in the middle of the time of a step, less its middle, over its width [-].
-    ratio : (cycles, steps, 3) array
-        Speed at the beginning, middle and end of a step over the mean speed of its cycle [-].
-    """
-
-    time: Array
-    share: Array
-    shift: Array
-    ratio: Array
+    time: Array  #: time at the ends of the steps [s]
+    share: Array  #: duration of each step over that of its cycle [-]
+    shift: Array  #: [-]
+    ratio: Array  #: [-]
 
     @classmethod
     def over(cls, profile: SpeedProfile, table: Table, first: int, count: int) -> Pace:
-        """Find the pace of some cycles.
-
-        Parameters
-        ----------
-        profile : SpeedProfile
-        table : Table
-        first, count : int
-            Number of the first mesh cycle, and how many.
-
-        Returns
-        -------
-        Pace
-        """
+        """Find the pace of some cycles."""
         grid = table.grid
         cycle = first + np.arange(count)[:, None]
         time = profile.time_at(cycle + np.append(grid.left, 1.0))
@@ -75,27 +47,7 @@ class Pace:
 
 
 class CycleMarcher:
-    """Marches one mesh cycle at a time, with a balanced drive.
-
-    Parameters
-    ----------
-    tables : Tables
-    frequency : (m,) array
-        Mesh frequencies of the systems [Hz].
-    lowest : float
-        Lowest mesh frequency of the run [Hz].
-    outputs : (o, 2 n) array
-        Linear outputs of the state.
-    inertia : (n,) array
-        Generalized force of the prescribed acceleration, for 1 Hz/s of the mesh frequency.
-
-    Notes
-    -----
-    Nothing depends on the free rotation of the whole drive: it is taken out of the state before
-    every cycle. With ``system.balance`` a torque follows that takes away what the last cycles
-    gained: an integrating servo of eight cycles. Its mean is that of the steady state at the same
-    speed; the torque itself hardly changes within a cycle.
-    """
+    """Marches one mesh cycle at a time, with a balanced drive."""
 
     def __init__(
         self, tables: Tables, frequency: Array, lowest: float, outputs: Array, inertia: Array
@@ -124,37 +76,11 @@ class CycleMarcher:
         self._fresh = _fresh_moments(self.contacts, self.size + len(outputs), 0, 1)[:, 0]
 
     def weights(self, frequency: float) -> tuple[int, float]:
-        """Which two neighbouring systems there are at a speed, and the part of the second.
-
-        Parameters
-        ----------
-        frequency : float
-            Mesh frequency [Hz].
-
-        Returns
-        -------
-        tuple of int and float
-            Outside the range the nearest system alone.
-        """
+        """Which two neighbouring systems there are at a speed, and the part of the second."""
         return blend_weight(self.frequency, frequency)
 
     def program(self, table: Table, pace: Pace, cycle: int, frequency: float) -> Program:
-        """Program of one cycle.
-
-        Parameters
-        ----------
-        table : Table
-        pace : Pace
-        cycle : int
-            Number within the pace.
-        frequency : float
-            Mean mesh frequency of the cycle [Hz].
-
-        Returns
-        -------
-        Program
-            Its rows are overwritten by the next one.
-        """
+        """Program of one cycle."""
         left, part = self.weights(frequency)
         base = table.programs[left]
         steady = base.constant_load
@@ -186,26 +112,11 @@ class CycleMarcher:
         )  # fmt: skip
 
     def hold(self, torque: Array) -> None:
-        """Begin with a known balancing torque.
-
-        Parameters
-        ----------
-        torque : (n,) array
-            Generalized force [N or N*m].
-        """
+        """Begin with a known balancing torque."""
         self.torque, self.count = torque.copy(), int(1.0 / _SERVO)
 
     def without_free_motion(self, state: Array) -> Array:
-        """Take the free motion out of a state.
-
-        Parameters
-        ----------
-        state : (2 n,) array
-
-        Returns
-        -------
-        (2 n,) array
-        """
+        """Take the free motion out of a state."""
         n = self.size
         place, speed = state[:n], state[n:]
         return np.concatenate((place - place @ self.free, speed - speed @ self.free))
@@ -213,30 +124,7 @@ class CycleMarcher:
     def cycle(
         self, program: Program, period: float, change: float, state: Array, record: Array
     ) -> tuple[Array, Array, Array]:
-        """March one cycle.
-
-        Parameters
-        ----------
-        program : Program
-        period : float
-            Its duration [s].
-        change : float
-            Mean change of the mesh frequency [Hz/s].
-        state : (2 n,) array
-            Without free motion.
-        record : (steps + 1, 2 n, 1) array
-            Receives the states.
-
-        Returns
-        -------
-        tuple of three arrays
-            New state, moments, generalized force on top of the system's [N or N*m].
-
-        Raises
-        ------
-        ComputationError
-            If the motion grows beyond all bounds.
-        """
+        """March one cycle."""
         from tribodyn.dynamics.marching import march_block
 
         load = self.inertia * change

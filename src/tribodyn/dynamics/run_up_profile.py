@@ -9,10 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["SpeedProfile", "read_profile", "speed_ramp"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Pieces of a straight line that stand for a function of time.
 _PIECES = 16384
@@ -220,30 +217,7 @@ def read_profile(
     profile: SpeedProfile | tuple[ArrayLike, ArrayLike] | Callable[[Array], ArrayLike],
     duration: float | None = None,
 ) -> SpeedProfile:
-    """Take a profile in any of its forms.
-
-    Parameters
-    ----------
-    profile : SpeedProfile, (time, mesh_frequency) or function
-        Corners [s, Hz], or a vectorized function of time that returns the mesh frequency.
-    duration : float, optional
-        Length of a function of time [s].
-
-    Returns
-    -------
-    SpeedProfile
-        A function becomes 16384 straight pieces.
-
-    Raises
-    ------
-    InputError
-        If it is none of them, or a function comes without its duration.
-
-    Examples
-    --------
-    >>> read_profile(lambda time: 100.0 + 10.0 * time, 2.0)
-    SpeedProfile(2 s, 220 mesh cycles, 100 to 120 Hz)
-    """
+    """Take a profile in any of its forms."""
     if isinstance(profile, SpeedProfile):
         return profile
     if callable(profile):

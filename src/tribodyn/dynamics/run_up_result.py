@@ -6,53 +6,32 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.ensemble import LaneStatistics
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     import xarray
 
     from tribodyn.dynamics.natural_modes import NaturalModes
 
-__all__ = ["CycleStatistics", "RunUp"]
-
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class CycleStatistics:
-    """Figures of every mesh cycle of a run-up, exact to the order of the integrator.
+    """Figures of every mesh cycle of a run-up, exact to the order of the integrator."""
 
-    Parameters
-    ----------
-    time, mesh_frequency : (cycles,) array
-        Middle of each cycle [s] and its mean mesh frequency [Hz].
-    rate : (cycles,) array
-        Mean change of the mesh frequency [Hz/s].
-    deflection, contact_force, acceleration, output : LaneStatistics
-        One row per cycle [m, N, m/s^2 or rad/s^2, as given].
-    contact_loss_share : (cycles, contacts) array
-        Part of the cycle off the driving flank [-].
-    extra_force : (cycles, n) array
-        Generalized force on top of the system's: the balancing torque and the inertia of the
-        prescribed acceleration [N or N*m].
-    steps : (cycles,) int array
-        Integration steps.
-    """
-
-    time: Array
-    mesh_frequency: Array
-    rate: Array
-    deflection: LaneStatistics = field(repr=False)
-    contact_force: LaneStatistics = field(repr=False)
-    acceleration: LaneStatistics = field(repr=False)
-    output: LaneStatistics = field(repr=False)
-    contact_loss_share: Array = field(repr=False)
-    extra_force: Array = field(repr=False)
-    steps: NDArray[np.int64] = field(repr=False)
+    time: Array  #: [Hz]
+    mesh_frequency: Array  #: [Hz]
+    rate: Array  #: mean change of the mesh frequency [Hz/s]
+    deflection: LaneStatistics = field(repr=False)  #: [m, N, m/s^2 or rad/s^2, as given]
+    contact_force: LaneStatistics = field(repr=False)  #: [m, N, m/s^2 or rad/s^2, as given]
+    acceleration: LaneStatistics = field(repr=False)  #: [m, N, m/s^2 or rad/s^2, as given]
+    output: LaneStatistics = field(repr=False)  #: [m, N, m/s^2 or rad/s^2, as given]
+    contact_loss_share: Array = field(repr=False)  #: part of the cycle off the driving flank [-]
+    extra_force: Array = field(repr=False)  #: [N or N*m]
+    steps: Index = field(repr=False)  #: integration steps
 
     def __repr__(self) -> str:
         """One line."""

@@ -5,29 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.run_up_tables import Table
 from tribodyn.dynamics.system import System
-
-__all__ = ["Samples"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 class Samples:
-    """Collects the samples of all mesh cycles.
-
-    Parameters
-    ----------
-    systems : sequence of System
-        Of one structure.
-    frequency : (m,) array
-        Their mesh frequencies [Hz].
-    cycles, samples : int
-        Mesh cycles, and samples of each.
-    """
+    """Collects the samples of all mesh cycles."""
 
     def __init__(
         self, systems: Sequence[System], frequency: Array, cycles: int, samples: int
@@ -53,22 +39,7 @@ class Samples:
         weights: Sequence[tuple[int, float]],
         extra: Sequence[Array],
     ) -> None:
-        """Add some mesh cycles.
-
-        Parameters
-        ----------
-        table : Table
-        first : int
-            Number of the first cycle.
-        time, frequency : (cycles, samples) array
-            Time [s] and mesh frequency [Hz].
-        states : (cycles, samples, 2 n) array
-            Position and velocity.
-        weights : sequence of (int, float)
-            The system below the speed of each cycle, and the part of the one above it.
-        extra : sequence of (n,) array
-            Generalized force on top of the system's [N or N*m].
-        """
+        """Add some mesh cycles."""
         part = slice(first, first + len(weights))
         q, v = states[..., : self.size], states[..., self.size :]
 
@@ -107,18 +78,7 @@ class Samples:
         return np.asarray((1.0 - part) * stacked[left] + part * stacked[left + 1])
 
     def series(self, outputs: Array) -> dict[str, Array]:
-        """Everything as series over time.
-
-        Parameters
-        ----------
-        outputs : (o, 2 n) array
-            Linear outputs of the state.
-
-        Returns
-        -------
-        dict of str to array
-            Fields of :class:`RunUp`.
-        """
+        """Everything as series over time."""
         cycles, samples = self.time.shape
         flat = self.state.reshape(cycles * samples, -1)
         return {

@@ -12,17 +12,13 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid, system_events
 from tribodyn.dynamics.program import Nodes, Program, build_program, compile_on, compile_system
 from tribodyn.dynamics.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["Table", "Tables", "blend_weight", "sampled_grid", "systems_by_frequency"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: ``omega_max * dt`` of the chosen steps; the damping that the integrator adds is then below 4e-5.
 _FINE = 0.35
@@ -31,49 +27,20 @@ _FEWEST, _MOST, _LADDER = 256, 65536, 1.42
 
 
 class Table(NamedTuple):
-    """All systems on one grid.
-
-    Parameters
-    ----------
-    grid : Grid
-    nodes : tuple of Nodes
-    programs : tuple of Program
-    kept : (samples,) int array
-        Steps that begin at the samples.
-    slopes : (m,) int array
-        Columns of the rows that are slopes over the mesh phase.
-    step_number : float
-        ``omega_max * dt`` at a mesh frequency of 1 Hz [-].
-    """
+    """All systems on one grid."""
 
     grid: Grid
     nodes: tuple[Nodes, ...]
     programs: tuple[Program, ...]
-    kept: NDArray[np.int64]
-    slopes: NDArray[np.int64]
-    step_number: float
+    kept: Index  #: steps that begin at the samples
+    slopes: Index  #: columns of the rows that are slopes over the mesh phase
+    step_number: float  #: ``omega_max * dt`` at a mesh frequency of 1 Hz [-]
 
 
 def systems_by_frequency(
     system: System | Mapping[float, System],
 ) -> tuple[Array, tuple[System, ...]]:
-    """Take one system, or several over the mesh frequency.
-
-    Parameters
-    ----------
-    system : System or mapping of float to System
-        Systems by mesh frequency [Hz].
-
-    Returns
-    -------
-    tuple of (m,) array and tuple of System
-        Rising mesh frequencies [Hz] and the systems.
-
-    Raises
-    ------
-    InputError
-        If there is none, or they differ in more than their contacts and loads.
-    """
+    """Take one system, or several over the mesh frequency."""
     if isinstance(system, System):
         return np.zeros(1), (system,)
     if not system:
@@ -102,25 +69,7 @@ def systems_by_frequency(
 
 
 def blend_weight(known: Array, frequency: float) -> tuple[int, float]:
-    """Find the two neighbouring systems at a speed.
-
-    Parameters
-    ----------
-    known : (m,) array
-        Mesh frequencies of the systems [Hz].
-    frequency : float
-        Mesh frequency [Hz].
-
-    Returns
-    -------
-    tuple of int and float
-        Number of the lower one and the part of the next; outside the range the nearest alone.
-
-    Examples
-    --------
-    >>> blend_weight(np.array([100.0, 200.0]), 125.0)
-    (0, 0.25)
-    """
+    """Find the two neighbouring systems at a speed."""
     last = known.size - 1
     if last == 0:
         return 0, 0.0
@@ -130,26 +79,7 @@ def blend_weight(known: Array, frequency: float) -> tuple[int, float]:
 
 
 def sampled_grid(events: tuple[float, ...], steps: int, samples: int) -> Grid:
-    """Divide the mesh cycle so that events and equally spaced samples are grid points.
-
-    Parameters
-    ----------
-    events : tuple of float
-        Sorted mesh phases beginning with 0.
-    steps : int
-        No step is longer than its inverse.
-    samples : int
-        Equally spaced samples of the cycle.
-
-    Returns
-    -------
-    Grid
-
-    Examples
-    --------
-    >>> sampled_grid((0.0, 0.3), 4, 2).left.tolist()
-    [0.0, 0.15, 0.3, 0.5, 0.75]
-    """
+    """Divide the mesh cycle so that events and equally spaced samples are grid points."""
     jumps = np.array([*events, 1.0])
     marks = np.arange(1, samples) / samples
     apart = np.abs(marks[:, None] - jumps).min(axis=1) > 1e-9
@@ -166,24 +96,7 @@ def sampled_grid(events: tuple[float, ...], steps: int, samples: int) -> Grid:
 
 
 class Tables:
-    """Systems on grids that suit each speed, compiled where they are first needed.
-
-    Parameters
-    ----------
-    systems : tuple of System
-        Of one structure.
-    samples : int
-        Samples of a mesh cycle that are kept.
-    lowest : float
-        Lowest mesh frequency of all [Hz].
-    steps : int, optional
-        Steps per mesh cycle at all speeds; by default as many as each speed needs.
-
-    Raises
-    ------
-    InputError
-        If the step at the lowest mesh frequency is too long.
-    """
+    """Systems on grids that suit each speed, compiled where they are first needed."""
 
     def __init__(
         self, systems: tuple[System, ...], samples: int, lowest: float, steps: int | None
@@ -226,18 +139,7 @@ class Tables:
             )
 
     def steps_at(self, frequency: float) -> int:
-        """Steps per mesh cycle at a mesh frequency.
-
-        Parameters
-        ----------
-        frequency : float
-            Mesh frequency [Hz].
-
-        Returns
-        -------
-        int
-            The same for neighbouring speeds.
-        """
+        """Steps per mesh cycle at a mesh frequency."""
         if self.fixed is not None:
             return int(self.fixed)
         needed = self.rate / (_FINE * frequency)
@@ -245,17 +147,7 @@ class Tables:
         return int(min(np.ceil(_FEWEST * _LADDER**level / 64.0) * 64, _MOST))
 
     def at(self, frequency: float) -> Table:
-        """Tables for a mesh frequency.
-
-        Parameters
-        ----------
-        frequency : float
-            Mesh frequency [Hz].
-
-        Returns
-        -------
-        Table
-        """
+        """Tables for a mesh frequency."""
         steps = self.steps_at(frequency)
         if steps not in self._made:
             self._made[steps] = self._make(steps)
@@ -288,7 +180,7 @@ class Tables:
         return Table(grid, tuple(nodes), programs, kept, _slope_columns(programs[0]), number)
 
 
-def _slope_columns(program: Program) -> NDArray[np.int64]:
+def _slope_columns(program: Program) -> Index:
     code, column, found = program.code, 0, []
     for j in range(int(code[1])):
         along, turning = int(code[4 + 4 * j]), int(code[5 + 4 * j])

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.gear_pair import Driver
-from tribodyn.dynamics.system import Contact, Entry, System
+from tribodyn.dynamics.system import Contact, System
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-
-__all__ = ["Body", "GearMesh", "assemble", "row_of", "shaft_chain", "torsional_stiffness"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)
@@ -198,30 +196,7 @@ def shaft_chain(
 
 
 def row_of(name: str, value: ArrayLike, count: int, unit: str, *, positive: bool = True) -> Array:
-    """Read one value for all discs, or one for each.
-
-    Parameters
-    ----------
-    name : str
-        Argument name for messages.
-    value : float or (count,) array
-        Value in ``unit``.
-    count : int
-        Number of values.
-    unit : str
-        Unit for messages.
-    positive : bool
-        Whether zero is refused too.
-
-    Returns
-    -------
-    (count,) array
-
-    Raises
-    ------
-    InputError
-        If there are neither one nor ``count`` values, or one is out of range.
-    """
+    """Read one value for all discs, or one for each."""
     array = np.asarray(value, dtype=float)
     if array.shape not in ((), (count,)):
         raise InputError(

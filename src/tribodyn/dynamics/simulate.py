@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.dormand_prince import adaptive_engine
 from tribodyn.dynamics.dormand_prince_tolerance import Tolerance
@@ -18,10 +18,7 @@ from tribodyn.dynamics.response import Response, build_response
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["Method", "read_start", "refuse_foreign", "require_cycles", "simulate"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Ways to march over time.
 Method = Literal["rk4", "dormand-prince", "newmark"]
@@ -34,28 +31,7 @@ _CHUNK = 64
 
 
 def read_start(system: System, start: tuple[ArrayLike, ArrayLike]) -> Array:
-    """Check a start and return it as one state.
-
-    Parameters
-    ----------
-    system : System
-    start : (position, velocity)
-        Two (n,) arrays.
-
-    Returns
-    -------
-    (2 n,) array
-
-    Raises
-    ------
-    InputError
-        If the shapes are wrong or a value is not finite.
-
-    Examples
-    --------
-    >>> read_start(System([[1.0]], [[0.0]], [[1.0]], [0.0]), ([1.0], [0.0]))
-    array([1., 0.])
-    """
+    """Check a start and return it as one state."""
     try:
         parts = [np.broadcast_to(np.asarray(part, dtype=float), (system.size,)) for part in start]
         state = np.concatenate(parts)
@@ -79,18 +55,7 @@ def read_start(system: System, start: tuple[ArrayLike, ArrayLike]) -> Array:
 
 
 def require_cycles(cycles: int) -> None:
-    """Raise :class:`InputError` unless ``cycles`` is a whole number of at least one.
-
-    Parameters
-    ----------
-    cycles : int
-        Mesh cycles.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
+    """Raise :class:`InputError` unless ``cycles`` is a whole number of at least one."""
     if int(cycles) != cycles or cycles < 1:
         raise InputError(
             Problem(what=f"cycles = {cycles}", where="argument cycles", why="A whole number >= 1")
@@ -208,20 +173,7 @@ _OWNERS = {
 
 
 def refuse_foreign(method: str, **options: object) -> None:
-    """Refuse options of an engine that is not the one asked for.
-
-    Parameters
-    ----------
-    method : str
-        Name of the engine.
-    **options
-        Values by name; None where nothing was given.
-
-    Raises
-    ------
-    InputError
-        If there is no such engine or an option belongs to another one.
-    """
+    """Refuse options of an engine that is not the one asked for."""
     methods = get_args(Method)
     if method not in methods:
         raise InputError(

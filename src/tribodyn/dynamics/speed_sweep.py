@@ -8,7 +8,7 @@ from threading import Lock
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
@@ -19,10 +19,7 @@ from tribodyn.dynamics.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["speed_sweep"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 #: Mesh cycles of the figures of a motion that does not repeat.
 _IRREGULAR = 64
@@ -174,7 +171,7 @@ def _follow_all(
     return found
 
 
-def _shut(family: SpeedFamily, point: Array, converged: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _shut(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
     """Tell at which speeds an orbit was found that never leaves the driving flanks."""
     number = np.flatnonzero(converged)
     one, none = np.ones(number.size, dtype=np.int64), np.zeros((0, 2 * family.system.size))

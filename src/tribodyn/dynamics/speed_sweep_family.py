@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.coordinates import orbit_coordinates
 from tribodyn.dynamics.ensemble import _fresh_moments
@@ -12,10 +11,7 @@ from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
 from tribodyn.dynamics.start import static_start
-
-__all__ = ["Orbits", "SpeedFamily"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Disturbance of the matrix of a map with dead zones relative to the motion.
 _DISTURBANCE = 1e-6
@@ -25,33 +21,14 @@ _ROUNDS = 3
 
 
 class Orbits:
-    """Periodic orbits of some speeds.
-
-    Parameters
-    ----------
-    point : (p, k) array
-        Reduced vectors [m/s].
-    matrix : (p, k, k) array
-        Derivatives of the maps [-].
-    error : (p,) array
-        Certified distance to the orbit over its size [-].
-    """
+    """Periodic orbits of some speeds."""
 
     def __init__(self, point: Array, matrix: Array, error: Array) -> None:
         self.point, self.matrix, self.error = point, matrix, error
 
 
 class SpeedFamily:
-    """One system, or several over the speed, at the speeds of a sweep.
-
-    Parameters
-    ----------
-    tables : Tables
-    known : (m,) array
-        Mesh frequencies of the systems [Hz].
-    frequency : (p,) array
-        Mesh frequencies of the sweep [Hz].
-    """
+    """One system, or several over the speed, at the speeds of a sweep."""
 
     def __init__(self, tables: Tables, known: Array, frequency: Array) -> None:
         self.tables, self.frequency = tables, frequency
@@ -67,17 +44,7 @@ class SpeedFamily:
         self.balance, self.affine = first.balance, first.affine
 
     def compiled(self, number: int) -> Compiled:
-        """System of one speed on its grid.
-
-        Parameters
-        ----------
-        number : int
-            Which speed.
-
-        Returns
-        -------
-        Compiled
-        """
+        """System of one speed on its grid."""
         key = self._key[number]
         if key not in self._made:
             table = self.tables.at(float(self.frequency[number]))
@@ -86,67 +53,25 @@ class SpeedFamily:
         return self._made[key]
 
     def mapping(self, number: int, periods: int) -> OrbitMap:
-        """Map of one speed over some mesh cycles.
-
-        Parameters
-        ----------
-        number : int
-            Which speed.
-        periods : int
-            Mesh cycles.
-
-        Returns
-        -------
-        OrbitMap
-        """
+        """Map of one speed over some mesh cycles."""
         return OrbitMap(
             self.compiled(number), float(self.frequency[number]), periods, self.coordinates, 16
         )
 
     def start(self, number: int) -> Array:
-        """Reduced vector of the static equilibrium.
-
-        Parameters
-        ----------
-        number : int
-            Which speed.
-
-        Returns
-        -------
-        (k,) array
-        """
+        """Reduced vector of the static equilibrium."""
         y = self.coordinates.reduce(static_start(self.compiled(number)))
         return y if self.balance is None else np.append(y, 0.0)
 
-    def groups(self) -> list[NDArray[np.int64]]:
-        """Speeds that share one program.
-
-        Returns
-        -------
-        list of int arrays
-        """
+    def groups(self) -> list[Index]:
+        """Speeds that share one program."""
         found: dict[tuple[int, int, float], list[int]] = {}
         for number, key in enumerate(self._key):
             found.setdefault(key, []).append(number)
         return [np.array(each, dtype=np.int64) for each in found.values()]
 
     def split(self, y: Array, frequency: Array, periods: int) -> tuple[Array, Array]:
-        """Take reduced vectors apart, as the map of one speed does.
-
-        Parameters
-        ----------
-        y : (lanes, k) array
-            Reduced vectors [m/s].
-        frequency : (lanes,) array
-            Mesh frequencies [Hz].
-        periods : int
-            Mesh cycles of a period.
-
-        Returns
-        -------
-        tuple of (lanes, 2 n) array and (lanes, n) array
-            States and extra forces.
-        """
+        """Take reduced vectors apart, as the map of one speed does."""
         if self.balance is None:
             return self.coordinates.expand(y), np.zeros((len(y), self.system.size))
         _, force, _ = self.balance
@@ -168,18 +93,7 @@ class SpeedFamily:
         return new
 
     def all_at_once(self, tolerance: float) -> Orbits:
-        """Newton's method from rest at all speeds side by side.
-
-        Parameters
-        ----------
-        tolerance : float
-            Certified error that is good enough [-].
-
-        Returns
-        -------
-        Orbits
-            Those that were not found have a large error. Without dead zones all are found at once.
-        """
+        """Newton's method from rest at all speeds side by side."""
         point = np.array([self.start(number) for number in range(self.frequency.size)])
         matrix = np.zeros((*point.shape, point.shape[1]))
         error = np.full(len(point), np.inf)
@@ -188,7 +102,7 @@ class SpeedFamily:
         return Orbits(point, matrix, error)
 
     def _newton(
-        self, group: NDArray[np.int64], point: Array, matrix: Array, error: Array, tolerance: float
+        self, group: Index, point: Array, matrix: Array, error: Array, tolerance: float
     ) -> None:
         size = point.shape[1]
         eye = np.eye(size)
@@ -216,29 +130,10 @@ class SpeedFamily:
                 break
 
     def statistics(
-        self, number: NDArray[np.int64], y: Array, periods: NDArray[np.int64], cycles: int,
+        self, number: Index, y: Array, periods: Index, cycles: int,
         outputs: Array,
     ) -> Array:  # fmt: skip
-        """March motions over their periods and gather their figures.
-
-        Parameters
-        ----------
-        number : (lanes,) int array
-            Speed of each motion.
-        y : (lanes, k) array
-            Reduced vectors [m/s].
-        periods : (lanes,) int array
-            Mesh cycles of each; 0 for motions that do not repeat.
-        cycles : int
-            Mesh cycles of motions that do not repeat.
-        outputs : (o, 2 n) array
-            Linear outputs of the state.
-
-        Returns
-        -------
-        (signals, 5, lanes) array
-            Mean, mean square, minimum, maximum and share off the driving flank.
-        """
+        """March motions over their periods and gather their figures."""
         contacts, others = len(self.system.contacts), self.system.size + len(outputs)
         found = np.empty((2 * contacts + others, 5, number.size))
         for group in self.groups():

@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.march import march
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.orbit_search import newton_step
 from tribodyn.dynamics.speed_sweep_family import Orbits, SpeedFamily
 from tribodyn.errors import ComputationError
-
-__all__ = ["Followed", "follow"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, ComplexArray, Mask
 
 _DISTURBANCE = 1e-6
 _NEWTON = 8
@@ -36,26 +32,12 @@ _IRREGULAR = 0.25
 
 
 class Followed:
-    """What was met at one speed.
-
-    Parameters
-    ----------
-    point : (k,) array
-        Reduced vector at mesh phase 0 [m/s].
-    multipliers : (m,) complex array
-        Floquet multipliers, the largest first; NaN for a motion that does not repeat.
-    error : float
-        Certified distance to the orbit over its size [-].
-    period : int
-        Mesh cycles after which it repeats; 0 if it was not found to.
-    jumped : bool
-        Whether it is not the continuation of the motion at the speed before.
-    """
+    """What was met at one speed."""
 
     def __init__(
         self,
         point: Array,
-        multipliers: NDArray[np.complex128],
+        multipliers: ComplexArray,
         error: float,
         period: int,
         jumped: bool = False,
@@ -113,7 +95,7 @@ def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
 
 class _Follower:
     def __init__(
-        self, family: SpeedFamily, closed: Orbits | None, valid: NDArray[np.bool_],
+        self, family: SpeedFamily, closed: Orbits | None, valid: Mask,
         tolerance: float, patience: int, periods: Sequence[int],
     ) -> None:  # fmt: skip
         self.family, self.closed, self.valid = family, closed, valid
@@ -193,12 +175,7 @@ class _Follower:
         return Followed(y, none, float("nan"), 0, True)
 
     def _arrives(self, mapping: OrbitMap, y: Array, found: Followed, away: float) -> bool:
-        """Tell whether a marched motion goes to the orbit that Newton's method found from it.
-
-        Beside a motion that never repeats Newton's method may find an orbit far away. The way to an
-        orbit is no longer than what a period still changes over one minus the multiplier, and it
-        becomes shorter.
-        """
+        """Tell whether a marched motion goes to the orbit that Newton's method found from it."""
         before = float(np.linalg.norm((found.point - y)[: self._states]))
         size = float(np.linalg.norm(found.point))
         if before <= _SAME * size:
@@ -222,7 +199,7 @@ def follow(
     family: SpeedFamily,
     order: Sequence[int],
     closed: Orbits | None,
-    valid: NDArray[np.bool_],
+    valid: Mask,
     *,
     start: Array | None,
     tolerance: float,
@@ -230,33 +207,7 @@ def follow(
     periods: Sequence[int],
     told: Callable[[], None],
 ) -> list[Followed]:
-    """Follow the motion over the speeds in one direction.
-
-    Parameters
-    ----------
-    family : SpeedFamily
-    order : sequence of int
-        Speeds in the order in which they are passed.
-    closed : Orbits, optional
-        Orbits found beforehand.
-    valid : (p,) bool array
-        Where these are orbits without loss of contact.
-    start : (k,) array, optional
-        Reduced vector from which the first speed is marched.
-    tolerance : float
-        Certified error of an orbit [-].
-    patience : int
-        Mesh cycles that a motion gets to settle after it has left its orbit.
-    periods : sequence of int
-        Numbers of mesh cycles after which motions may repeat.
-    told : function
-        Called after every speed.
-
-    Returns
-    -------
-    list of Followed
-        In the order in which the speeds are passed.
-    """
+    """Follow the motion over the speeds in one direction."""
     one = _Follower(family, closed, valid, tolerance, patience, periods)
     done: list[Followed] = []
     shut = False

@@ -6,16 +6,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array, ComplexArray, Index, Mask
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Jump", "SpeedSweep"]
-
-Array = NDArray[np.float64]
 
 #: Motions whose rms differs by more than this are different motions.
 _DIFFERENT = 1e-3
@@ -93,9 +90,9 @@ class SpeedSweep:
     peak_to_peak: Array = field(repr=False)
     maximum: Array = field(repr=False)
     contact_loss: Array = field(repr=False)
-    period: NDArray[np.int64] = field(repr=False)
-    stable: NDArray[np.bool_] = field(repr=False)
-    floquet_multipliers: NDArray[np.complex128] = field(repr=False)
+    period: Index = field(repr=False)
+    stable: Mask = field(repr=False)
+    floquet_multipliers: ComplexArray = field(repr=False)
     error: Array = field(repr=False)
     position: Array = field(repr=False)
     velocity: Array = field(repr=False)
@@ -110,7 +107,7 @@ class SpeedSweep:
         return 2.0 * np.pi * self.mesh_frequency / self.teeth
 
     @property
-    def differs(self) -> NDArray[np.bool_]:
+    def differs(self) -> Mask:
         """Speeds at which the two directions meet different motions, (p,)."""
         if len(self.directions) < 2:
             return np.zeros(self.mesh_frequency.size, dtype=bool)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.force_law import MeshForce, gear_contacts
 from tribodyn.dynamics.gear_pair import (
     Driver,
@@ -15,12 +16,11 @@ from tribodyn.dynamics.gear_pair import (
     pair_of,
     torques,
 )
-from tribodyn.dynamics.system import Entry, System
+from tribodyn.dynamics.system import System
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
 
-__all__ = ["SPUR6_NAMES", "spur6"]
 
 SPUR6_NAMES = ("pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta")
 

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.load_friction import carried_load, friction_secant, push_with_friction
 from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.program import Nodes
-
-__all__ = ["static_start"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 #: Rounds in which the ramps of a force law open and close; each round goes down the law.
 #: The same number of rounds is enough for the friction that goes with the load.
@@ -19,30 +15,7 @@ _ROUNDS = 50
 
 
 def static_start(compiled: Compiled) -> Array:
-    """State at rest under the mean loads, every contact on its driving flank.
-
-    Parameters
-    ----------
-    compiled : Compiled
-
-    Returns
-    -------
-    (2 n,) array
-        Position and zero velocity; free motions are left at zero.
-
-    Notes
-    -----
-    Contacts with the same compression are the ramps of one force law: of these the one that
-    begins lowest is kept closed, and the others carry where the compression reaches them.
-
-    Examples
-    --------
-    >>> from tribodyn.dynamics import Contact, System
-    >>> from tribodyn.dynamics.march import compile_for
-    >>> pair = Contact([1.0], stiffness=2.0, gap=1.0)
-    >>> static_start(compile_for(System([[1.0]], [[0.0]], [[0.0]], [0.5], [pair]), 1.0, 8))
-    array([1.25, 0.  ])
-    """
+    """State at rest under the mean loads, every contact on its driving flank."""
     nodes = compiled.nodes
     kept = _lowest_of_each_law(nodes)
     carrying = nodes.stiffness
@@ -89,7 +62,7 @@ def _balance(compiled: Compiled, carrying: Array, push: Array) -> Array:
     return np.asarray(scale * np.linalg.lstsq(matrix, scale * force, rcond=1e-12)[0])
 
 
-def _lowest_of_each_law(nodes: Nodes) -> NDArray[np.bool_]:
+def _lowest_of_each_law(nodes: Nodes) -> Mask:
     """Tell which contacts do not share their compression with one that begins lower."""
     count = nodes.stiffness.shape[2]
     places = np.einsum("rs,rsj->j", nodes.weight, nodes.gap)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.orbit_map import OrbitMap
@@ -25,8 +25,7 @@ from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, warn
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["TOLERANCE", "steady_state"]
+from tribodyn.types import Array
 
 #: An orbit whose certified error is above this is not converged.
 TOLERANCE = 1e-8
@@ -133,7 +132,7 @@ def _whole_periods(periods: int | str) -> int | None:
     return int(periods)
 
 
-def _advice(mapping: OrbitMap, apart: NDArray[np.float64]) -> str:
+def _advice(mapping: OrbitMap, apart: Array) -> str:
     """What to do where no stable orbit was found."""
     if np.isinf(apart).any():
         return "The motion itself was marched on and grows without bounds: nothing holds it"
@@ -157,7 +156,7 @@ def _finish(
     orbit: OrbitPoint,
     frequency: float,
     tolerance: float,
-    apart: NDArray[np.float64],
+    apart: Array,
 ) -> Response:
     error = max(orbit.error, float(np.finfo(float).eps))
     converged = bool(np.isfinite(error) and error <= tolerance)

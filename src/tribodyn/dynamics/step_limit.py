@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.lane_parameters import LaneParameters
@@ -18,16 +17,7 @@ from tribodyn.dynamics.load_friction import friction_tangent, push_with_friction
 from tribodyn.dynamics.program import Nodes, compile_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-
-__all__ = [
-    "LIMIT",
-    "largest_rate",
-    "recommended_steps",
-    "refuse_unstable_lanes",
-    "refuse_unstable_step",
-]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.
 LIMIT = 2.7
@@ -43,35 +33,12 @@ _FEWEST, _MOST = 1024, 65536
 
 
 def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLAIN) -> float:
-    """Largest modulus of an eigenvalue of the motion with all contacts closed.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-        The system on its grid.
-    factors : tuple of float
-        Factors of contact stiffness, contact damping and friction [1].
-
-    Returns
-    -------
-    float
-        In rad/s.
-
-    Examples
-    --------
-    >>> from tribodyn.dynamics.program import compile_system
-    >>> system = System([[4.0]], [[0.0]], [[1.0]], [0.0])
-    >>> round(largest_rate(system, compile_system(system, 8)[1]), 6)
-    0.5
-    """
+    """Largest modulus of an eigenvalue of the motion with all contacts closed."""
     rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
     return float(_rates(system, nodes, rows, stages, np.array([factors])).max())
 
 
-def _rates(
-    system: System, nodes: Nodes, rows: NDArray[np.int64], stages: NDArray[np.int64], factors: Array
-) -> Array:
+def _rates(system: System, nodes: Nodes, rows: Index, stages: Index, factors: Array) -> Array:
     """Largest modulus of an eigenvalue for each row of ``factors`` (f, 3), f or 1 rows each."""
     size = system.size
     along, push = nodes.direction[rows, stages], nodes.force_direction[rows, stages]
@@ -98,7 +65,7 @@ def _rates(
     return np.asarray(np.abs(np.linalg.eigvals(state)).max(axis=(-2, -1)))
 
 
-def _stiffest_rows(total: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _stiffest_rows(total: Array) -> tuple[Index, Index]:
     """Rows of the table to examine, spread over the cycle, each where its step is stiffest."""
     spread = np.linspace(0, total.shape[0] - 1, _SAMPLES).astype(np.int64)
     rows = np.unique(np.append(spread, total.max(axis=1).argmax()))
@@ -137,30 +104,7 @@ def refuse_unstable_step(
     factors: tuple[float, ...] = _PLAIN,
     lane: str = "",
 ) -> float:
-    """Return ``omega_max * dt`` of the widest step, or refuse it.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-    grid : Grid
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    factors : tuple of float
-        Factors of contact stiffness, contact damping and friction [1].
-    lane : str
-        Whose step it is, for the message.
-
-    Returns
-    -------
-    float
-        ``omega_max * dt`` [-].
-
-    Raises
-    ------
-    InputError
-        If it exceeds 2.7; the message gives the number of steps that is needed.
-    """
+    """Return ``omega_max * dt`` of the widest step, or refuse it."""
     rate = largest_rate(system, nodes, factors)
     number = rate * float(grid.width.max()) / mesh_frequency
     if number > LIMIT:
@@ -184,32 +128,9 @@ def refuse_unstable_lanes(
     grid: Grid,
     mesh_frequency: Array,
     parameters: LaneParameters | None,
-    lanes: NDArray[np.int64] | None = None,
+    lanes: Index | None = None,
 ) -> float:
-    """Return the largest ``omega_max * dt`` of lanes that scale a system, or refuse it.
-
-    Parameters
-    ----------
-    system : System
-    nodes : Nodes
-    grid : Grid
-    mesh_frequency : float or (all lanes,) array
-        Mesh frequency [Hz].
-    parameters : LaneParameters or None
-        Factors of all lanes.
-    lanes : (m,) int array, optional
-        Lanes that march this system; all by default.
-
-    Returns
-    -------
-    float
-        ``omega_max * dt`` [-], or a number below the limit that it does not exceed.
-
-    Raises
-    ------
-    InputError
-        If it exceeds 2.7; the message names the lane and its factors.
-    """
+    """Return the largest ``omega_max * dt`` of lanes that scale a system, or refuse it."""
     table, beat = _every_lane(mesh_frequency, parameters, lanes)
     longest = float(grid.width.max())
     # Often the stiffest, most damped and slowest of all would still be within the limit.
@@ -234,7 +155,7 @@ def refuse_unstable_lanes(
 
 
 def _every_lane(
-    mesh_frequency: Array, parameters: LaneParameters | None, lanes: NDArray[np.int64] | None
+    mesh_frequency: Array, parameters: LaneParameters | None, lanes: Index | None
 ) -> tuple[Array, Array]:
     """Factors (m, 3) and mesh frequency (m,) of the lanes concerned."""
     beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))

@@ -13,13 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.entry import Entry, read_events
 from tribodyn.dynamics.load_friction import LoadFriction
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["Contact", "Entry", "System"]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)
@@ -79,7 +78,7 @@ class Contact:
         return f"Contact(stiffness={stiffness}, gap={gap}, events={self.events})"
 
 
-def _matrix(name: str, value: ArrayLike) -> NDArray[np.float64]:
+def _matrix(name: str, value: ArrayLike) -> Array:
     matrix = np.array(value, dtype=float, ndmin=2)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise InputError(
@@ -187,7 +186,7 @@ class System:
 _MATRICES = ("mass", "damping", "stiffness")
 
 
-def _refuse_singular(mass: NDArray[np.float64], names: tuple[str, ...]) -> None:
+def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:
     scale = np.sqrt(np.abs(np.diag(mass)))
     empty = np.flatnonzero(scale == 0.0)
     if empty.size or np.linalg.cond(mass / np.outer(scale, scale)) > 1e12:
@@ -215,7 +214,7 @@ def _refuse_singular(mass: NDArray[np.float64], names: tuple[str, ...]) -> None:
         )
 
 
-def _without_inertia(mass: NDArray[np.float64], names: tuple[str, ...]) -> str:
+def _without_inertia(mass: Array, names: tuple[str, ...]) -> str:
     """Name the coordinates that move most in the motion with the least kinetic energy."""
     scale = np.sqrt(np.abs(np.diag(mass)))
     even = 0.5 * (mass + mass.T) / np.outer(scale, scale)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.attempts import Solved
 from tribodyn.ehl.contact_case import ContactCase
@@ -13,24 +12,9 @@ from tribodyn.ehl.discrete import DiscreteContact
 from tribodyn.ehl.domain import Domain, regime_name
 from tribodyn.ehl.solution import LineContactSolution
 
-__all__ = ["assemble", "outlet_position", "pressure_spike"]
-
-Array = NDArray[np.float64]
-
 
 def outlet_position(grid: DiscreteContact) -> float:
-    """Where the pressure ends, between the nodes.
-
-    Parameters
-    ----------
-    grid : DiscreteContact
-        Solution.
-
-    Returns
-    -------
-    float
-        In half widths. The pressure ends quadratically: its square root is continued linearly.
-    """
+    """Where the pressure ends, between the nodes."""
     k = grid.free
     here, before = float(grid.P[k]), float(grid.P[k - 1])
     if not before > here > 0.0:
@@ -40,20 +24,7 @@ def outlet_position(grid: DiscreteContact) -> float:
 
 
 def pressure_spike(grid: DiscreteContact) -> tuple[float, float] | None:
-    """Highest pressure of the local maximum nearest to the outlet, and where it lies.
-
-    Parameters
-    ----------
-    grid : DiscreteContact
-        Solution.
-
-    Returns
-    -------
-    (float, float) or None
-        In Hertz pressures and half widths; ``None`` where the pressure has a single maximum that
-        stays below the Hertz pressure. A single one above it is a spike that has swallowed the
-        rounded maximum of the dry contact.
-    """
+    """Highest pressure of the local maximum nearest to the outlet, and where it lies."""
     P = grid.P
     peaks = np.flatnonzero((P[1:-1] > P[:-2]) & (P[1:-1] >= P[2:])) + 1
     if peaks.size == 0:
@@ -65,21 +36,7 @@ def pressure_spike(grid: DiscreteContact) -> tuple[float, float] | None:
 
 
 def assemble(case: ContactCase, domain: Domain, solved: Solved) -> LineContactSolution:
-    """Solution with its units and its errors.
-
-    Parameters
-    ----------
-    case : ContactCase
-        The contact.
-    domain : Domain
-        Extent of the grid.
-    solved : Solved
-        Verified state.
-
-    Returns
-    -------
-    LineContactSolution
-    """
+    """Solution with its units and its errors."""
     grid, check, scales = solved.outcome.grid, solved.check, case.scales
     assert grid is not None  # a verified outcome has a grid
     films = solved.outcome.films

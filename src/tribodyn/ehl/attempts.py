@@ -14,8 +14,6 @@ from tribodyn.ehl.verification import Verification, verify
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.registry import Registry
 
-__all__ = ["ENGINES", "Engine", "Solved", "solve_problem"]
-
 #: A solver of steady contacts.
 Engine = Callable[[ContactProblem], Outcome]
 
@@ -33,19 +31,7 @@ def _multigrid(problem: ContactProblem) -> Outcome:
 
 
 class Solved:
-    """A verified solution and how it was found.
-
-    Parameters
-    ----------
-    outcome : Outcome
-        Solution.
-    check : Verification
-        How well it meets the equations.
-    method : str
-        Engine that found it.
-    attempts : tuple of str
-        What was tried in vain before.
-    """
+    """A verified solution and how it was found."""
 
     def __init__(
         self, outcome: Outcome, check: Verification, method: str, attempts: tuple[str, ...]
@@ -57,27 +43,7 @@ class Solved:
 
 
 def solve_problem(problem: ContactProblem, method: str) -> Solved:
-    """Solve a contact with one engine, and with all other means where that fails.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        The contact.
-    method : str
-        Name in :data:`ENGINES`.
-
-    Returns
-    -------
-    Solved
-        Verified against the discrete equations.
-
-    Raises
-    ------
-    InputError
-        If no engine has that name.
-    ComputationError
-        With the log of all attempts, if none led to a solution.
-    """
+    """Solve a contact with one engine, and with all other means where that fails."""
     engine = ENGINES[method]
     log: list[str] = []
     for name, trial in _trials(problem, method, engine):

@@ -8,8 +8,6 @@ from typing import Any
 
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["FEWEST", "MOST", "choose_nodes"]
-
 #: Nodes of a grid: fewest and most.
 FEWEST, MOST = 65, 16385
 #: Intervals of the coarsest grid at most, so that halving leads to a grid that is quickly solved.
@@ -17,22 +15,7 @@ _COARSEST = 255
 
 
 def choose_nodes(nodes: Any) -> tuple[int, bool]:
-    """Nodes of the finest grid, and whether coarser ones may do.
-
-    Parameters
-    ----------
-    nodes : "auto" or int
-        Nodes as the user states them.
-
-    Returns
-    -------
-    (int, bool)
-
-    Raises
-    ------
-    InputError
-        If the number is out of range, or its intervals cannot be halved often enough.
-    """
+    """Nodes of the finest grid, and whether coarser ones may do."""
     if isinstance(nodes, str) and nodes == "auto":
         return MOST, True
     if isinstance(nodes, bool) or not isinstance(nodes, Real) or not float(nodes).is_integer():

@@ -16,13 +16,11 @@ from tribodyn.ehl.line_contact import SolverOptions, solve_case
 from tribodyn.ehl.solution import LineContactSolution
 from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
 from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
 
-__all__ = ["LineContactBatch", "solve_line_contacts"]
-
-Array = NDArray[np.float64]
 
 #: Contacts handed to the threads ahead of the one that is collected.
 _AHEAD = 64

@@ -14,7 +14,6 @@ from tribodyn.errors import InputError, Problem, require_between, require_positi
 if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
 
-__all__ = ["ContactCase", "moes_case", "si_case"]
 
 #: Hertz pressure [Pa] up to which the viscosity laws are carried on, far above their data.
 _HIGHEST_PRESSURE = 4.05e9
@@ -28,37 +27,17 @@ _THICKEST = 0.1
 
 @dataclass(frozen=True, eq=False)
 class ContactCase:
-    """A checked contact: its numbers, its units and its oil.
+    """A checked contact: its numbers, its units and its oil."""
 
-    Parameters
-    ----------
-    scales : ContactScales
-        Numbers of the equations.
-    hertz_pressure, half_width : float [Pa], [m]
-        Units of pressure and position; 1 in the dimensionless form.
-    load_per_width : float [N/m]
-        As given, or pi/2 in the dimensionless form.
-    equivalent_radius : float [m]
-        As given, or 1 in the dimensionless form.
-    entrainment_speed : float [m/s]
-        As given, or 1 in the dimensionless form.
-    effective_modulus : float [Pa]
-        As given, or 4 in the dimensionless form.
-    lubricant : Lubricant, optional
-        ``None`` in the dimensionless form.
-    compressible : bool
-        Whether the density rises with pressure.
-    """
-
-    scales: ContactScales
-    hertz_pressure: float
-    half_width: float
-    load_per_width: float
-    equivalent_radius: float
-    entrainment_speed: float
-    effective_modulus: float
-    lubricant: Lubricant | None
-    compressible: bool
+    scales: ContactScales  #: numbers of the equations
+    hertz_pressure: float  #: [Pa]
+    half_width: float  #: [Pa]
+    load_per_width: float  #: as given, or pi/2 in the dimensionless form [N/m]
+    equivalent_radius: float  #: as given, or 1 in the dimensionless form [m]
+    entrainment_speed: float  #: as given, or 1 in the dimensionless form [m/s]
+    effective_modulus: float  #: as given, or 4 in the dimensionless form [Pa]
+    lubricant: Lubricant | None  #: ``None`` in the dimensionless form
+    compressible: bool  #: whether the density rises with pressure
 
 
 def _scalar(name: str, value: Any, unit: str) -> float:
@@ -94,34 +73,7 @@ def si_case(
     viscosity_law: str,
     compressible: bool,
 ) -> ContactCase:
-    """Check a contact in SI.
-
-    Parameters
-    ----------
-    load_per_width : float [N/m]
-        Normal load per face width.
-    equivalent_radius : float [m]
-        Reduced radius of curvature.
-    entrainment_speed : float [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        Oil at the temperature of the inlet.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-    viscosity_law : str
-        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
-    compressible : bool
-        Whether the density rises with pressure.
-
-    Returns
-    -------
-    ContactCase
-
-    Raises
-    ------
-    InputError
-        If a value is out of range; the message names it.
-    """
+    """Check a contact in SI."""
     load = _scalar("load_per_width", load_per_width, "[N/m]")
     radius = _scalar("equivalent_radius", equivalent_radius, "[m]")
     speed = _scalar("entrainment_speed", entrainment_speed, "[m/s]")
@@ -165,30 +117,7 @@ def moes_case(
     viscosity_law: str,
     compressible: bool,
 ) -> ContactCase:
-    """Check a contact that is given by the numbers of Moes.
-
-    Parameters
-    ----------
-    M, L : float
-        Numbers of Moes.
-    pressure_viscosity_index : float
-        Index z of Roelands.
-    pressure_viscosity_coefficient : float [1/Pa]
-        With L and M it gives the Hertz pressure, on which the density depends.
-    viscosity_law : str
-        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
-    compressible : bool
-        Whether the density rises with pressure.
-
-    Returns
-    -------
-    ContactCase
-
-    Raises
-    ------
-    InputError
-        If a value is out of range; the message names it.
-    """
+    """Check a contact that is given by the numbers of Moes."""
     load, viscosity = _scalar("M", M, ""), _scalar("L", L, "")
     index = _scalar("pressure_viscosity_index", pressure_viscosity_index, "")
     alpha = _scalar("pressure_viscosity_coefficient", pressure_viscosity_coefficient, "[1/Pa]")

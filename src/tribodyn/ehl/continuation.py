@@ -7,8 +7,6 @@ from dataclasses import replace
 from tribodyn.ehl.discrete import ContactProblem, DiscreteContact, Outcome
 from tribodyn.ehl.newton_engine import newton_engine
 
-__all__ = ["continue_to"]
-
 #: ``lam`` of the easy contact, its pressure over that asked for, and intervals of the path.
 _EASY_LAM, _EASY_PRESSURE, _INTERVALS = 2.0, 0.05, 512
 #: First step of the path, and the least before giving up.
@@ -16,17 +14,7 @@ _STEP, _LEAST_STEP = 0.125, 1e-3
 
 
 def continue_to(problem: ContactProblem) -> Outcome:
-    """Solve a contact by way of thicker films and lower pressures.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        The contact.
-
-    Returns
-    -------
-    Outcome
-    """
+    """Solve a contact by way of thicker films and lower pressures."""
     n = problem.nodes - 1
     while n % 2 == 0 and n // 2 >= _INTERVALS:
         n //= 2

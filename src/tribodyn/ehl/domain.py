@@ -17,8 +17,6 @@ from tribodyn.ehl.regimes import (
 from tribodyn.ehl.scales import ContactScales
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["INLETS", "Domain", "choose_domain", "estimate_film", "inlet_tail", "regime_name"]
-
 INLETS = ("flooded", "zero")
 
 #: Where the inlet pressure of a cut domain is given by the wedge alone: it starts at least here.
@@ -29,28 +27,14 @@ _GAUSS = np.polynomial.legendre.leggauss(40)
 
 @dataclass(frozen=True)
 class Domain:
-    """Extent of the grid in half widths, and the inlet before it.
-
-    Parameters
-    ----------
-    start, end : float
-        First and last position, in half widths.
-    tail : float
-        Pressure at the first position, in Hertz pressures.
-    tail_load : float
-        Load before the first position, in ``b p_h``.
-    inlet : str
-        ``"flooded"`` or ``"zero"``.
-    stated : bool
-        Whether the user gave the extent.
-    """
+    """Extent of the grid in half widths, and the inlet before it."""
 
     start: float
     end: float
-    tail: float
-    tail_load: float
-    inlet: str
-    stated: bool
+    tail: float  #: pressure at the first position, in Hertz pressures
+    tail_load: float  #: load before the first position, in ``b p_h``
+    inlet: str  #: ``"flooded"`` or ``"zero"``
+    stated: bool  #: whether the user gave the extent
 
 
 def _asymptotes(M: float, L: float) -> dict[str, float]:
@@ -111,27 +95,7 @@ def estimate_film(M: float, L: float, density_ratio: float) -> float:
 
 
 def inlet_tail(start: float, film: float, lam: float) -> tuple[float, float]:
-    """Pressure and load of the flooded wedge before the first position.
-
-    Parameters
-    ----------
-    start : float
-        First position X, in half widths; negative.
-    film : float
-        Central film, in ``b^2/R``.
-    lam : float
-        ``12 eta0 u_e R^2/(b^3 p_h)``, pure.
-
-    Returns
-    -------
-    tuple of float
-        ``int lam d/(d + H_c)^3 dX`` and ``int lam d/(d + H_c)^3 (|X| - |start|) dX`` from minus
-        infinity, with the gap d of the dry contact. Pure.
-
-    Notes
-    -----
-    Gauss with 40 points in ``1/|X|``.
-    """
+    """Pressure and load of the flooded wedge before the first position."""
     reach = abs(start)
     t = (_GAUSS[0] + 1.0) / (2.0 * reach)
     x = 1.0 / t
@@ -142,31 +106,7 @@ def inlet_tail(start: float, film: float, lam: float) -> tuple[float, float]:
 
 
 def choose_domain(domain: Any, inlet: str, film: float, scales: ContactScales) -> Domain:
-    """Extent of the grid: by the film, or as stated.
-
-    Parameters
-    ----------
-    domain : "auto" or (float, float)
-        First and last position, in half widths.
-    inlet : {"flooded", "zero"}
-        Oil everywhere before the contact, or none before the first position.
-    film : float
-        Estimate of the central film, in ``b^2/R``.
-    scales : ContactScales
-        Numbers of the contact.
-
-    Returns
-    -------
-    Domain
-
-    Raises
-    ------
-    InputError
-        If the domain is no pair around the contact, is too short for a flooded inlet or for the
-        film, or the inlet is unknown.
-
-    Source: the part of the wedge that a domain cuts off is ``int 4 lam/X^4``.
-    """
+    """Extent of the grid: by the film, or as stated."""
     if inlet not in INLETS:
         raise InputError(
             Problem(

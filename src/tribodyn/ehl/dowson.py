@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.groups import line_contact_groups
 from tribodyn.ehl.regimes import warn_outside_elastic_piezoviscous
-
-__all__ = ["dowson_1968_minimum"]
+from tribodyn.types import Array
 
 
 def dowson_1968_minimum(
@@ -18,7 +17,7 @@ def dowson_1968_minimum(
     dynamic_viscosity: ArrayLike,
     pressure_viscosity_coefficient: ArrayLike,
     effective_modulus: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Minimum film: ``h/R = 2.65 U^0.7 G^0.54 W^-0.13``.
 
     Parameters

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.groups import line_contact_groups
 from tribodyn.ehl.regimes import warn_outside_elastic_piezoviscous
-
-__all__ = ["dowson_toyoda_central"]
+from tribodyn.types import Array
 
 
 def dowson_toyoda_central(
@@ -18,7 +17,7 @@ def dowson_toyoda_central(
     dynamic_viscosity: ArrayLike,
     pressure_viscosity_coefficient: ArrayLike,
     effective_modulus: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Central film: ``h/R = 3.06 U^0.69 G^0.56 W^-0.10``.
 
     Parameters

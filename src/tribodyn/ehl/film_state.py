@@ -8,17 +8,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     from tribodyn.ehl.solution import LineContactSolution
     from tribodyn.lubricant import Lubricant
-
-__all__ = ["FilmState", "require_same"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +65,7 @@ class FilmState:
     film_thickness: Array = field(repr=False)
     lubricant: Lubricant
     effective_modulus: float
-    index: NDArray[np.int64] | None = field(default=None, repr=False)
+    index: Index | None = field(default=None, repr=False)
     viscosity_law: str = "roelands"
 
     def __post_init__(self) -> None:
@@ -146,7 +143,7 @@ class FilmState:
         return int(np.size(self.contacts))
 
     @property
-    def contacts(self) -> NDArray[np.int64]:
+    def contacts(self) -> Index:
         """Film of each contact."""
         return np.asarray(self.index)
 
@@ -182,20 +179,7 @@ class FilmState:
 
 
 def require_same(name: str, values: Sequence[Any]) -> None:
-    """Refuse values that are not all equal.
-
-    Parameters
-    ----------
-    name : str
-        What they are, for the message.
-    values : sequence
-        At least one.
-
-    Raises
-    ------
-    InputError
-        If one differs from the first.
-    """
+    """Refuse values that are not all equal."""
     other = next((value for value in values if value != values[0]), None)
     if other is not None:
         raise _bad(f"{name} = {values[0]} and {name} = {other}", f"all films have the same {name}")

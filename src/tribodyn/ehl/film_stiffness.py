@@ -12,30 +12,9 @@ from tribodyn.errors import ComputationError, Problem, require_positive, warn
 if TYPE_CHECKING:
     from tribodyn.ehl.solution import LineContactSolution
 
-__all__ = ["central_film_slope", "secant_stiffness", "seed_stiffness", "tangent_stiffness"]
-
 
 def central_film_slope(solution: LineContactSolution) -> float:
-    """Slope ``d h_c / d ln(w)`` of the central film over the logarithm of the load.
-
-    Radius, speed and oil are held; one linear solve with the tangent of the solution. In a
-    flooded contact the pressure of the inlet before the first node follows the load; without
-    that the slope would be 3 to 6 % too steep in gear contacts.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        Converged contact.
-
-    Returns
-    -------
-    float [m]
-
-    Raises
-    ------
-    ComputationError
-        If the linear system cannot be solved.
-    """
+    """Slope ``d h_c / d ln(w)`` of the central film over the logarithm of the load."""
     from tribodyn.ehl.kernel.march_entry import tangent_of_film
 
     grid, inlet = solution._grid, inlet_change(solution)
@@ -63,34 +42,7 @@ def central_film_slope(solution: LineContactSolution) -> float:
 
 
 def tangent_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:
-    """Slope of the load over the central film, ``K = -l dw/dh_c``.
-
-    In series with the compliances of the dry contact and of the teeth it gives the stiffness
-    that slow vibrations meet: ``1/K_total = 1/K_Hertz + 1/K_film`` within 0.2 % of the whole.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        Converged contact.
-    length : float [m]
-        Length of the contact line.
-
-    Returns
-    -------
-    float [N/m]
-        Negative, with a warning, where the film rises with the load.
-
-    Raises
-    ------
-    InputError
-        If the length is not positive.
-    ComputationError
-        If the linear system cannot be solved.
-
-    Valid well below the frequency ``u_e/2b``; above it see
-    :func:`tribodyn.ehl.frequency.frequency_response`.
-    Source: derivative of the discrete equations of the film.
-    """
+    """Slope of the load over the central film, ``K = -l dw/dh_c``."""
     require_positive("length", length, "m")
     slope = central_film_slope(solution)
     load = 0.5 * np.pi * solution.hertz_pressure * solution.half_width
@@ -117,58 +69,14 @@ def _reason(solution: LineContactSolution) -> str:
 
 
 def secant_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:
-    """Sum of the nodal forces over their films, ``K = sum p_i A_i/h_i``.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        Converged contact.
-    length : float [m]
-        Length of the contact line.
-
-    Returns
-    -------
-    float [N/m]
-
-    Raises
-    ------
-    InputError
-        If the length is not positive.
-
-    The only reading of the sum in the first source document that has the unit of a stiffness and
-    does not depend on the grid. It is about a ninth of the tangent in gear contacts, because the
-    film falls much more slowly than the load rises.
-    """
+    """Sum of the nodal forces over their films, ``K = sum p_i A_i/h_i``."""
     require_positive("length", length, "m")
     width = float(solution.position[1] - solution.position[0])
     return float(np.sum(solution.pressure / solution.film)) * width * length
 
 
 def seed_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:
-    """Sum as the first source document prints it; not a stiffness.
-
-    ``K = sum (P_i/H_i) n l R dX/(b dH)`` with dimensionless pressure, film and spacing, and
-    ``dH`` read as the spread of the film in ``|X| <= 1``, which the source leaves open.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        Converged contact.
-    length : float [m]
-        Length of the contact line.
-
-    Returns
-    -------
-    float [m]
-        The unit is the metre, and the value doubles with the number of nodes.
-
-    Raises
-    ------
-    InputError
-        If the length is not positive.
-
-    Source: first source document, equation of the oil film stiffness, as printed.
-    """
+    """Sum as the first source document prints it; not a stiffness."""
     require_positive("length", length, "m")
     grid = solution._grid
     inside = grid.H[np.abs(grid.X) <= 1.0]

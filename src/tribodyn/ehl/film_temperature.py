@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.flash_temperature import blok_flash_temperature
 from tribodyn.errors import ComputationError, Problem
-
-__all__ = ["film_temperature_rise", "film_thermal_resistance"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _MOST_STEPS = 200
 #: Last relative step; Newton's method squares it.
@@ -66,36 +62,7 @@ def film_thermal_resistance(
 
 
 def film_temperature_rise(heat: Callable[[Array], tuple[Array, Array]], resistance: Array) -> Array:
-    """Temperature rise at which the film makes as much heat as is led away.
-
-    Parameters
-    ----------
-    heat : callable
-        ``heat(rise)``: heat per face width [W/m], which falls as the film warms, and its slope
-        over the temperature [W/m/K].
-    resistance : array [K*m/W]
-        Rise per heat.
-
-    Returns
-    -------
-    array [K]
-        Of the shape of the resistance, to 1e-9 of itself or better.
-
-    Raises
-    ------
-    ComputationError
-        If no balance is found.
-
-    Newton's method from the cold side. The heat falls ever more slowly, so that no step passes the
-    balance; should one do so, the interval that is known to hold the balance catches it.
-    Source: balance of energy.
-
-    Examples
-    --------
-    >>> rise = film_temperature_rise(lambda t: (np.exp(-t), -np.exp(-t)), np.array([1.0]))
-    >>> round(float(rise[0]), 9)  # t = exp(-t)
-    0.56714329
-    """
+    """Temperature rise at which the film makes as much heat as is led away."""
     low = np.zeros(np.shape(resistance))
     rise, high = low, resistance * heat(low)[0]
     for _ in range(_MOST_STEPS):

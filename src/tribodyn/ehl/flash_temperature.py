@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.registry import Registry
-
-__all__ = ["FLASH_FACTORS", "STEEL_THERMAL_CONTACT_COEFFICIENT", "blok_flash_temperature"]
+from tribodyn.types import Array
 
 #: Root of conductivity, density and specific heat of gear steel [J/(m^2 K s^0.5)]: the mean
 #: 13.6 N/(mm s^0.5 K) of ISO/TR 13989-1 for conductivities of 41 to 52 W/(m K).
@@ -30,7 +29,7 @@ def blok_flash_temperature(
     thermal_contact_coefficient_2: float = STEEL_THERMAL_CONTACT_COEFFICIENT,
     *,
     kind: str = "maximum",
-) -> NDArray[np.float64]:
+) -> Array:
     """Rise of the surface temperature in a line contact above the temperature of the bodies.
 
     ``1.11 q / [(B_1 sqrt(u_1) + B_2 sqrt(u_2)) sqrt(2 b)]``: the heat parts in such a way that both

@@ -10,20 +10,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.discrete import ContactProblem, DiscreteContact
 from tribodyn.ehl.film_stiffness import central_film_slope
 from tribodyn.ehl.inlet_change import InletChange, inlet_change
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.ehl.solution import LineContactSolution
 
-__all__ = ["film_compliance", "frequency_response"]
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 #: Intervals of the grid of the linearized equations.
 _INTERVALS = 512
@@ -38,40 +35,7 @@ def frequency_response(
     *,
     deflection: Literal["approach", "central"] = "approach",
 ) -> tuple[Array, Array]:
-    """Stiffness and damping of the oil film against small vibrations.
-
-    ``K + i omega C`` is the inverse of :func:`film_compliance`, see there for what counts as
-    deflection. At frequency zero K is the tangent stiffness of the film, and C the damping of
-    the slow limit.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        Converged contact.
-    frequencies : float or array [Hz]
-        Frequencies, zero or positive; in ``u_e/b`` where the contact has no units.
-    length : float [m]
-        Length of the contact line.
-    deflection : {"approach", "central"}
-        What the load is compared with.
-
-    Returns
-    -------
-    (stiffness, damping) : arrays [N/m], [N*s/m]
-        Of the shape of the frequencies.
-
-    Raises
-    ------
-    InputError
-        If a frequency is negative or not finite, the length is not positive, or the deflection
-        is unknown.
-    ComputationError
-        If the steady state is not found again on the coarser grid.
-
-    Valid for amplitudes small against the film. Beyond about a third of ``u_e/2b`` the film
-    follows with a delay of more than a quarter of a period, and its stiffness turns negative:
-    then use the compliance, which stays bounded. Source: linearized transient Reynolds equation.
-    """
+    """Stiffness and damping of the oil film against small vibrations."""
     values = np.asarray(frequencies, dtype=float)
     _, rate = _units(solution, length)
     slow = _SLOW / (2.0 * np.pi) * rate
@@ -91,43 +55,8 @@ def film_compliance(
     length: float = 1.0,
     *,
     deflection: Literal["approach", "central"] = "approach",
-) -> Complex:
-    """Complex compliance of the oil film against a load ``w + dw exp(i omega t)``.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        Converged contact.
-    frequencies : float or array [Hz]
-        Frequencies, zero or positive; in ``u_e/b`` where the contact has no units.
-    length : float [m]
-        Length of the contact line.
-    deflection : {"approach", "central"}
-        ``"approach"``: what the film adds to the mutual approach of the bodies. The approach
-        does work with the load, so that this is what the mesh sees in series with the static
-        compliance of the dry contact: ``-dh_c/dw`` at rest plus the change of the whole
-        compliance, ``d(approach)/dw``, from rest to the frequency. ``"central"``: ``-dh_c/dw``,
-        the film in the centre, which also shows the waves that travel through the contact.
-
-    Returns
-    -------
-    complex or array of complex [m/N]
-        Of the shape of the frequencies; a negative imaginary part dissipates.
-
-    Raises
-    ------
-    InputError
-        If a frequency is negative or not finite, the length is not positive, or the deflection
-        is unknown.
-    ComputationError
-        If the steady state is not found again on the coarser grid.
-
-    Valid for amplitudes small against the film. Above ``u_e/2b`` the oil in the contact is
-    trapped: the compliance of the centre falls to that of the oil's volume,
-    ``h_c rho'/rho dp_c/dw``. The pressure of the inlet before the first node follows load and film
-    at once.
-    Source: linearized transient Reynolds equation.
-    """
+) -> ComplexArray:
+    """ComplexArray compliance of the oil film against a load ``w + dw exp(i omega t)``."""
     values = np.asarray(frequencies, dtype=float)
     require_between("frequencies", values, 0.0, 1e12, "Hz")
     require_positive("length", length, "m")
@@ -162,11 +91,7 @@ def _units(solution: LineContactSolution, length: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class _Linear:
-    """Linearized equations: unknowns P_0, the free pressures and the offset.
-
-    ``steady + i omega squeeze`` times the unknowns is zero in the rows of the mass balance;
-    ``film`` gives the central film.
-    """
+    """Linearized equations: unknowns P_0, the free pressures and the offset."""
 
     steady: Array
     squeeze: Array
@@ -174,10 +99,7 @@ class _Linear:
     inlet: InletChange
 
     def answer(self, omega: float, at_rest: complex | None) -> tuple[complex, complex]:
-        """Change of central film and offset at a unit change of ln(w).
-
-        The inlet follows the load as at rest, and the film as far as it then differs from that.
-        """
+        """Change of central film and offset at a unit change of ln(w)."""
         inlet = self.inlet
         matrix = self.steady + 1j * omega * self.squeeze
         size = matrix.shape[0]

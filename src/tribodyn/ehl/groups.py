@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_positive
-
-__all__ = ["Groups", "line_contact_groups"]
+from tribodyn.types import Array
 
 
 class Groups(NamedTuple):
@@ -18,32 +17,32 @@ class Groups(NamedTuple):
     Parameters
     ----------
     speed : array
-        ``U = eta0 u_e / (E' R)`` with the mean entrainment speed.
-    material : array
+        ``U = eta0 u_e / (E' R)`` with the mean entrainment speed, a pure number.
+    material : array [1]
         ``G = alpha E'``.
-    load : array
+    load : array [1]
         ``W = w / (E' R)``.
     equivalent_radius : array [m]
         Film thickness over dimensionless film ``H = h/R``.
     """
 
-    speed: NDArray[np.float64]
-    material: NDArray[np.float64]
-    load: NDArray[np.float64]
-    equivalent_radius: NDArray[np.float64]
+    speed: Array
+    material: Array
+    load: Array
+    equivalent_radius: Array
 
     @property
-    def moes_load(self) -> NDArray[np.float64]:
+    def moes_load(self) -> Array:
         """Load number of Moes, ``M = W (2 U)^(-1/2)``."""
         return np.asarray(self.load / np.sqrt(2.0 * self.speed))
 
     @property
-    def moes_material(self) -> NDArray[np.float64]:
+    def moes_material(self) -> Array:
         """Material number of Moes, ``L = G (2 U)^(1/4)``."""
         return np.asarray(self.material * (2.0 * self.speed) ** 0.25)
 
     @property
-    def moes_film_unit(self) -> NDArray[np.float64]:
+    def moes_film_unit(self) -> Array:
         """Film [m] at ``H_Moes = (h/R) (2 U)^(-1/2) = 1``."""
         return np.asarray(self.equivalent_radius * np.sqrt(2.0 * self.speed))
 

@@ -6,14 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.lubricant import Lubricant
-
-__all__ = ["ThermalOil", "heated_log_viscosity", "thermal_oil"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: ln of the viscosity [Pa*s] in which all curves of the Roelands law meet, with the sign changed.
 _LOG_POLE = 9.67
@@ -27,21 +23,11 @@ _POLE_TEMPERATURE = 138.0
 
 
 class ThermalOil(NamedTuple):
-    """What the temperature of a film depends on.
+    """What the temperature of a film depends on."""
 
-    Parameters
-    ----------
-    temperature : float [K]
-        Temperature of the oil at the inlet.
-    temperature_viscosity_coefficient : float [1/K]
-        Fall of ln(viscosity) per kelvin at ambient pressure.
-    thermal_conductivity : float [W/m/K]
-        Thermal conductivity.
-    """
-
-    temperature: float
-    temperature_viscosity_coefficient: float
-    thermal_conductivity: float
+    temperature: float  #: temperature of the oil at the inlet [K]
+    temperature_viscosity_coefficient: float  #: [1/K]
+    thermal_conductivity: float  #: thermal conductivity [W/m/K]
 
 
 def heated_log_viscosity(
@@ -102,22 +88,7 @@ def heated_log_viscosity(
 
 
 def thermal_oil(lubricant: Lubricant) -> ThermalOil:
-    """Read the thermal properties of an oil that must have them all.
-
-    Parameters
-    ----------
-    lubricant : Lubricant
-        Oil.
-
-    Returns
-    -------
-    ThermalOil
-
-    Raises
-    ------
-    InputError
-        Naming everything that is missing.
-    """
+    """Read the thermal properties of an oil that must have them all."""
     values = [getattr(lubricant, name) for name in ThermalOil._fields]
     missing = [
         name for name, value in zip(ThermalOil._fields, values, strict=True) if value is None

@@ -10,45 +10,22 @@ from tribodyn.ehl.domain import estimate_film
 if TYPE_CHECKING:
     from tribodyn.ehl.solution import LineContactSolution
 
-__all__ = ["InletChange", "inlet_change"]
 
 #: Change of ln(w) for the slope of the estimated film.
 _STEP = 1e-4
 
 
 class InletChange(NamedTuple):
-    """Derivatives by the logarithm of the load, in ``p_h`` and ``b p_h``; zero without an inlet.
+    """Derivatives by the logarithm of the load, in ``p_h`` and ``b p_h``; zero without an inlet."""
 
-    Parameters
-    ----------
-    pressure : float
-        Of the pressure at the first node.
-    load : float
-        Of the load before the first node.
-    pressure_film, load_film : float
-        Of both by the central film in ``b^2/R``, at a held load.
-    """
-
-    pressure: float
-    load: float
+    pressure: float  #: of the pressure at the first node
+    load: float  #: of the load before the first node
     pressure_film: float
     load_film: float
 
 
 def inlet_change(solution: LineContactSolution) -> InletChange:
-    """How pressure and load of the inlet follow the load, as in the solver.
-
-    The solver takes the central film in the law of the inlet from the formula of Moes.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        Converged contact.
-
-    Returns
-    -------
-    InletChange
-    """
+    """How pressure and load of the inlet follow the load, as in the solver."""
     from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
 
     grid = solution._grid

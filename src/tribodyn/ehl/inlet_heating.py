@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
-
-__all__ = ["inlet_heating_factor"]
+from tribodyn.types import Array
 
 #: Thermal loading beyond which the fit was not made: bearings reach several tens.
 _GREATEST_LOADING = 50.0
@@ -21,7 +20,7 @@ def inlet_heating_factor(
     temperature_viscosity_coefficient: ArrayLike,
     thermal_conductivity: ArrayLike,
     effective_modulus: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Film of a contact whose inlet heats up, over that of the same contact at one temperature.
 
     ``(1 - 13.2 (p_h/E') L^0.42) / [1 + 0.213 (1 + 2.23 |SR|^0.83) L^0.64]`` with the thermal
@@ -99,7 +98,7 @@ def inlet_heating_factor(
     return factor
 
 
-def _check(factor: NDArray[np.float64], loading: float) -> None:
+def _check(factor: Array, loading: float) -> None:
     """Refuse factors that are none, and say where the formula extrapolates."""
     if np.any(factor <= 0.0):
         raise InputError(

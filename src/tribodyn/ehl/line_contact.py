@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.assemble import assemble
 from tribodyn.ehl.attempts import solve_problem
@@ -18,13 +18,11 @@ from tribodyn.ehl.discrete import ContactProblem
 from tribodyn.ehl.domain import choose_domain, estimate_film
 from tribodyn.ehl.solution import LineContactSolution
 from tribodyn.errors import InputError, Problem, require_between, warn
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
 
-__all__ = ["SolverOptions", "solve_case", "solve_line_contact", "solve_line_contact_moes"]
-
-Array = NDArray[np.float64]
 
 #: Heights that are added to the gap, at the nodes or over the position.
 Profile = Callable[[Array], ArrayLike]
@@ -32,38 +30,18 @@ Profile = Callable[[Array], ArrayLike]
 
 @dataclass(frozen=True, eq=False)
 class SolverOptions:
-    """How a contact is solved; see :func:`solve_line_contact`.
+    """How a contact is solved; see :func:`solve_line_contact`."""
 
-    Parameters
-    ----------
-    nodes : "auto" or int
-        Nodes of the grid.
-    method : str
-        Engine.
-    domain : "auto" or (float, float)
-        Extent of the grid, in half widths.
-    inlet : str
-        ``"flooded"`` or ``"zero"``.
-    tolerance, flux_tolerance, film_tolerance : float
-        Relative change of the pressure, flux error, and error of the central film by the grid.
-    levels : int, optional
-        Number of grids.
-    start : LineContactSolution, optional
-        Solution to start from.
-    profile : callable, optional
-        Heights that are added to the gap.
-    """
-
-    nodes: Any = "auto"
-    method: str = "newton"
-    domain: Any = "auto"
-    inlet: str = "flooded"
+    nodes: Any = "auto"  #: nodes of the grid
+    method: str = "newton"  #: engine
+    domain: Any = "auto"  #: extent of the grid, in half widths
+    inlet: str = "flooded"  #: ``"flooded"`` or ``"zero"``
     tolerance: float = 1e-4
     flux_tolerance: float = 3e-4
     film_tolerance: float = 5e-4
-    levels: int | None = None
-    start: LineContactSolution | None = None
-    profile: Profile | None = None
+    levels: int | None = None  #: number of grids
+    start: LineContactSolution | None = None  #: solution to start from
+    profile: Profile | None = None  #: heights that are added to the gap
 
 
 def solve_line_contact(
@@ -259,26 +237,7 @@ def solve_line_contact_moes(
 
 
 def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution:
-    """Solve a checked contact without warnings.
-
-    Parameters
-    ----------
-    case : ContactCase
-        The contact.
-    options : SolverOptions
-        How to solve it.
-
-    Returns
-    -------
-    LineContactSolution
-
-    Raises
-    ------
-    InputError
-        If an option is out of range.
-    ComputationError
-        If no solver finds the solution.
-    """
+    """Solve a checked contact without warnings."""
     require_between("tolerance", options.tolerance, 1e-13, 1e-2)
     require_between("flux_tolerance", options.flux_tolerance, 1e-11, 0.1)
     require_between("film_tolerance", options.film_tolerance, 1e-6, 0.1)

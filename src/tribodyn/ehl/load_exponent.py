@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.groups import line_contact_groups
 from tribodyn.ehl.regimes import (
@@ -12,8 +12,7 @@ from tribodyn.ehl.regimes import (
     rigid_isoviscous,
     rigid_piezoviscous,
 )
-
-__all__ = ["moes_load_exponent"]
+from tribodyn.types import Array
 
 
 def moes_load_exponent(
@@ -23,7 +22,7 @@ def moes_load_exponent(
     dynamic_viscosity: ArrayLike,
     pressure_viscosity_coefficient: ArrayLike,
     effective_modulus: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Slope ``d ln(h)/d ln(w)`` of the central film of :func:`tribodyn.ehl.moes_central`.
 
     Parameters

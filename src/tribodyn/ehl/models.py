@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.dowson import dowson_1968_minimum
 from tribodyn.ehl.dowson_toyoda import dowson_toyoda_central
@@ -20,12 +20,11 @@ from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.registry import Registry
-
-__all__ = ["FILM_MODELS", "FilmFormula", "FilmModel"]
+from tribodyn.types import Array
 
 #: Film [m] from load per width, equivalent radius, entrainment speed, dynamic viscosity,
 #: pressure-viscosity coefficient and effective modulus, in this order and in SI.
-FilmFormula = Callable[..., NDArray[np.float64]]
+FilmFormula = Callable[..., Array]
 
 #: Options of the solved films with their defaults.
 _SOLVED: Mapping[str, Any] = {

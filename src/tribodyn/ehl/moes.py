@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.groups import line_contact_groups
 from tribodyn.ehl.regimes import (
@@ -13,11 +13,10 @@ from tribodyn.ehl.regimes import (
     rigid_piezoviscous,
 )
 from tribodyn.errors import require_positive
+from tribodyn.types import Array
 
-__all__ = ["moes_central", "moes_dimensionless_central"]
 
-
-def moes_dimensionless_central(load: ArrayLike, material: ArrayLike) -> NDArray[np.float64]:
+def moes_dimensionless_central(load: ArrayLike, material: ArrayLike) -> Array:
     """Central film in the numbers of Moes, joining the four asymptotes.
 
     ``H = [(RI^(7/3) + EI^(7/3))^(3s/7) + (RP^(-7/2) + EP^(-7/2))^(-2s/7)]^(1/s)`` with
@@ -66,7 +65,7 @@ def moes_central(
     dynamic_viscosity: ArrayLike,
     pressure_viscosity_coefficient: ArrayLike,
     effective_modulus: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Central film: see :func:`moes_dimensionless_central`.
 
     Parameters

@@ -6,15 +6,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.discrete import ContactProblem, DiscreteContact, Outcome
 from tribodyn.ehl.newton_engine import first_intervals, resample
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["FIVE_LEVELS", "Cycles", "count_grids", "multigrid_engine", "run_multigrid"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: The set-up of the source documents: five grids, the finest with 1024 intervals, pressure to
 #: 1e-4, a starved domain. Keyword arguments of
@@ -50,68 +46,23 @@ _REASONS = {
 
 @dataclass(frozen=True, eq=False)
 class Cycles:
-    """What every V cycle left, on all grids in turn.
+    """What every V cycle left, on all grids in turn."""
 
-    Parameters
-    ----------
-    intervals : (cycles,) array of int
-        Intervals of the grid that the cycle belongs to.
-    change : (cycles,) array
-        Relative change of the pressure in the cycle.
-    flux_error : (cycles,) array
-        Greatest relative deviation of the mass flux from its mean.
-    load_error : (cycles,) array
-        Relative difference between the sum of the pressure and the load.
-    cavity_residual : (cycles,) array
-        Least mass balance per length behind the outlet, zero where none is negative.
-    free : (cycles,) array of int
-        Last node with pressure.
-    """
-
-    intervals: NDArray[np.int64]
-    change: Array
-    flux_error: Array
-    load_error: Array
+    intervals: Index  #: intervals of the grid that the cycle belongs to
+    change: Array  #: relative change of the pressure in the cycle
+    flux_error: Array  #: greatest relative deviation of the mass flux from its mean
+    load_error: Array  #: relative difference between the sum of the pressure and the load
     cavity_residual: Array
-    free: NDArray[np.int64]
+    free: Index  #: last node with pressure
 
     def rates(self, intervals: int) -> Array:
-        """Factor by which each cycle shrinks the change of the one before.
-
-        Parameters
-        ----------
-        intervals : int
-            Intervals of the grid.
-
-        Returns
-        -------
-        array
-            One number less than cycles on that grid.
-        """
+        """Factor by which each cycle shrinks the change of the one before."""
         change = self.change[self.intervals == intervals]
         return np.asarray(change[1:] / change[:-1])
 
 
 def count_grids(intervals: int, levels: int | None = None) -> int:
-    """Grids of the multigrid cycle, the finest included.
-
-    Parameters
-    ----------
-    intervals : int
-        Intervals of the finest grid.
-    levels : int, optional
-        Number of grids that is asked for; else the coarsest grid has 64 intervals or more.
-
-    Returns
-    -------
-    int
-        One where the intervals cannot be halved.
-
-    Raises
-    ------
-    InputError
-        If so many grids and intervals do not fit.
-    """
+    """Grids of the multigrid cycle, the finest included."""
     if levels is None:
         count, m = 1, intervals
         while m % 2 == 0 and m // 2 >= (_USUAL if count > 1 else _FEWEST):
@@ -139,42 +90,12 @@ def count_grids(intervals: int, levels: int | None = None) -> int:
 
 
 def multigrid_engine(problem: ContactProblem) -> Outcome:
-    """Solve a steady contact by full multigrid.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        The contact.
-
-    Returns
-    -------
-    Outcome
-
-    Raises
-    ------
-    InputError
-        If the levels that are asked for and the nodes do not fit.
-    """
+    """Solve a steady contact by full multigrid."""
     return run_multigrid(problem)[0]
 
 
 def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
-    """Solve a steady contact by full multigrid, with the record of its cycles.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        The contact.
-
-    Returns
-    -------
-    (Outcome, Cycles)
-
-    Raises
-    ------
-    InputError
-        If the levels that are asked for and the nodes do not fit.
-    """
+    """Solve a steady contact by full multigrid, with the record of its cycles."""
     from tribodyn.ehl.kernel.multigrid import RECORD, multigrid_solve
 
     n = problem.nodes - 1
@@ -212,11 +133,7 @@ def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
 def _start(
     problem: ContactProblem, coarsest: int, P: Array, H: Array, state: Array
 ) -> tuple[int, str]:
-    """Fill pressure and state on a first grid; its intervals, and what went wrong.
-
-    An earlier solution goes straight into the cycles. Without one the first grid is solved by
-    Newton's method; if that fails, the next finer one.
-    """
+    """Fill pressure and state on a first grid; its intervals, and what went wrong."""
     from tribodyn.ehl.kernel.nested import newton_solve
 
     n, warm = problem.nodes - 1, problem.start is not None

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.discrete import ContactProblem, DiscreteContact, Outcome
-
-__all__ = ["first_intervals", "newton_engine", "resample"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Intervals of the coarsest grid at least, and interval that resolves an inlet, whose length
 #: goes with the film to the power 2/3, between rigid bodies with its root.
@@ -29,18 +25,7 @@ _REASONS = {
 
 
 def first_intervals(problem: ContactProblem) -> int:
-    """Intervals of the grid on which a cold start can resolve the inlet.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        The contact.
-
-    Returns
-    -------
-    int
-        The number of intervals of the finest grid, divided by a power of two.
-    """
+    """Intervals of the grid on which a cold start can resolve the inlet."""
     m = problem.nodes - 1
     width = problem.domain[1] - problem.domain[0]
     least = problem.coarsest or _LEAST
@@ -54,17 +39,7 @@ def first_intervals(problem: ContactProblem) -> int:
 
 
 def newton_engine(problem: ContactProblem) -> Outcome:
-    """Solve a steady contact by multilevel Newton-Krylov.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        The contact.
-
-    Returns
-    -------
-    Outcome
-    """
+    """Solve a steady contact by multilevel Newton-Krylov."""
     from tribodyn.ehl.kernel.nested import newton_solve
 
     n = problem.nodes - 1
@@ -129,20 +104,7 @@ def _record(
 
 
 def resample(grid: DiscreteContact, X: Array) -> tuple[Array, int]:
-    """Pressure of a solution at other positions.
-
-    Parameters
-    ----------
-    grid : DiscreteContact
-        Solution.
-    X : (nodes,) array
-        Positions, in half widths.
-
-    Returns
-    -------
-    (array, int)
-        Pressure in Hertz pressures, and its last free node.
-    """
+    """Pressure of a solution at other positions."""
     P = np.interp(X, grid.X, grid.P, left=0.0, right=0.0)
     P[-1] = 0.0
     positive = np.flatnonzero(P[:-1] > 0.0)

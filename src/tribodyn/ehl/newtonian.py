@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
-
-__all__ = ["log_rate", "newtonian_shear_stress", "stress"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def newtonian_shear_stress(
@@ -56,40 +53,10 @@ def newtonian_shear_stress(
 def log_rate(
     log_viscosity: Array, film_thickness: Array, pressure_gradient: Array, eyring_stress: float
 ) -> Array:
-    """Logarithm of the stress per sliding speed, see :class:`tribodyn.ehl.shear_models.ShearModel`.
-
-    Parameters
-    ----------
-    log_viscosity : array
-        Logarithm of the viscosity in Pa*s.
-    film_thickness : array [m]
-        Distance of the surfaces.
-    pressure_gradient : array [Pa/m]
-        Not used: it does not change the mean stress.
-    eyring_stress : float [Pa]
-        Not used.
-
-    Returns
-    -------
-    array
-        Of the shape of the arguments.
-    """
+    """Logarithm of the stress per sliding speed, see ``ShearModel``."""
     return np.asarray(log_viscosity - np.log(film_thickness))
 
 
 def stress(rate: Array, eyring_stress: float) -> tuple[Array, Array]:
-    """Mean shear stress, and its slope over the logarithm of the rate: both are the rate itself.
-
-    Parameters
-    ----------
-    rate : array [Pa]
-        Sliding speed times the exponential of :func:`log_rate`.
-    eyring_stress : float [Pa]
-        Not used.
-
-    Returns
-    -------
-    (stress, slope) : arrays [Pa]
-        Of the shape of the rate.
-    """
+    """Mean shear stress, and its slope over the logarithm of the rate: both are the rate itself."""
     return rate, rate

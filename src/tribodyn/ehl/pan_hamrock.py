@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.groups import line_contact_groups
 from tribodyn.ehl.regimes import warn_outside_elastic_piezoviscous
-
-__all__ = ["pan_hamrock_central", "pan_hamrock_minimum"]
+from tribodyn.types import Array
 
 
 def pan_hamrock_minimum(
@@ -18,7 +17,7 @@ def pan_hamrock_minimum(
     dynamic_viscosity: ArrayLike,
     pressure_viscosity_coefficient: ArrayLike,
     effective_modulus: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Minimum film: ``h/R = 1.714 U^0.694 G^0.568 W^-0.128``.
 
     Parameters
@@ -80,7 +79,7 @@ def pan_hamrock_central(
     dynamic_viscosity: ArrayLike,
     pressure_viscosity_coefficient: ArrayLike,
     effective_modulus: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Central film: ``h/R = 2.922 U^0.692 G^0.470 W^-0.166``.
 
     Parameters

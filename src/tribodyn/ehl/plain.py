@@ -14,11 +14,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["PlainContact", "PlainOil", "plain_oil"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Reference pressure of the Roelands law [Pa].
 _ROELANDS_PRESSURE = 1.0 / 5.1e-9
@@ -27,41 +24,17 @@ _LEAST_GAP = 1e-10
 
 
 class PlainOil(NamedTuple):
-    """Viscosity and density over pressure, in units of the ambient values and of ``p_h``.
-
-    Parameters
-    ----------
-    law : float
-        0: isoviscous, 1: Barus ``ln eta = a P``, 2: Roelands ``ln eta = a ((1 + P/p0)^z - 1)``.
-    scale : float
-        The number a: pure.
-    reference : float
-        The number p0, pure; the Roelands law is held from -0.3 p0 downwards.
-    exponent : float
-        The number z, pure.
-    growth, saturation : float
-        Density ``1 + growth P/(1 + saturation P)`` of Dowson and Higginson, both pure.
-    """
+    """Viscosity and density over pressure, in units of the ambient values and of ``p_h``."""
 
     law: float
-    scale: float
-    reference: float
-    exponent: float
-    growth: float
+    scale: float  #: the number a: pure
+    reference: float  #: the number p0, pure
+    exponent: float  #: the number z, pure
+    growth: float  #: density ``1 + growth P/(1 + saturation P)`` of Dowson and Higginson, both pure
     saturation: float
 
     def log_viscosity(self, P: Array) -> tuple[Array, Array]:
-        """Logarithm of the viscosity, and its slope over pressure.
-
-        Parameters
-        ----------
-        P : array
-            Pressures, in Hertz pressures.
-
-        Returns
-        -------
-        tuple of two arrays
-        """
+        """Logarithm of the viscosity, and its slope over pressure."""
         if self.law == 0.0:
             return 0.0 * P, 0.0 * P
         if self.law == 1.0:
@@ -72,17 +45,7 @@ class PlainOil(NamedTuple):
         return self.scale * ((1.0 + held) ** self.exponent - 1.0), slope * moving
 
     def density(self, P: Array) -> tuple[Array, Array]:
-        """Density, and its slope over pressure.
-
-        Parameters
-        ----------
-        P : array
-            Pressures, in Hertz pressures.
-
-        Returns
-        -------
-        tuple of two arrays
-        """
+        """Density, and its slope over pressure."""
         below = 1.0 + self.saturation * P
         return 1.0 + self.growth * P / below, self.growth / below**2
 
@@ -135,30 +98,14 @@ def plain_oil(
 
 @dataclass(frozen=True, eq=False)
 class PlainContact:
-    """A line contact on its grid.
+    """A line contact on its grid."""
 
-    Parameters
-    ----------
-    intervals : int
-        Number n of cells; there are n + 1 nodes.
-    domain : tuple of two float
-        First and last node, in half widths.
-    speed_parameter : float
-        ``lambda = 12 eta0 u_e R^2/(b^3 p_h) = 3 pi^2/(8 M^2)``, pure.
-    oil : PlainOil
-        Constants of the oil.
-    load : float
-        What ``dX (P_0/2 + P_1 + ... + P_n)`` must be: pi/2 without a part cut off.
-    inlet_pressure : float
-        ``P_0``, in Hertz pressures.
-    """
-
-    intervals: int
-    domain: tuple[float, float]
-    speed_parameter: float
-    oil: PlainOil
-    load: float = math.pi / 2.0
-    inlet_pressure: float = 0.0
+    intervals: int  #: number n of cells
+    domain: tuple[float, float]  #: first and last node, in half widths
+    speed_parameter: float  #: ``lambda = 12 eta0 u_e R^2/(b^3 p_h) = 3 pi^2/(8 M^2)``, pure
+    oil: PlainOil  #: constants of the oil
+    load: float = math.pi / 2.0  #: what ``dX (P_0/2 + P_1 +
+    inlet_pressure: float = 0.0  #: ``P_0``, in Hertz pressures
     X: Array = field(init=False, repr=False)
     width: float = field(init=False)
     influence: Array = field(init=False, repr=False)
@@ -176,40 +123,11 @@ class PlainContact:
         object.__setattr__(self, "influence", row[np.abs(node[:, None] - node)])
 
     def film(self, P: Array, offset: float) -> Array:
-        """Gap ``H = H0 + X^2/2 - (1/pi) int P ln|X - X'| dX'``.
-
-        Parameters
-        ----------
-        P : array
-            Pressures at the nodes.
-        offset : float
-            H0 in b^2/R.
-
-        Returns
-        -------
-        array
-        """
+        """Gap ``H = H0 + X^2/2 - (1/pi) int P ln|X - X'| dX'``."""
         return np.asarray(offset + 0.5 * self.X**2 + self.influence @ P)
 
     def flux(self, P: Array, H: Array, speed: float = 1.0) -> Array:
-        """Mass flux through the faces: second-order upstream with the wall, central by pressure.
-
-        ``F_{i+1/2} = 1.5 (rho H)_i - 0.5 (rho H)_{i-1} - (eps_i + eps_{i+1})/2 (P_{i+1}-P_i)/dX``
-        with the mobility ``eps = rho H^3/(eta lambda)``; the first face takes the mean of its two
-        nodes.
-
-        Parameters
-        ----------
-        P, H : array
-            Pressures and film at the nodes.
-        speed : float
-            Entrainment speed over that in lambda, pure.
-
-        Returns
-        -------
-        array
-            At the n faces.
-        """
+        """Mass flux through the faces: second-order upstream with the wall, central by pressure."""
         mass = self.oil.density(P)[0] * H
         wall = np.concatenate(([0.5 * (mass[0] + mass[1])], 1.5 * mass[1:-1] - 0.5 * mass[:-2]))
         mobility = self._mobility(P, H)
@@ -223,26 +141,7 @@ class PlainContact:
         squeeze: float = 0.0,
         history: float | Array = 0.0,
     ) -> Array:
-        """What the inner nodes 1 to n - 1 lose: outflow less inflow, plus the growth of the film.
-
-        Zero in the film. In the cavity, where P = 0, it is positive: the gap widens.
-
-        Parameters
-        ----------
-        P, H : array
-            Pressures and film at the nodes.
-        speed : float
-            Entrainment speed over that in lambda, pure.
-        squeeze : float
-            Weight of the present mass in its rate of growth, pure.
-        history : float or array
-            What earlier masses contribute to that rate, pure.
-
-        Returns
-        -------
-        array
-            At the n - 1 inner nodes.
-        """
+        """What the inner nodes lose: outflow less inflow, plus the growth of the film."""
         mass = self.oil.density(P)[0] * H
         return np.asarray(np.diff(self.flux(P, H, speed)) + squeeze * mass[1:-1] - history)
 
@@ -252,20 +151,7 @@ class PlainContact:
         return np.asarray(rho * np.maximum(H, _LEAST_GAP) ** 3 * viscous / self.speed_parameter)
 
     def jacobian(self, P: Array, H: Array) -> tuple[Array, Array]:
-        """Derivatives of the steady residual: by the pressures, a full matrix, and by the offset.
-
-        The film follows the pressures through the influence matrix and the offset one to one.
-
-        Parameters
-        ----------
-        P, H : array
-            Pressures and film at the nodes.
-
-        Returns
-        -------
-        tuple of two arrays
-            Of shapes (n - 1, n + 1) and (n - 1).
-        """
+        """Derivatives of the steady residual by the pressures (full matrix) and the offset."""
         rho, rho_slope = self.oil.density(P)
         mobility = self._mobility(P, H)
         by_gap = np.where(_LEAST_GAP < H, 3.0 * mobility / H, 0.0)
@@ -281,11 +167,7 @@ class PlainContact:
         return full, film.sum(axis=0)
 
     def _by_node(self, P: Array, mass: Array, mobility: Array, conductance: float | Array) -> Array:
-        """Derivatives of the residual i by something at the nodes i - 2 to i + 1: four rows.
-
-        ``mass`` and ``mobility`` are the derivatives by that at the node itself; ``conductance``
-        is the flux per drop of pressure where it is the pressure, else zero.
-        """
+        """Derivatives of the residual i by something at the nodes i - 2 to i + 1: four rows."""
         half_slope = 0.5 * np.diff(P) / self.width
         face = np.zeros((3, len(P) - 1))  # flux through i + 1/2 by the nodes i - 1, i, i + 1
         face[0, 1:], face[1, 1:] = -0.5 * mass[:-2], 1.5 * mass[1:-1]

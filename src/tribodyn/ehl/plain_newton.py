@@ -10,37 +10,21 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.moes import moes_dimensionless_central
 from tribodyn.ehl.plain import PlainContact
 from tribodyn.errors import ComputationError, Problem
-
-__all__ = ["PlainSolution", "dry_start", "solve_plain"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 class PlainSolution(NamedTuple):
-    """A solved contact.
-
-    Parameters
-    ----------
-    P, H : array
-        Pressure in Hertz pressures and film in b^2/R at the nodes.
-    offset : float
-        H0 in b^2/R.
-    free : int
-        Last node of the film; beyond it the pressure is zero.
-    iterations : int
-        Newton steps.
-    """
+    """A solved contact."""
 
     P: Array
     H: Array
-    offset: float
-    free: int
-    iterations: int
+    offset: float  #: H0 in b^2/R
+    free: int  #: last node of the film
+    iterations: int  #: newton steps
 
 
 def dry_start(contact: PlainContact) -> tuple[Array, float]:
@@ -145,27 +129,7 @@ def solve_plain(
     tolerance: float = 1e-10,
     flux_tolerance: float = 1e-9,
 ) -> PlainSolution:
-    """Solve the contact by Newton's method, the outlet by trial.
-
-    Parameters
-    ----------
-    contact : PlainContact
-    start : tuple of array and float, optional
-        Pressure and offset to begin with; by default :func:`dry_start`.
-    tolerance : float
-        Relative change of the pressure at which to stop, pure.
-    flux_tolerance : float
-        Relative deviation of the flux from its mean at which to stop, pure.
-
-    Returns
-    -------
-    PlainSolution
-
-    Raises
-    ------
-    ComputationError
-        If 200 steps do not suffice or the outlet does not settle.
-    """
+    """Solve the contact by Newton's method, the outlet by trial."""
     P, offset = dry_start(contact) if start is None else (start[0].copy(), start[1])
     outlet = _Outlet(int(np.flatnonzero(P)[-1]), contact.intervals - 1)
     for iteration in range(1, 201):

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
-
-__all__ = ["EYRING_STRESS", "log_rate", "ree_eyring_shear_stress", "stress"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Usual Eyring stress of a mineral oil [Pa]. Traction tests give 2 to 10 MPa.
 EYRING_STRESS = 5e6
@@ -90,42 +87,12 @@ def _log_shape(y: Array) -> Array:
 def log_rate(
     log_viscosity: Array, film_thickness: Array, pressure_gradient: Array, eyring_stress: float
 ) -> Array:
-    """Logarithm of ``eta/(tau_0 h) y/sinh(y)``: the sine hyperbolic of the stress per speed.
-
-    Parameters
-    ----------
-    log_viscosity : array
-        Logarithm of the viscosity in Pa*s.
-    film_thickness : array [m]
-        Distance of the surfaces.
-    pressure_gradient : array [Pa/m]
-        Slope of the pressure along the film.
-    eyring_stress : float [Pa]
-        Stress ``tau_0`` from which the oil thins.
-
-    Returns
-    -------
-    array
-        Of the shape of the arguments; held where the exponential would overflow.
-    """
+    """Logarithm of ``eta/(tau_0 h) y/sinh(y)``: the sine hyperbolic of the stress per speed."""
     y = np.abs(film_thickness * pressure_gradient) / (2.0 * eyring_stress)
     logarithm = log_viscosity + _log_shape(y) - np.log(eyring_stress * film_thickness)
     return np.asarray(np.minimum(logarithm, _LARGEST_EXPONENT))
 
 
 def stress(rate: Array, eyring_stress: float) -> tuple[Array, Array]:
-    """Mean shear stress ``tau_0 asinh(rate)``, and its slope over the logarithm of the rate.
-
-    Parameters
-    ----------
-    rate : array
-        Sliding speed times the exponential of :func:`log_rate`, a pure number.
-    eyring_stress : float [Pa]
-        Stress ``tau_0`` from which the oil thins.
-
-    Returns
-    -------
-    (stress, slope) : arrays [Pa]
-        Of the shape of the rate.
-    """
+    """Mean shear stress ``tau_0 asinh(rate)``, and its slope over the logarithm of the rate."""
     return eyring_stress * np.arcsinh(rate), eyring_stress * (rate / np.hypot(1.0, rate))

@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.groups import Groups
 from tribodyn.errors import warn
-
-__all__ = [
-    "elastic_isoviscous",
-    "elastic_piezoviscous",
-    "rigid_isoviscous",
-    "rigid_piezoviscous",
-    "warn_outside_elastic_piezoviscous",
-]
+from tribodyn.types import Array
 
 #: The rigid asymptote is left gradually; below this part of the elastic one the film formulas of
 #: the elastic regime exceed the film that the piezoviscous oil can build between rigid bodies.
 _RIGID_SHARE = 1.0 / 1.5
 
 
-def rigid_isoviscous(load: NDArray[np.float64]) -> NDArray[np.float64]:
+def rigid_isoviscous(load: Array) -> Array:
     """Film where neither the bodies yield nor the oil thickens.
 
     Parameters
@@ -42,7 +34,7 @@ def rigid_isoviscous(load: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(3.0 / load)
 
 
-def elastic_isoviscous(load: NDArray[np.float64]) -> NDArray[np.float64]:
+def elastic_isoviscous(load: Array) -> Array:
     """Film where the bodies yield and the oil does not thicken.
 
     Parameters
@@ -64,7 +56,7 @@ def elastic_isoviscous(load: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(2.621 * load**-0.2)
 
 
-def rigid_piezoviscous(material: NDArray[np.float64]) -> NDArray[np.float64]:
+def rigid_piezoviscous(material: Array) -> Array:
     """Film where the oil thickens and the bodies do not yield.
 
     Parameters
@@ -85,9 +77,7 @@ def rigid_piezoviscous(material: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(1.287 * material ** (2.0 / 3.0))
 
 
-def elastic_piezoviscous(
-    load: NDArray[np.float64], material: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def elastic_piezoviscous(load: Array, material: Array) -> Array:
     """Film where the bodies yield and the oil thickens: the regime of gears.
 
     Parameters

@@ -6,13 +6,10 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_positive
-
-__all__ = ["BEYOND", "RoughnessProfile"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: What lies beyond the ends of a profile.
 BEYOND = ("refuse", "periodic", "level")

@@ -5,26 +5,12 @@ from __future__ import annotations
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.errors import warn
 
-__all__ = ["warn_if_unresolved"]
-
 #: Grid points that a wavelength needs, and the share of the mean square that may lie below.
 _POINTS, _SHARE = 16, 0.02
 
 
 def warn_if_unresolved(profile: RoughnessProfile, spacing: float, stacklevel: int = 2) -> None:
-    """Warn where a grid does not resolve the waves of a profile.
-
-    Parameters
-    ----------
-    profile : RoughnessProfile
-        Heights.
-    spacing : float [m]
-        Distance of the nodes of the grid.
-    stacklevel : int
-        Frames to skip, as in :func:`warnings.warn`.
-
-    The second-order scheme needs 16 to 32 nodes a wavelength.
-    """
+    """Warn where a grid does not resolve the waves of a profile."""
     shortest = _POINTS * spacing
     share = profile.short_wave_share(shortest)
     if share > _SHARE:

@@ -7,17 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.lubricant.roelands import ROELANDS_PRESSURE
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
 
-__all__ = ["LAWS", "ContactScales", "contact_scales", "moes_numbers"]
-
-Array = NDArray[np.float64]
 
 #: Pressure laws of the viscosity, by the number that the kernels know them by.
 LAWS = {"isoviscous": 0.0, "barus": 1.0, "roelands": 2.0}
@@ -28,28 +25,14 @@ _RISE, _LIMIT = 0.6e-9, 1.7e-9
 
 @dataclass(frozen=True, eq=False)
 class ContactScales:
-    """What the equations know of a contact.
-
-    Parameters
-    ----------
-    moes_load, moes_viscosity : float
-        Numbers M and L of Moes.
-    lam : float
-        ``12 eta0 u_e R^2/(b^3 p_h) = 3 pi^2/(8 M^2)``.
-    oil : (6,) array
-        Law, its three numbers, and two of the density; see :mod:`tribodyn.ehl.kernel.oil`.
-    density_ratio : float
-        Density at the Hertz pressure over that at ambient pressure.
-    viscosity_law : str
-        Law that was used: isoviscous where the coefficient is zero.
-    """
+    """What the equations know of a contact."""
 
     moes_load: float
     moes_viscosity: float
-    lam: float
-    oil: Array = field(repr=False)
-    density_ratio: float
-    viscosity_law: str
+    lam: float  #: ``12 eta0 u_e R^2/(b^3 p_h) = 3 pi^2/(8 M^2)``
+    oil: Array = field(repr=False)  #: law, its three numbers, and two of the density
+    density_ratio: float  #: density at the Hertz pressure over that at ambient pressure
+    viscosity_law: str  #: law that was used: isoviscous where the coefficient is zero
 
 
 def moes_numbers(

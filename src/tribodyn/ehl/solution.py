@@ -6,19 +6,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.discrete import DiscreteContact
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
     from tribodyn.lubricant import Lubricant
-
-__all__ = ["LineContactSolution"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,38 +7,22 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import ModelWarning, warn
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["Films", "solved_films"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
 class Films:
-    """Oil films of loaded contacts: arrays of one shape, ``None`` where a model has none.
+    """Oil films of loaded contacts: arrays of one shape, ``None`` where a model has none."""
 
-    Parameters
-    ----------
-    central_film, minimum_film : array [m], optional
-        Film in the centre of the contact, and at its thinnest.
-    film_pressure : array [Pa], optional
-        Greatest pressure in the film.
-    film_stiffness : array [N/m], optional
-        Stiffness of the film over the length of the contact line; the tangent one is negative
-        where the central film rises with the load.
-    solutions : tuple of LineContactSolution
-        Pressure and film of each contact in flat order; empty for formulas.
-    """
-
-    central_film: Array | None
-    minimum_film: Array | None
-    film_pressure: Array | None
-    film_stiffness: Array | None
+    central_film: Array | None  #: [m]
+    minimum_film: Array | None  #: [m]
+    film_pressure: Array | None  #: greatest pressure in the film [Pa]
+    film_stiffness: Array | None  #: stiffness of the film over the length of the contact line [N/m]
     solutions: tuple[Any, ...] = field(default=(), repr=False)
 
 
@@ -57,45 +41,7 @@ def solved_films(
     domain: tuple[float, float] | None,
     progress: Progress = SILENT,
 ) -> Films:
-    """Solve many contacts in threads.
-
-    Parameters
-    ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        Oil at working temperature.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-    length : float [m]
-        Length of the contact line.
-    method : str
-        ``"newton"`` or ``"multigrid"``.
-    stiffness : str
-        ``"tangent"``, ``"secant"`` or ``"seed"``; ``"none"`` gives the tangent stiffness too.
-    nodes : int
-        Nodes of the grid of each contact.
-    inlet : str
-        ``"flooded"`` or ``"zero"``.
-    domain : (float, float), optional
-        First and last position in half widths; as the film demands where absent.
-    progress : Progress
-        Told how many contacts are done.
-
-    Returns
-    -------
-    Films
-        Of the common shape of the arguments.
-
-    Raises
-    ------
-    ComputationError
-        If a contact cannot be solved.
-    """
+    """Solve many contacts in threads."""
     from tribodyn.ehl.batch import solve_line_contacts
 
     tangent = stiffness in ("none", "tangent")

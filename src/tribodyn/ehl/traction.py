@@ -6,17 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.film_state import FilmState
 from tribodyn.ehl.heated_viscosity import heated_log_viscosity
 from tribodyn.ehl.ree_eyring import EYRING_STRESS
 from tribodyn.ehl.shear_models import SHEAR_MODELS, ShearModel
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-
-__all__ = ["FilmShear", "Traction", "film_traction"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Contacts sheared at a time: their arrays stay in the cache of the processor.
 _BLOCK = 32
@@ -51,24 +48,12 @@ class Traction:
 
 @dataclass(frozen=True, eq=False)
 class FilmShear:
-    """Films ready to be sheared at any speed and temperature.
+    """Films ready to be sheared at any speed and temperature."""
 
-    Parameters
-    ----------
-    film : FilmState
-        Solved films.
-    model : ShearModel
-        How the oil shears.
-    eyring_stress : float [Pa]
-        Stress from which the oil thins.
-    film_factor : (contacts,) array, optional
-        Factor on the film of each contact; one by default.
-    """
-
-    film: FilmState
-    model: ShearModel
-    eyring_stress: float = EYRING_STRESS
-    film_factor: Array | None = None
+    film: FilmState  #: solved films
+    model: ShearModel  #: how the oil shears
+    eyring_stress: float = EYRING_STRESS  #: stress from which the oil thins [Pa]
+    film_factor: Array | None = None  #: factor on the film of each contact
 
     @cached_property
     def log_rate(self) -> Array:
@@ -87,20 +72,7 @@ class FilmShear:
     def sliding(
         self, sliding_speed: Array, temperature_rise: Array | None = None
     ) -> tuple[Array, Array]:
-        """Sliding traction per face width, and its slope over the temperature.
-
-        Parameters
-        ----------
-        sliding_speed : (contacts,) array [m/s]
-            Magnitude of the sliding speed.
-        temperature_rise : (contacts,) array, optional [K]
-            Film temperature above that of the inlet.
-
-        Returns
-        -------
-        (traction, slope) : (contacts,) arrays [N/m], [N/m/K]
-            The slope is zero without a temperature rise.
-        """
+        """Sliding traction per face width, and its slope over the temperature."""
         traction, slope = np.zeros(sliding_speed.size), np.zeros(sliding_speed.size)
         for start in range(0, sliding_speed.size, _BLOCK):
             block = slice(start, start + _BLOCK)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.transient_inputs import Series, read_inputs
@@ -23,11 +23,7 @@ from tribodyn.errors import (
     warn,
 )
 from tribodyn.lubricant import Lubricant
-
-__all__ = ["solve_transient_line_contact"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Share of the load near the last node up to which the grid does not cut the film off, and how
 #: often the grid is made longer for it.

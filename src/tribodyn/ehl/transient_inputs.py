@@ -6,14 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array
 
-__all__ = ["Series", "TransientInputs", "read_inputs"]
-
-Array = NDArray[np.float64]
 #: A number, an array over time, or a function of time.
 Series = ArrayLike | Callable[[Array], ArrayLike]
 
@@ -22,32 +20,14 @@ _RAMP = "Begin and end a tooth engagement at 1 to 2 % of the load instead of zer
 
 @dataclass(frozen=True, eq=False)
 class TransientInputs:
-    """Inputs of a transient contact, all of the shape of the time.
+    """Inputs of a transient contact, all of the shape of the time."""
 
-    Parameters
-    ----------
-    time : (m,) array [s]
-        Instants.
-    load : (m,) array [N/m]
-        Load per width, or its estimate where the approach is imposed.
-    radius : (m,) array [m]
-        Reduced radius of curvature.
-    entrainment_speed : (m,) array [m/s]
-        HALF the sum of the surface speeds.
-    approach : (m,) array, optional [m]
-        Imposed approach.
-    travel : (2, m) array [m]
-        Distances that the two surfaces have travelled.
-    profiles : two of RoughnessProfile or None
-        Heights of the two surfaces.
-    """
-
-    time: Array
-    load: Array
-    radius: Array
-    entrainment_speed: Array
-    approach: Array | None
-    travel: Array
+    time: Array  #: instants [s]
+    load: Array  #: load per width, or its estimate where the approach is imposed [N/m]
+    radius: Array  #: reduced radius of curvature [m]
+    entrainment_speed: Array  #: HALF the sum of the surface speeds [m/s]
+    approach: Array | None  #: imposed approach [m]
+    travel: Array  #: distances that the two surfaces have travelled [m]
     profiles: tuple[RoughnessProfile | None, RoughnessProfile | None]
 
 
@@ -62,32 +42,7 @@ def read_inputs(
     surface_speeds: tuple[Series, Series] | None,
     roughness: tuple[RoughnessProfile | None, RoughnessProfile | None],
 ) -> TransientInputs:
-    """Bring all inputs to the time axis and check them.
-
-    Parameters
-    ----------
-    time : (m,) array [s]
-        Instants, rising.
-    load_per_width, equivalent_radius, entrainment_speed
-        Series [N/m], [m], [m/s]: a number, an array over time, or a function of time.
-    impose : {"load", "approach"}
-        What is imposed.
-    approach : series, optional [m]
-        Approach of the bodies.
-    surface_speeds : two series, optional [m/s]
-        Speeds of the two surfaces.
-    roughness : two of RoughnessProfile or None
-        Heights of the two surfaces.
-
-    Returns
-    -------
-    TransientInputs
-
-    Raises
-    ------
-    InputError
-        If a series has another length than the time, is out of range, or contradicts another.
-    """
+    """Bring all inputs to the time axis and check them."""
     t = _time(time)
     load = _series("load_per_width", load_per_width, t)
     radius = _series("equivalent_radius", equivalent_radius, t)

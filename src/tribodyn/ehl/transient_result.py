@@ -6,14 +6,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["TransientLineContact"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,11 +78,11 @@ class TransientLineContact:
     equivalent_radius: Array = field(repr=False)
     entrainment_speed: Array = field(repr=False)
     position: Array = field(repr=False)
-    kept: NDArray[np.int64] = field(repr=False)
+    kept: Index = field(repr=False)
     pressure: Array = field(repr=False)
     film: Array = field(repr=False)
-    iterations: NDArray[np.int64] = field(repr=False)
-    parts: NDArray[np.int64] = field(repr=False)
+    iterations: Index = field(repr=False)
+    parts: Index = field(repr=False)
     balance_error: Array = field(repr=False)
     ruptured: Array = field(repr=False)
     half_width: float

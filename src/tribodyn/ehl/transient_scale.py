@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.regimes import (
     elastic_isoviscous,
@@ -14,38 +13,19 @@ from tribodyn.ehl.regimes import (
     rigid_piezoviscous,
 )
 from tribodyn.lubricant import Lubricant
-
-__all__ = ["ReferenceScale", "flooded_domain", "reference_scale"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)
 class ReferenceScale:
-    """Units of a transient contact: those of its widest dry contact.
+    """Units of a transient contact: those of its widest dry contact."""
 
-    Parameters
-    ----------
-    instant : int
-        Where in the series the dry contact is widest.
-    load : float [N/m]
-        Load there.
-    radius : float [m]
-        Radius there.
-    entrainment_speed : float [m/s]
-        Greatest entrainment speed; where nothing moves, half width over duration.
-    half_width : float [m]
-        Half width of the dry contact.
-    pressure : float [Pa]
-        Hertz pressure.
-    """
-
-    instant: int
-    load: float
-    radius: float
-    entrainment_speed: float
-    half_width: float
-    pressure: float
+    instant: int  #: where in the series the dry contact is widest
+    load: float  #: load there [N/m]
+    radius: float  #: radius there [m]
+    entrainment_speed: float  #: greatest entrainment speed [m/s]
+    half_width: float  #: half width of the dry contact [m]
+    pressure: float  #: hertz pressure [Pa]
 
     @property
     def time(self) -> float:
@@ -102,32 +82,7 @@ def flooded_domain(
     lubricant: Lubricant,
     effective_modulus: float,
 ) -> tuple[float, float]:
-    """Grid that holds the wedge of every instant, in half widths of the reference.
-
-    Parameters
-    ----------
-    scale : ReferenceScale
-        Units.
-    load : (m,) array [N/m]
-        Load per width.
-    radius : (m,) array [m]
-        Reduced radius of curvature.
-    entrainment_speed : (m,) array [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        The oil.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-
-    Returns
-    -------
-    (float, float)
-        First and last position.
-
-    The rule of the steady contact, ``X_in = -(4 + 1.2 H_c)`` in half widths of each instant, up
-    to films of its half width; beyond, where the bodies stay round, 3.6 widths
-    ``sqrt(2 R h)`` of the film, at which the inlet before the grid is known as well.
-    """
+    """Grid that holds the wedge of every instant, in half widths of the reference."""
     moving = np.maximum(entrainment_speed, 1e-6 * scale.entrainment_speed)
     numbers = 2.0 * lubricant.dynamic_viscosity * moving / (effective_modulus * radius)
     M = load / (effective_modulus * radius * np.sqrt(numbers))

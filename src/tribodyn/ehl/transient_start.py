@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.roughness_resolution import warn_if_unresolved
@@ -16,10 +15,7 @@ from tribodyn.ehl.transient_scale import ReferenceScale
 from tribodyn.ehl.transient_state import REASONS, State
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.lubricant import Lubricant
-
-__all__ = ["TransientContact"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Greatest factor of load, speed or curvature from one steady state to the next of the start.
 _RATIO = 1.25
@@ -27,45 +23,19 @@ _RATIO = 1.25
 
 @dataclass(frozen=True, eq=False)
 class TransientContact:
-    """A transient contact in its dimensionless form.
+    """A transient contact in its dimensionless form."""
 
-    Parameters
-    ----------
-    inputs : TransientInputs
-        Checked series.
-    scale : ReferenceScale
-        Units.
-    lubricant : Lubricant
-        The oil.
-    modulus : float [Pa]
-        Effective modulus.
-    nodes : int
-        Nodes of the grid.
-    domain : (float, float)
-        First and last position, in half widths.
-    inlet : {"flooded", "zero"}
-        Condition at the first node.
-    law : str
-        Viscosity law.
-    compressible : bool
-        Whether the density rises with pressure.
-    length : float [m]
-        Distance at which the deflection is zero.
-    limits : (6,) array
-        Limits of the solver, see :func:`tribodyn.ehl.kernel.newton.newton_level`.
-    """
-
-    inputs: TransientInputs
-    scale: ReferenceScale
-    lubricant: Lubricant
-    modulus: float
-    nodes: int
-    domain: tuple[float, float]
-    inlet: str
-    law: str
-    compressible: bool
-    length: float
-    limits: Array
+    inputs: TransientInputs  #: checked series
+    scale: ReferenceScale  #: units
+    lubricant: Lubricant  #: the oil
+    modulus: float  #: effective modulus [Pa]
+    nodes: int  #: nodes of the grid
+    domain: tuple[float, float]  #: first and last position, in half widths
+    inlet: str  #: condition at the first node
+    law: str  #: viscosity law
+    compressible: bool  #: whether the density rises with pressure
+    length: float  #: distance at which the deflection is zero [m]
+    limits: Array  #: limits of the solver, see :func:`tribodyn.ehl.kernel.newton.newton_level`
 
     @property
     def dx(self) -> float:
@@ -103,12 +73,7 @@ class TransientContact:
         return self.inputs.time / self.scale.time
 
     def table(self) -> Array:
-        """Inputs of the kernel over time.
-
-        Returns
-        -------
-        (m, 7) array
-        """
+        """Inputs of the kernel over time."""
         from tribodyn.ehl.kernel.squeeze import (
             CURVATURE,
             FIRST_SHIFT,
@@ -132,12 +97,7 @@ class TransientContact:
         return table
 
     def rough(self) -> tuple[Array, Array, Array]:
-        """Heights of both surfaces for the kernel.
-
-        Returns
-        -------
-        (array, array, (2, 3) array)
-        """
+        """Heights of both surfaces for the kernel."""
         ends = np.zeros((2, 3))
         heights = [np.zeros(0), np.zeros(0)]
         for side, profile in enumerate(self.inputs.profiles):
@@ -151,13 +111,7 @@ class TransientContact:
         return heights[0], heights[1], ends
 
     def check_roughness(self) -> None:
-        """Warn of waves that the grid does not resolve.
-
-        Raises
-        ------
-        InputError
-            If a profile does not cover the contact at all times.
-        """
+        """Warn of waves that the grid does not resolve."""
         b = self.scale.half_width
         for side, profile in enumerate(self.inputs.profiles):
             if isinstance(profile, RoughnessProfile):
@@ -167,19 +121,7 @@ class TransientContact:
                 warn_if_unresolved(profile, self.dx * b, stacklevel=4)
 
     def steady(self) -> State:
-        """Steady state under the inputs of the first instant.
-
-        Returns
-        -------
-        State
-
-        Raises
-        ------
-        InputError
-            If nothing moves, so that there is no steady film.
-        ComputationError
-            If no steady state is found.
-        """
+        """Steady state under the inputs of the first instant."""
         table, imposed = self.table(), self.inputs.approach is None
         if not self.inputs.entrainment_speed[0] > 0.0:
             raise InputError(
@@ -205,17 +147,7 @@ class TransientContact:
         return state
 
     def unloaded(self) -> State:
-        """Film at rest in the open gap of the first instant.
-
-        Returns
-        -------
-        State
-
-        Raises
-        ------
-        InputError
-            If the gap is not open, or the load is imposed.
-        """
+        """Film at rest in the open gap of the first instant."""
         if self.inputs.approach is None:
             raise InputError(
                 Problem(

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-__all__ = ["REASONS", "State"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: What stopped the solver, by its status.
 REASONS = {
@@ -23,16 +18,8 @@ REASONS = {
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """State of the contact at one instant, dimensionless.
-
-    Parameters
-    ----------
-    P, H : (n,) array
-        Pressure and film.
-    numbers : (8,) array
-        Offset, last free node and further numbers of the kernel.
-    """
+    """State of the contact at one instant, dimensionless."""
 
     P: Array
     H: Array
-    numbers: Array
+    numbers: Array  #: offset, last free node and further numbers of the kernel

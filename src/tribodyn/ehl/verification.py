@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.discrete import DiscreteContact
-
-__all__ = ["Verification", "verify"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Least value of the mass balance in the cavity that still counts as none.
 _CAVITY = -1e-8
@@ -19,43 +15,16 @@ _CAVITY = -1e-8
 
 @dataclass(frozen=True)
 class Verification:
-    """How well a solution meets the equations.
-
-    Parameters
-    ----------
-    flux_error : float
-        Greatest relative deviation of the mass flux from its mean, over all faces with pressure.
-    load_error : float
-        Relative difference between the sum of the pressure and the load.
-    cavity_residual : float
-        Least mass balance per length behind the outlet.
-    lowest_pressure : float
-        Least pressure, in Hertz pressures.
-    film_error : float
-        Greatest difference from the film of the pressure, over the least film.
-    """
+    """How well a solution meets the equations."""
 
     flux_error: float
-    load_error: float
-    cavity_residual: float
-    lowest_pressure: float
-    film_error: float
+    load_error: float  #: relative difference between the sum of the pressure and the load
+    cavity_residual: float  #: least mass balance per length behind the outlet
+    lowest_pressure: float  #: least pressure, in Hertz pressures
+    film_error: float  #: greatest difference from the film of the pressure, over the least film
 
     def complaint(self, flux_tolerance: float, load_tolerance: float = 1e-6) -> str:
-        """What is wrong, or nothing.
-
-        Parameters
-        ----------
-        flux_tolerance : float
-            Greatest flux error.
-        load_tolerance : float
-            Greatest load error.
-
-        Returns
-        -------
-        str
-            Empty if the solution holds.
-        """
+        """What is wrong, or nothing."""
         found = []
         if not self.lowest_pressure >= 0.0:
             found.append(f"least pressure {self.lowest_pressure:.3g} p_h is negative")
@@ -93,17 +62,7 @@ def _film(grid: DiscreteContact) -> Array:
 
 
 def verify(grid: DiscreteContact) -> Verification:
-    """Check a solution against the discrete equations, from its pressure alone.
-
-    Parameters
-    ----------
-    grid : DiscreteContact
-        Solution.
-
-    Returns
-    -------
-    Verification
-    """
+    """Check a solution against the discrete equations, from its pressure alone."""
     P, dx, k = grid.P, grid.dx, grid.free
     H = _film(grid)
     law, a, reference, z, rise, bound = grid.oil

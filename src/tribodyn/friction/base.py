@@ -9,15 +9,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.registry import Registry
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.ehl.film_state import FilmState
 
-__all__ = ["LAWS", "FrictionLaw", "TribologicalContact"]
 
 _POSITIVE = (
     ("load_per_width", "N/m"),
@@ -70,12 +69,12 @@ class TribologicalContact:
     3
     """
 
-    load_per_width: NDArray[np.float64]
-    hertz_pressure: NDArray[np.float64]
-    sliding_speed: NDArray[np.float64]
-    entrainment_speed: NDArray[np.float64]
-    slide_to_roll_ratio: NDArray[np.float64]
-    equivalent_radius: NDArray[np.float64]
+    load_per_width: Array
+    hertz_pressure: Array
+    sliding_speed: Array
+    entrainment_speed: Array
+    slide_to_roll_ratio: Array
+    equivalent_radius: Array
     dynamic_viscosity: float
     composite_roughness: float
     film: FilmState | None = field(default=None, repr=False)
@@ -160,11 +159,11 @@ class FrictionLaw:
 
     name: str
     source: str
-    function: Callable[..., NDArray[np.float64]] = field(repr=False)
+    function: Callable[..., Array] = field(repr=False)
     options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     needs_film: bool = False
 
-    def __call__(self, contact: TribologicalContact, **options: Any) -> NDArray[np.float64]:
+    def __call__(self, contact: TribologicalContact, **options: Any) -> Array:
         """Friction coefficient of every contact, never negative.
 
         Parameters

@@ -5,13 +5,12 @@ from __future__ import annotations
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.registry import Registry
-
-__all__ = ["MINIMUM_SLIDING_SPEED", "ROLLING_SPEEDS", "VARIANTS", "benedict_kelly"]
+from tribodyn.types import Array
 
 #: Floor of the sliding speed [m/s]. The formula grows without bound as sliding stops, though only
 #: by some 0.02 per decade. A tooth slides slower than 1 mm/s on a thousandth of its path, so the
@@ -46,7 +45,7 @@ def benedict_kelly(
     variant: str = "benedict-kelly",
     rolling_speed: str = "mean",
     minimum_sliding_speed: float = MINIMUM_SLIDING_SPEED,
-) -> NDArray[np.float64]:
+) -> Array:
     """Friction coefficient by Benedict and Kelly.
 
     ``mu = 0.0127 * 1.13/(1.13 - S) * log10(29700 W' / (eta v_s v_e^2))`` with W' in N/mm, eta in
@@ -113,7 +112,7 @@ def benedict_kelly(
     return coefficient
 
 
-def _roughness_factor(roughness: ArrayLike) -> NDArray[np.float64]:
+def _roughness_factor(roughness: ArrayLike) -> Array:
     """Return 1.13/(1.13 - S), refused where it diverges and warned of where it soars."""
     require_between("roughness", roughness, 0.0, np.inf, "m")
     micrometres = np.asarray(roughness, dtype=float) * 1e6
@@ -139,7 +138,7 @@ def _roughness_factor(roughness: ArrayLike) -> NDArray[np.float64]:
     return factor
 
 
-def _clipped(coefficient: NDArray[np.float64]) -> NDArray[np.float64]:
+def _clipped(coefficient: Array) -> Array:
     """Set negative coefficients to zero and say so."""
     least = float(np.min(coefficient))
     if least < 0.0:
@@ -153,9 +152,7 @@ def _clipped(coefficient: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.maximum(coefficient, 0.0))[()]
 
 
-def _warn_of_slow(
-    coefficient: NDArray[np.float64], rough: NDArray[np.float64], entrainment_speed: ArrayLike
-) -> None:
+def _warn_of_slow(coefficient: Array, rough: Array, entrainment_speed: ArrayLike) -> None:
     """Say where the surfaces creep: the logarithm then grows beyond what rubbing flanks show."""
     greatest, slowest = float(np.max(coefficient)), float(np.min(entrainment_speed))
     # A steep roughness factor has its own warning.
@@ -173,7 +170,7 @@ def _warn_of_slow(
 
 def _law(
     contact: TribologicalContact, *, variant: str, rolling_speed: str, minimum_sliding_speed: float
-) -> NDArray[np.float64]:
+) -> Array:
     return benedict_kelly(
         contact.load_per_width,
         contact.sliding_speed,

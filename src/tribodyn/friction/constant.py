@@ -5,15 +5,13 @@ from __future__ import annotations
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import require_between
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.types import Array
 
-__all__ = ["constant"]
 
-
-def constant(coefficient: float, shape: tuple[int, ...] = ()) -> NDArray[np.float64]:
+def constant(coefficient: float, shape: tuple[int, ...] = ()) -> Array:
     """Same friction coefficient everywhere (Coulomb).
 
     Parameters
@@ -45,7 +43,7 @@ def constant(coefficient: float, shape: tuple[int, ...] = ()) -> NDArray[np.floa
     return np.full(shape, float(coefficient))[()]
 
 
-def _law(contact: TribologicalContact, *, coefficient: float) -> NDArray[np.float64]:
+def _law(contact: TribologicalContact, *, coefficient: float) -> Array:
     return constant(coefficient, np.shape(contact.load_per_width))
 
 

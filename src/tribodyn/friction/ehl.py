@@ -5,7 +5,6 @@ from __future__ import annotations
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.film_state import FilmState
 from tribodyn.ehl.film_temperature import film_temperature_rise, film_thermal_resistance
@@ -16,10 +15,7 @@ from tribodyn.ehl.shear_models import SHEAR_MODELS
 from tribodyn.ehl.traction import FilmShear
 from tribodyn.errors import InputError, Problem, require_positive, warn
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
-
-__all__ = ["ehl"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _GREATEST = 0.2  # friction coefficient that lubricated steel hardly exceeds
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.types import Array
 
-__all__ = ["none"]
 
-
-def none(shape: tuple[int, ...] = ()) -> NDArray[np.float64]:
+def none(shape: tuple[int, ...] = ()) -> Array:
     """No friction: a coefficient of zero.
 
     Parameters
@@ -33,7 +31,7 @@ def none(shape: tuple[int, ...] = ()) -> NDArray[np.float64]:
     return np.zeros(shape)[()]
 
 
-def _law(contact: TribologicalContact) -> NDArray[np.float64]:
+def _law(contact: TribologicalContact) -> Array:
     return none(np.shape(contact.load_per_width))
 
 

@@ -6,33 +6,19 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import warn
-
-__all__ = ["Range", "warn_outside"]
+from tribodyn.types import Array
 
 
 class Range(NamedTuple):
-    """A quantity with the range in which a law was fitted.
+    """A quantity with the range in which a law was fitted."""
 
-    Parameters
-    ----------
-    name : str
-        Name of the quantity.
-    value : array
-        Value in any unit, named below.
-    low, high : float
-        In the same unit. Inclusive limits.
-    unit : str
-        Unit of value and limits.
-    """
-
-    name: str
-    value: NDArray[np.float64]
+    name: str  #: name of the quantity
+    value: Array  #: value in any unit, named below
     low: float
     high: float
-    unit: str = ""
+    unit: str = ""  #: unit of value and limits
 
 
 def warn_outside(law: str, ranges: Iterable[Range], remedy: str) -> None:

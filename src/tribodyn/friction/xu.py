@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.friction.validity import Range, warn_outside
-
-__all__ = ["xu_2007"]
+from tribodyn.types import Array
 
 _B = (
     -8.916465,
@@ -33,7 +32,7 @@ def xu_2007(
     roughness_rms: ArrayLike,
     entrainment_speed: ArrayLike,
     equivalent_radius: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     """Friction coefficient by the regression of Xu on EHL simulations.
 
     ``mu = exp(f) P_h^b2 |SR|^b3 V_e^b6 nu^b7 R^b8`` with
@@ -110,13 +109,13 @@ def xu_2007(
 
 
 def _regression(
-    ratio: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    viscosity: NDArray[np.float64],
-    roughness: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    radius: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    ratio: Array,
+    pressure: Array,
+    viscosity: Array,
+    roughness: Array,
+    speed: Array,
+    radius: Array,
+) -> Array:
     """Evaluate the regression in its own units; an overflow becomes infinity."""
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = _B
     with np.errstate(over="ignore", invalid="ignore"):
@@ -126,7 +125,7 @@ def _regression(
         return np.asarray(np.exp(f) * powers)[()]
 
 
-def _require_plausible(coefficient: NDArray[np.float64], roughness: float) -> None:
+def _require_plausible(coefficient: Array, roughness: float) -> None:
     """Refuse what the double exponential of the roughness makes of a slip in a unit."""
     if np.all(coefficient <= 1.0):  # false for NaN as well
         return
@@ -143,7 +142,7 @@ def _require_plausible(coefficient: NDArray[np.float64], roughness: float) -> No
     )
 
 
-def _law(contact: TribologicalContact) -> NDArray[np.float64]:
+def _law(contact: TribologicalContact) -> Array:
     return xu_2007(
         contact.slide_to_roll_ratio,
         contact.hertz_pressure,

@@ -5,14 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.spur_pair import SpurPair
-
-__all__ = ["hunting_period", "pitch_gap", "run_out_gap", "tooth_positions"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def hunting_period(pair: SpurPair) -> int:

@@ -13,8 +13,6 @@ from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
 from tribodyn.gear.value_checks import body_value_problems
 
-__all__ = ["GearDrawing"]
-
 #: Stands in for a tip diameter that is not known yet; any positive value will do.
 _UNKNOWN_TIP = 1.0
 _SHARED = ("argument normal_module", "argument normal_pressure_angle")
@@ -22,66 +20,24 @@ _SHARED = ("argument normal_module", "argument normal_pressure_angle")
 
 @dataclass(frozen=True, kw_only=True)
 class GearDrawing:
-    """Figures of one gear; ``None`` is what was not given.
+    """Figures of one gear; ``None`` is what was not given."""
 
-    Parameters
-    ----------
-    name : str
-        ``"pinion"`` or ``"wheel"``, the prefix of argument names in messages.
-    teeth : int
-        Number of teeth.
-    normal_module : float
-        Module [m].
-    normal_pressure_angle : float
-        Pressure angle of the rack [rad].
-    profile_shift_coefficient : float
-        Profile shift over the module.
-    rack : BasicRack
-        Generating profile.
-    tip_diameter : float or None
-        Tip diameter [m].
-    tooth_thinning : float or None
-        Reduction of the tooth thickness along the base circle [m].
-    face_width : float
-        Width of the toothing [m].
-    bore_diameter : float
-        Bore diameter [m].
-    mass : float or None
-        Mass [kg].
-    moment_of_inertia : float or None
-        Polar moment of inertia [kg*m^2].
-    modification : FlankModification
-        What the loaded flanks have that the involute has not.
-    """
-
-    name: str
-    teeth: int
-    normal_module: float
-    normal_pressure_angle: float
-    profile_shift_coefficient: float
-    rack: BasicRack
-    tip_diameter: float | None
-    tooth_thinning: float | None
-    face_width: float
-    bore_diameter: float
-    mass: float | None
-    moment_of_inertia: float | None
-    modification: FlankModification
+    name: str  #: ``"pinion"`` or ``"wheel"``, the prefix of argument names in messages
+    teeth: int  #: number of teeth
+    normal_module: float  #: module [m]
+    normal_pressure_angle: float  #: pressure angle of the rack [rad]
+    profile_shift_coefficient: float  #: profile shift over the module
+    rack: BasicRack  #: generating profile
+    tip_diameter: float | None  #: tip diameter [m]
+    tooth_thinning: float | None  #: reduction of the tooth thickness along the base circle [m]
+    face_width: float  #: width of the toothing [m]
+    bore_diameter: float  #: bore diameter [m]
+    mass: float | None  #: mass [kg]
+    moment_of_inertia: float | None  #: polar moment of inertia [kg*m^2]
+    modification: FlankModification  #: what the loaded flanks have that the involute has not
 
     def tooth_form(self, tip_diameter: float, tooth_thinning: float) -> ToothForm:
-        """Tooth form with the figures that were missing.
-
-        Parameters
-        ----------
-        tip_diameter : float
-            Tip diameter [m].
-        tooth_thinning : float
-            Reduction of the tooth thickness along the base circle [m].
-
-        Returns
-        -------
-        ToothForm
-        """
+        """Tooth form with the figures that were missing."""
         return ToothForm(
             teeth=self.teeth,
             normal_module=self.normal_module,
@@ -93,17 +49,7 @@ class GearDrawing:
         )
 
     def spur_gear(self, form: ToothForm) -> SpurGear:
-        """Gear with the body of the drawing.
-
-        Parameters
-        ----------
-        form : ToothForm
-            Completed form.
-
-        Returns
-        -------
-        SpurGear
-        """
+        """Gear with the body of the drawing."""
         return SpurGear(
             teeth=form.teeth,
             normal_module=form.normal_module,
@@ -120,18 +66,7 @@ class GearDrawing:
         )
 
     def named(self, problems: Iterable[Problem]) -> list[Problem]:
-        """Name the gear in the arguments of problems.
-
-        Parameters
-        ----------
-        problems : iterable of Problem
-            Problems of this gear.
-
-        Returns
-        -------
-        list of Problem
-            The same, ``argument teeth`` having become ``argument pinion_teeth``.
-        """
+        """Name the gear in the arguments of problems."""
         return [
             replace(problem, where=problem.where.replace("argument ", f"argument {self.name}_", 1))
             if problem.where not in _SHARED
@@ -140,13 +75,7 @@ class GearDrawing:
         ]
 
     def value_problems(self) -> list[Problem]:
-        """Find the given values that are out of range.
-
-        Returns
-        -------
-        list of Problem
-            Empty when the form can be computed.
-        """
+        """Find the given values that are out of range."""
         tip = _UNKNOWN_TIP if self.tip_diameter is None else self.tip_diameter
         problems = body_value_problems(
             self.face_width, self.bore_diameter, self.mass, self.moment_of_inertia
@@ -160,18 +89,7 @@ class GearDrawing:
         return self.named(problems)
 
     def completed_tip_diameter(self, tip_shortening_coefficient: float) -> float:
-        """Tip diameter as given, else that of the rack's addendum.
-
-        Parameters
-        ----------
-        tip_shortening_coefficient : float
-            Shortening k over the module.
-
-        Returns
-        -------
-        float
-            Tip diameter [m], by default d + 2 m (h_aP* + x - k).
-        """
+        """Tip diameter as given, else that of the rack's addendum."""
         if self.tip_diameter is not None:
             return self.tip_diameter
         addendum = self.rack.addendum_coefficient + self.profile_shift_coefficient

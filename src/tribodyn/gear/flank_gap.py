@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.gear.flank_range import FlankRange, default_relief_length, flank_ranges
 from tribodyn.gear.modification import FlankModification
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.spur_pair import SpurPair
-
-__all__ = ["flank_gap", "lead_gap", "profile_gap"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def _relief(distance: Array, amount: float, length: float, shape: str) -> Array:

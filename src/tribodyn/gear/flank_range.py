@@ -7,8 +7,6 @@ from typing import NamedTuple
 
 from tribodyn.gear.mesh_geometry import MeshGeometry
 
-__all__ = ["FlankRange", "default_relief_length", "flank_ranges"]
-
 #: Contact ratio by which a whole number may be missed.
 _ROUNDING = 1e-9
 

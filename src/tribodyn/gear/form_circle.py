@@ -8,8 +8,6 @@ from collections.abc import Callable
 from tribodyn.gear.involute import involute
 from tribodyn.gear.trochoid import Trochoid
 
-__all__ = ["form_point"]
-
 
 def _bisect(function: Callable[[float], float], low: float, high: float) -> float:
     """Root of a function that is positive at ``low`` and not positive at ``high``."""
@@ -24,35 +22,7 @@ def _bisect(function: Callable[[float], float], low: float, high: float) -> floa
 
 
 def form_point(trochoid: Trochoid, base_radius: float, base_half_angle: float) -> float:
-    """Angle of the fillet's normal at the point where the fillet meets the involute.
-
-    Parameters
-    ----------
-    trochoid : Trochoid
-        Fillet curve.
-    base_radius : float
-        Radius of the base circle [m].
-    base_half_angle : float
-        Half tooth thickness at the base circle as an angle [rad].
-
-    Returns
-    -------
-    float
-        Parameter of the fillet [rad]: the pressure angle when the curves are tangent, more when
-        the gear is undercut and the curves cross.
-
-    Notes
-    -----
-    An undercutting fillet leaves the base circle inside the tooth that the involute bounds and
-    ends outside of it, because the end of the rack flank has then passed the base tangent point
-    and lies on the mirror branch of the involute. One crossing lies between.
-
-    Examples
-    --------
-    >>> curve = Trochoid(20e-3, 20, math.radians(20.0), 0.76e-3, 0.3e-3, 1.74e-3)
-    >>> form_point(curve, 18.79e-3, 0.09) == curve.pressure_angle
-    True
-    """
+    """Angle of the fillet's normal at the point where the fillet meets the involute."""
     if not trochoid.undercuts:
         return trochoid.pressure_angle
 

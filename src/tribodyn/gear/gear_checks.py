@@ -9,8 +9,6 @@ import numpy as np
 from tribodyn.errors import Problem
 from tribodyn.gear.tooth_form import ToothForm
 
-__all__ = ["THIN_TIP", "shape_problems", "shape_warnings"]
-
 #: Tip thickness over the module below which a tip counts as thin (usual limit of hardened gears).
 THIN_TIP = 0.2
 
@@ -58,20 +56,7 @@ def _waist_problem(form: ToothForm) -> Problem | None:
 
 
 def shape_problems(form: ToothForm, bore_diameter: float) -> list[Problem]:
-    """Find the faults that make a gear impossible.
-
-    Parameters
-    ----------
-    form : ToothForm
-        Form whose single values are in range.
-    bore_diameter : float
-        Diameter of the bore [m].
-
-    Returns
-    -------
-    list of Problem
-        Empty when the gear can be made.
-    """
+    """Find the faults that make a gear impossible."""
     found = (_tip_problem(form), _waist_problem(form))
     problems = [problem for problem in found if problem is not None]
     if bore_diameter >= 2.0 * form.root_radius:
@@ -87,18 +72,7 @@ def shape_problems(form: ToothForm, bore_diameter: float) -> list[Problem]:
 
 
 def shape_warnings(form: ToothForm) -> list[tuple[str, str]]:
-    """Find what is possible but near a limit.
-
-    Parameters
-    ----------
-    form : ToothForm
-        Form that has passed :func:`shape_problems`.
-
-    Returns
-    -------
-    list of tuple of str
-        Code and message of each warning.
-    """
+    """Find what is possible but near a limit."""
     found = []
     thickness = form.tip_thickness / form.normal_module
     if thickness < THIN_TIP:

@@ -6,8 +6,6 @@ import math
 
 from tribodyn.errors import ComputationError, require_between
 
-__all__ = ["inverse_involute", "involute"]
-
 
 def involute(angle: float) -> float:
     """Involute function tan(angle) - angle.
@@ -35,34 +33,7 @@ def involute(angle: float) -> float:
 
 
 def inverse_involute(value: float) -> float:
-    """Pressure angle whose involute function is ``value``.
-
-    Parameters
-    ----------
-    value : float
-        Involute polar angle [rad], 0 to 1000.
-
-    Returns
-    -------
-    float
-        Pressure angle [rad].
-
-    Raises
-    ------
-    InputError
-        If the value is negative or not finite.
-
-    Notes
-    -----
-    Newton's method from above. The function is convex and both starting bounds,
-    ``(3 value)^(1/3)`` and ``atan(value + pi/2)``, lie above the root, so that the iteration
-    descends monotonically and cannot fail.
-
-    Examples
-    --------
-    >>> round(math.degrees(inverse_involute(0.014904383867)), 6)
-    20.0
-    """
+    """Pressure angle whose involute function is ``value``."""
     require_between("value", value, 0.0, 1000.0, "rad")
     if value == 0.0:
         return 0.0

@@ -11,8 +11,6 @@ from tribodyn.errors import require_positive
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
 
-__all__ = ["MassProperties", "mass_properties", "section_moments"]
-
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 
 

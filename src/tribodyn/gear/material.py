@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from tribodyn.errors import require_between, require_positive
 
-__all__ = ["Material"]
-
 
 @dataclass(frozen=True)
 class Material:

@@ -9,8 +9,6 @@ from functools import cached_property
 from tribodyn.gear.pair_geometry import operating_pressure_angle, tip_shortening_coefficient
 from tribodyn.gear.tooth_form import ToothForm
 
-__all__ = ["MeshGeometry"]
-
 
 @dataclass(frozen=True)
 class MeshGeometry:

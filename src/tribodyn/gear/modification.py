@@ -10,8 +10,6 @@ from tribodyn.errors import InputError
 from tribodyn.gear.modification_checks import modification_value_problems
 from tribodyn.gear.modification_map import ProfileMap
 
-__all__ = ["FlankModification"]
-
 _LISTS = ("single_pitch_deviation", "cumulative_pitch_deviation", "wear_depth")
 
 

@@ -14,15 +14,6 @@ if TYPE_CHECKING:
     from tribodyn.gear.spur_gear import SpurGear
     from tribodyn.gear.spur_pair import SpurPair
 
-__all__ = [
-    "LARGEST_AMOUNT",
-    "LARGEST_RUN_OUT",
-    "SHAPES",
-    "misalignment_problems",
-    "modification_gear_problems",
-    "modification_pair_problems",
-    "modification_value_problems",
-]
 
 #: How a relief may fall to zero.
 SHAPES = ("linear", "parabolic")
@@ -88,18 +79,7 @@ def _pitch_problems(given: FlankModification) -> list[Problem]:
 
 
 def modification_value_problems(given: FlankModification) -> list[Problem]:
-    """Find the values of a modification that are out of range.
-
-    Parameters
-    ----------
-    given : FlankModification
-        What is to be checked.
-
-    Returns
-    -------
-    list of Problem
-        Empty when all is in range.
-    """
+    """Find the values of a modification that are out of range."""
     problems = []
     for name in _FROM_ZERO:
         problems += _amount(name, getattr(given, name), 0.0, LARGEST_AMOUNT)
@@ -114,20 +94,7 @@ def modification_value_problems(given: FlankModification) -> list[Problem]:
 
 
 def modification_gear_problems(given: FlankModification, teeth: int) -> list[Problem]:
-    """Find what does not belong to a gear of this number of teeth.
-
-    Parameters
-    ----------
-    given : FlankModification
-        Modification of the gear.
-    teeth : int
-        Its number of teeth.
-
-    Returns
-    -------
-    list of Problem
-        Empty when it fits.
-    """
+    """Find what does not belong to a gear of this number of teeth."""
     return [
         Problem(
             what=f"{name} has {len(getattr(given, name))} entries",
@@ -186,34 +153,12 @@ def _map_problems(
 
 
 def misalignment_problems(misalignment: float) -> list[Problem]:
-    """Find whether a misalignment is out of range.
-
-    Parameters
-    ----------
-    misalignment : float [m]
-        Difference of the gap over the common face width.
-
-    Returns
-    -------
-    list of Problem
-        Empty when it is in range.
-    """
+    """Find whether a misalignment is out of range."""
     return _amount("misalignment", misalignment, -LARGEST_AMOUNT, LARGEST_AMOUNT)
 
 
 def modification_pair_problems(pair: SpurPair) -> list[Problem]:
-    """Find modifications that do not fit the flanks that a pair uses.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        Pair whose geometry is in order.
-
-    Returns
-    -------
-    list of Problem
-        Empty when they fit.
-    """
+    """Find modifications that do not fit the flanks that a pair uses."""
     from tribodyn.gear.flank_range import flank_ranges
 
     problems = misalignment_problems(pair.misalignment)

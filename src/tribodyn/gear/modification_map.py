@@ -7,13 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["COORDINATES", "INTERPOLATIONS", "ProfileMap"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: What the profile of a map may be measured over.
 COORDINATES = ("roll_length", "diameter")

@@ -5,14 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import require_between
 from tribodyn.gear.tooth_form import ToothForm
-
-__all__ = ["gear_outline", "half_tooth", "tooth_outline"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def _fillet(form: ToothForm, points: int) -> tuple[Array, Array]:

@@ -11,16 +11,6 @@ from tribodyn.gear.mesh_geometry import MeshGeometry
 from tribodyn.gear.pair_geometry import zero_backlash_center_distance
 from tribodyn.gear.tooth_form import ToothForm
 
-__all__ = [
-    "ROUNDING_TOLERANCE",
-    "ROUNDING_WARNING",
-    "fitting_center_distance",
-    "match_problems",
-    "mesh_problems",
-    "mesh_warnings",
-    "too_close",
-]
-
 #: Negative play over the module that printed, hence rounded, shift coefficients may leave.
 ROUNDING_TOLERANCE = 0.002
 #: Negative play over the module above which the rounding is worth a warning.
@@ -28,20 +18,7 @@ ROUNDING_WARNING = 0.0005
 
 
 def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Problem]:
-    """Find what makes two gears no pair at all.
-
-    Parameters
-    ----------
-    pinion, wheel : ToothForm
-        The two forms.
-    driver : str
-        Name of the driving gear.
-
-    Returns
-    -------
-    list of Problem
-        Empty when they form a pair.
-    """
+    """Find what makes two gears no pair at all."""
     problems = []
     if pinion.teeth > wheel.teeth:
         problems.append(
@@ -150,19 +127,7 @@ def _contact_ratio(mesh: MeshGeometry) -> list[Problem]:
 
 
 def fitting_center_distance(mesh: MeshGeometry) -> float | None:
-    """Least centre distance for the tooth thicknesses of a mesh, where the given one is too small.
-
-    Parameters
-    ----------
-    mesh : MeshGeometry
-        Two forms of the same module and pressure angle, and their centre distance.
-
-    Returns
-    -------
-    float or None
-        Distance at which both flanks touch [m]; None where the given one leaves play, rounding of
-        the shifts forgiven, or where no distance fits.
-    """
+    """Least centre distance for the tooth thicknesses where the given one is too small."""
     pinion, wheel, module = mesh.pinion, mesh.wheel, mesh.pinion.normal_module
     with suppress(InputError):
         if mesh.geometric_backlash >= -ROUNDING_TOLERANCE * module:
@@ -178,19 +143,7 @@ def fitting_center_distance(mesh: MeshGeometry) -> float | None:
 
 
 def too_close(mesh: MeshGeometry, fitting: float) -> Problem:
-    """Say that the flanks interfere and which centre distance fits.
-
-    Parameters
-    ----------
-    mesh : MeshGeometry
-        Two forms and their centre distance.
-    fitting : float
-        From :func:`fitting_center_distance` [m].
-
-    Returns
-    -------
-    Problem
-    """
+    """Say that the flanks interfere and which centre distance fits."""
     return Problem(
         what=f"the centre distance must be at least {fitting * 1e3:.6g} mm for these tooth "
         f"thicknesses; {mesh.center_distance * 1e3:.6g} mm is given and the flanks interfere",
@@ -201,18 +154,7 @@ def too_close(mesh: MeshGeometry, fitting: float) -> Problem:
 
 
 def mesh_problems(mesh: MeshGeometry) -> list[Problem]:
-    """Find the reasons why two gears cannot run together.
-
-    Parameters
-    ----------
-    mesh : MeshGeometry
-        Two forms of the same module and pressure angle, and their centre distance.
-
-    Returns
-    -------
-    list of Problem
-        Empty when they can.
-    """
+    """Find the reasons why two gears cannot run together."""
     fitting = fitting_center_distance(mesh)
     if fitting is not None:
         # All else that is wrong follows from it.
@@ -228,18 +170,7 @@ def mesh_problems(mesh: MeshGeometry) -> list[Problem]:
 
 
 def mesh_warnings(mesh: MeshGeometry) -> list[tuple[str, str]]:
-    """Find what runs but is near a limit.
-
-    Parameters
-    ----------
-    mesh : MeshGeometry
-        Geometry that has passed :func:`mesh_problems`.
-
-    Returns
-    -------
-    list of tuple of str
-        Code and message of each warning.
-    """
+    """Find what runs but is near a limit."""
     found = []
     module, play = mesh.pinion.normal_module, mesh.geometric_backlash
     if play < -ROUNDING_WARNING * module:

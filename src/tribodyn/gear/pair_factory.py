@@ -21,8 +21,6 @@ from tribodyn.gear.pair_geometry import tip_shortening_coefficient, zero_backlas
 from tribodyn.gear.rack import BasicRack
 from tribodyn.gear.spur_pair import SpurPair
 
-__all__ = ["spur_pair"]
-
 
 def _raise_if_any(problems: Iterable[Problem]) -> None:
     distinct = tuple(dict.fromkeys(problems))

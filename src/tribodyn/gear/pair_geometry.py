@@ -7,12 +7,6 @@ import math
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear.involute import inverse_involute, involute
 
-__all__ = [
-    "operating_pressure_angle",
-    "tip_shortening_coefficient",
-    "zero_backlash_center_distance",
-]
-
 
 def operating_pressure_angle(
     teeth_sum: int, normal_module: float, normal_pressure_angle: float, center_distance: float

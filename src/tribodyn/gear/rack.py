@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from tribodyn.errors import InputError, Problem
 
-__all__ = ["BasicRack"]
-
 
 @dataclass(frozen=True)
 class BasicRack:

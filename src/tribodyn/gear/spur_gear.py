@@ -12,8 +12,6 @@ from tribodyn.gear.modification_checks import modification_gear_problems
 from tribodyn.gear.tooth_form import ToothForm
 from tribodyn.gear.value_checks import body_value_problems
 
-__all__ = ["SpurGear"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class SpurGear(ToothForm):

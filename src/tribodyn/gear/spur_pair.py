@@ -10,8 +10,6 @@ from tribodyn.gear.modification_checks import modification_pair_problems
 from tribodyn.gear.pair_checks import match_problems, mesh_problems, mesh_warnings
 from tribodyn.gear.spur_gear import SpurGear
 
-__all__ = ["SpurPair"]
-
 
 @dataclass(frozen=True)
 class SpurPair(MeshGeometry):

@@ -17,8 +17,6 @@ from tribodyn.gear.rack import BasicRack
 from tribodyn.gear.trochoid import Trochoid
 from tribodyn.gear.value_checks import form_value_problems
 
-__all__ = ["ToothForm"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class ToothForm:

@@ -13,43 +13,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["Trochoid"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)
 class Trochoid:
-    """Envelope of the rack's tip round in the frame of the gear.
+    """Envelope of the rack's tip round in the frame of the gear."""
 
-    Parameters
-    ----------
-    reference_radius : float
-        Radius of the reference circle [m].
-    teeth : int
-        Number of teeth.
-    pressure_angle : float
-        Pressure angle of the rack [rad].
-    tip_radius : float
-        Radius of the rack's tip round [m].
-    center_offset : float
-        Distance of the centre of the round from the centre line of the rack tooth [m].
-    center_depth : float
-        Depth of the centre of the round below the reference circle [m], negative above it.
-
-    Notes
-    -----
-    Source: envelope of a circle carried by a rolling line; Litvin and Fuentes, Gear Geometry and
-    Applied Theory, 2004, chapter 6.
-    """
-
-    reference_radius: float
-    teeth: int
-    pressure_angle: float
-    tip_radius: float
-    center_offset: float
+    reference_radius: float  #: radius of the reference circle [m]
+    teeth: int  #: number of teeth
+    pressure_angle: float  #: pressure angle of the rack [rad]
+    tip_radius: float  #: radius of the rack's tip round [m]
+    center_offset: float  #: [m]
     center_depth: float
 
     def _reach(self, normal_angle: Any) -> Array:
@@ -57,36 +33,14 @@ class Trochoid:
         return np.asarray(self.center_depth / np.sin(normal_angle) + self.tip_radius, dtype=float)
 
     def radius(self, normal_angle: Any) -> Array:
-        """Radius of the fillet.
-
-        Parameters
-        ----------
-        normal_angle : float or array
-            Angle of the common normal [rad], pressure angle to pi/2, any shape.
-
-        Returns
-        -------
-        array
-            Distance from the gear axis [m], same shape.
-        """
+        """Radius of the fillet."""
         reach = self._reach(normal_angle)
         across = reach * np.cos(normal_angle)
         radius: Array = np.hypot(across, self.reference_radius - reach * np.sin(normal_angle))
         return radius
 
     def half_tooth_angle(self, normal_angle: Any) -> Array:
-        """Angle between the tooth axis and the fillet.
-
-        Parameters
-        ----------
-        normal_angle : float or array
-            Angle of the common normal [rad], pressure angle to pi/2, any shape.
-
-        Returns
-        -------
-        array
-            Half of the angle that the tooth covers at this point [rad], same shape.
-        """
+        """Angle between the tooth axis and the fillet."""
         reach = self._reach(normal_angle)
         rolled = self.center_depth / np.tan(normal_angle) - self.center_offset
         from_space = np.arctan2(
@@ -96,18 +50,7 @@ class Trochoid:
         return half
 
     def squared_radius_slope(self, normal_angle: Any) -> Array:
-        """Derivative of the squared radius by the angle of the normal.
-
-        Parameters
-        ----------
-        normal_angle : float or array
-            Angle of the common normal [rad], any shape.
-
-        Returns
-        -------
-        array
-            Slope [m^2/rad], same shape; negative, because the fillet rises from pi/2 downwards.
-        """
+        """Derivative of the squared radius by the angle of the normal."""
         pull = self.reference_radius * self.tip_radius + (
             self._reach(normal_angle) * self.center_depth / np.sin(normal_angle) ** 2
         )

@@ -10,7 +10,6 @@ from tribodyn.errors import Problem
 if TYPE_CHECKING:
     from tribodyn.gear.tooth_form import ToothForm
 
-__all__ = ["body_value_problems", "form_value_problems"]
 
 _NO_LIMIT = math.inf
 
@@ -96,18 +95,7 @@ def _root(form: ToothForm) -> list[Problem]:
 
 
 def form_value_problems(form: ToothForm) -> list[Problem]:
-    """Find the values of a tooth form that are out of range.
-
-    Parameters
-    ----------
-    form : ToothForm
-        Form to check.
-
-    Returns
-    -------
-    list of Problem
-        Empty when the form can be computed.
-    """
+    """Find the values of a tooth form that are out of range."""
     low, high = math.radians(10.0), math.radians(30.0)
     slack = 1e-12
     problems = [
@@ -142,24 +130,7 @@ def form_value_problems(form: ToothForm) -> list[Problem]:
 def body_value_problems(
     face_width: float, bore_diameter: float, mass: float | None, moment_of_inertia: float | None
 ) -> list[Problem]:
-    """Find the values of a gear body that are out of range.
-
-    Parameters
-    ----------
-    face_width : float
-        Width of the toothing [m].
-    bore_diameter : float
-        Diameter of the bore [m], zero for a solid gear.
-    mass : float or None
-        Given mass [kg].
-    moment_of_inertia : float or None
-        Given moment of inertia [kg*m^2].
-
-    Returns
-    -------
-    list of Problem
-        Empty when all is in range.
-    """
+    """Find the values of a gear body that are out of range."""
     problems = _positive("face_width", face_width)
     problems += _out_of_range(
         "bore_diameter", bore_diameter, 0.0, _NO_LIMIT, "mm", 1e3, open_low=False

@@ -5,8 +5,6 @@ from __future__ import annotations
 from tribodyn.errors import require_positive
 from tribodyn.registry import Registry
 
-__all__ = ["BASE_OILS", "agma_925_coefficient"]
-
 #: Base oil -> (factor, exponent) of ``alpha = factor * eta^exponent`` [mm^2/N, mPa*s].
 BASE_OILS: Registry[tuple[float, float]] = Registry("base oil")
 BASE_OILS.register("mineral")((0.010471, 0.1348))

@@ -6,8 +6,6 @@ import math
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 
-__all__ = ["MARGIN", "TemperaturePoint", "walther_slope", "walther_viscosity"]
-
 #: One measured point: temperature [K] and kinematic viscosity [m^2/s].
 TemperaturePoint = tuple[float, float]
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
 from tribodyn.lubricant.growth import exponential_growth
-
-__all__ = ["barus_viscosity"]
+from tribodyn.types import Array
 
 
 def barus_viscosity(
     pressure: ArrayLike, dynamic_viscosity: float, pressure_viscosity_coefficient: float
-) -> NDArray[np.float64]:
+) -> Array:
     """Viscosity under pressure by Barus: ``eta0 exp(alpha p)``.
 
     Parameters

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
-
-__all__ = ["dowson_higginson_density"]
+from tribodyn.types import Array
 
 _RISE = 0.6e-9  # [1/Pa], compressibility at ambient pressure
 _LIMIT = 1.7e-9  # [1/Pa], bounds the rise to 0.6/1.7 = 35 %
 
 
-def dowson_higginson_density(pressure: ArrayLike, density: float) -> NDArray[np.float64]:
+def dowson_higginson_density(pressure: ArrayLike, density: float) -> Array:
     """Density under pressure: ``rho0 [1 + 0.6e-9 p / (1 + 1.7e-9 p)]`` with p in Pa.
 
     Parameters

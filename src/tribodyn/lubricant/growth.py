@@ -3,45 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["exponential_growth"]
+from tribodyn.types import Array
 
 #: exp(700) is the last decade that a double holds; no liquid comes near it.
 _LARGEST_EXPONENT = 700.0
 
 
-def exponential_growth(exponent: ArrayLike, pressure: ArrayLike, law: str) -> NDArray[np.float64]:
-    """Factor exp(exponent) by which pressure raises the viscosity.
-
-    Parameters
-    ----------
-    exponent : float or array
-        Natural logarithm of the viscosity over its value at ambient pressure.
-    pressure : float or array [Pa]
-        Pressure, for the message.
-    law : str
-        Name of the law, for the message.
-
-    Returns
-    -------
-    float or array
-        Same shape as ``exponent``.
-
-    Raises
-    ------
-    InputError
-        If the factor cannot be held by a floating-point number.
-
-    Source: range of IEEE 754 double precision.
-
-    Examples
-    --------
-    >>> float(exponential_growth(0.0, 0.0, "barus"))
-    1.0
-    """
+def exponential_growth(exponent: ArrayLike, pressure: ArrayLike, law: str) -> Array:
+    """Factor exp(exponent) by which pressure raises the viscosity."""
     exponents = np.asarray(exponent, dtype=float)
     if np.any(exponents > _LARGEST_EXPONENT):
         raise InputError(

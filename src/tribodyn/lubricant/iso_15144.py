@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from tribodyn.errors import require_between
 
-__all__ = ["DENSITY_FALL", "REFERENCE_TEMPERATURE", "density_at_temperature"]
-
 #: Temperature [K] at which data sheets state the density (15 degC).
 REFERENCE_TEMPERATURE = 288.15
 

@@ -9,8 +9,6 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.lubricant.oil import Lubricant
 from tribodyn.registry import Registry
 
-__all__ = ["from_library", "library"]
-
 #: Temperatures closer than this [K] are the same.
 _SAME_TEMPERATURE = 0.01
 

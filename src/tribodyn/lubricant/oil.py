@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.lubricant.agma_925 import agma_925_coefficient
@@ -16,13 +15,10 @@ from tribodyn.lubricant.dowson_higginson import dowson_higginson_density
 from tribodyn.lubricant.iso_15144 import DENSITY_FALL, density_at_temperature
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
 from tribodyn.registry import Registry
-
-__all__ = ["VISCOSITY_LAWS", "Lubricant"]
+from tribodyn.types import Array
 
 #: Pressure laws by name, each ``law(pressure, dynamic_viscosity, coefficient)``.
-VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], NDArray[np.float64]]] = Registry(
-    "viscosity law"
-)
+VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry("viscosity law")
 VISCOSITY_LAWS.register("roelands")(roelands_viscosity)
 VISCOSITY_LAWS.register("barus")(barus_viscosity)
 
@@ -201,7 +197,7 @@ class Lubricant:
         """Pressure-viscosity index z of the Roelands law."""
         return roelands_index(self.dynamic_viscosity, self.pressure_viscosity_coefficient)
 
-    def viscosity(self, pressure: ArrayLike, law: str = "roelands") -> NDArray[np.float64]:
+    def viscosity(self, pressure: ArrayLike, law: str = "roelands") -> Array:
         """Viscosity under pressure.
 
         Parameters
@@ -232,7 +228,7 @@ class Lubricant:
         viscosity_law = VISCOSITY_LAWS[law]
         return viscosity_law(pressure, self.dynamic_viscosity, self.pressure_viscosity_coefficient)
 
-    def density_at(self, pressure: ArrayLike) -> NDArray[np.float64]:
+    def density_at(self, pressure: ArrayLike) -> Array:
         """Density under pressure.
 
         Parameters

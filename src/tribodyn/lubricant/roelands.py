@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.lubricant.growth import exponential_growth
-
-__all__ = ["ROELANDS_PRESSURE", "roelands_index", "roelands_viscosity"]
+from tribodyn.types import Array
 
 #: Reference pressure of the law [Pa].
 ROELANDS_PRESSURE = 1.0 / 5.1e-9
@@ -72,7 +71,7 @@ def roelands_index(dynamic_viscosity: float, pressure_viscosity_coefficient: flo
 
 def roelands_viscosity(
     pressure: ArrayLike, dynamic_viscosity: float, pressure_viscosity_coefficient: float
-) -> NDArray[np.float64]:
+) -> Array:
     """Viscosity under pressure by Roelands.
 
     ``eta = eta0 exp{(ln(eta0) + 9.67) [(1 + p/p0)^z - 1]}`` with ``p0 = 1/5.1e-9 Pa``.

@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import Kinematics
 from tribodyn.ehl import FILM_MODELS
@@ -32,11 +31,7 @@ from tribodyn.mesh.teeth import teeth_of
 from tribodyn.mesh.touching import touching_pairs
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
-
-__all__ = ["build"]
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+from tribodyn.types import Array, Mask
 
 #: Largest composite roughness that is a roughness and not a slip of the unit [m].
 _LARGEST_ROUGHNESS = 1e-4
@@ -151,7 +146,7 @@ def build(
     tribology = tribological_contact(motion, touching, loads.tribological, composite_roughness)
     carried = loads.carried
     load_per_width = total_load * carried.share[cycle.in_contact]
-    columns: dict[str, FloatArray] = {
+    columns: dict[str, Array] = {
         **_motion_columns(motion, cycle.sliding_direction),
         "load_per_width": load_per_width,
         "hertz_pressure": np.where(load_per_width > 0.0, tribology.hertz_pressure, 0.0),
@@ -193,14 +188,14 @@ def _friction(
     contact: TribologicalContact,
     motion: Kinematics,
     loads: Loads,
-) -> FloatArray:
+) -> Array:
     """Friction of every contact; a law of the solved film knows it at the positions first."""
     if LAWS[law].needs_film and isinstance(loads.film_at, SolvedPath):
         return film_friction(law, options, loads.film_at, motion, contact.composite_roughness)
     return LAWS[law](contact, **options)
 
 
-def _motion_columns(motion: Kinematics, direction: FloatArray) -> dict[str, FloatArray]:
+def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
     return {
         "sliding_direction": direction,
         "sliding_speed": motion.sliding_speed,
@@ -212,7 +207,7 @@ def _motion_columns(motion: Kinematics, direction: FloatArray) -> dict[str, Floa
     }
 
 
-def _spread(touching: dict[str, FloatArray], in_contact: BoolArray) -> dict[str, Any]:
+def _spread(touching: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
     """Put the values of the touching pairs in their places, with zeros elsewhere."""
     columns: dict[str, Any] = dict.fromkeys(FILM_COLUMNS)
     for name, values in touching.items():

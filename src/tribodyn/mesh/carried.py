@@ -5,42 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.mesh.force_ramps import force_ramps
 from tribodyn.mesh.teeth import Carried, Teeth
-
-__all__ = ["carried_columns"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def carried_columns(
-    teeth: Teeth, carried: Carried, film_stiffness: FloatArray | None, *, force_law: bool
+    teeth: Teeth, carried: Carried, film_stiffness: Array | None, *, force_law: bool
 ) -> dict[str, Any]:
-    """Columns of the mesh table that follow from teeth and films under load.
-
-    Parameters
-    ----------
-    teeth : Teeth
-        Teeth of all pairs.
-    carried : Carried
-        How they carry the load, with the film where it is in series.
-    film_stiffness : array (m,) [N/m] or None
-        Stiffness of the films of the touching pairs, where they are in series with the teeth.
-    force_law : bool
-        Fit the force law of pairs that are springs of their own too.
-
-    Returns
-    -------
-    dict of str to array
-        Arguments of :class:`tribodyn.mesh.MeshTable`.
-
-    Raises
-    ------
-    ComputationError
-        If the load is beyond what the formula of the local compression covers.
-    """
+    """Columns of the mesh table that follow from teeth and films under load."""
     film = None
     if film_stiffness is not None:
         film = np.zeros(teeth.in_contact.shape)

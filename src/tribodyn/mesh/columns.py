@@ -6,14 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import SpurPair
 from tribodyn.mesh.grid import PhaseGrid
-
-__all__ = ["MeshColumns"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,32 +86,32 @@ class MeshColumns:
     """
 
     grid: PhaseGrid
-    path: FloatArray
-    in_contact: NDArray[np.bool_]
-    sliding_speed: FloatArray
-    entrainment_speed: FloatArray
-    slide_to_roll_ratio: FloatArray
-    sliding_direction: FloatArray
-    equivalent_radius: FloatArray
-    pinion_curvature_radius: FloatArray
-    wheel_curvature_radius: FloatArray
-    stiffness: FloatArray
-    tooth_stiffness: FloatArray
-    corner_share: FloatArray
-    static_transmission_error: FloatArray
-    mesh_stiffness_tangent: FloatArray
-    ramp_deflection: FloatArray
-    ramp_stiffness: FloatArray
-    load_share: FloatArray
-    normal_force: FloatArray
-    load_per_width: FloatArray
-    hertz_pressure: FloatArray
-    friction_coefficient: FloatArray
-    central_film: FloatArray | None
-    minimum_film: FloatArray | None
-    film_ratio: FloatArray | None
-    film_pressure: FloatArray | None
-    film_stiffness: FloatArray | None
+    path: Array
+    in_contact: Mask
+    sliding_speed: Array
+    entrainment_speed: Array
+    slide_to_roll_ratio: Array
+    sliding_direction: Array
+    equivalent_radius: Array
+    pinion_curvature_radius: Array
+    wheel_curvature_radius: Array
+    stiffness: Array
+    tooth_stiffness: Array
+    corner_share: Array
+    static_transmission_error: Array
+    mesh_stiffness_tangent: Array
+    ramp_deflection: Array
+    ramp_stiffness: Array
+    load_share: Array
+    normal_force: Array
+    load_per_width: Array
+    hertz_pressure: Array
+    friction_coefficient: Array
+    central_film: Array | None
+    minimum_film: Array | None
+    film_ratio: Array | None
+    film_pressure: Array | None
+    film_stiffness: Array | None
     maximum_single_pair_stiffness: float
     gear_pair: SpurPair
     pinion_speed: float
@@ -162,7 +158,7 @@ class MeshColumns:
         return self.pinion_torque / self.base_radius_pinion
 
     @property
-    def phase(self) -> FloatArray:
+    def phase(self) -> Array:
         """Mesh phase of the knots (n,), each event twice."""
         return self.grid.phase
 
@@ -177,31 +173,31 @@ class MeshColumns:
         return self.grid.event_phases
 
     @property
-    def mesh_stiffness(self) -> FloatArray:
+    def mesh_stiffness(self) -> Array:
         """Secant stiffness of all pairs together, tip corners included (n,) [N/m]."""
         known = self.stiffness.sum(axis=1)
         return np.asarray(known + known * self.corner_share.sum(axis=1) / self.load_share.sum(1))
 
     @property
-    def friction_sum(self) -> FloatArray:
+    def friction_sum(self) -> Array:
         """Friction over normal force of all pairs together, with direction (n,)."""
         return self.by_share(self._directed_friction)
 
     @property
-    def friction_moment_pinion(self) -> FloatArray:
+    def friction_moment_pinion(self) -> Array:
         """Friction moment on the pinion over total normal force (n,) [m]."""
         return self.by_share(self._directed_friction * self.pinion_curvature_radius)
 
     @property
-    def friction_moment_wheel(self) -> FloatArray:
+    def friction_moment_wheel(self) -> Array:
         """Friction moment on the wheel over total normal force (n,) [m]."""
         return self.by_share(self._directed_friction * self.wheel_curvature_radius)
 
     @property
-    def _directed_friction(self) -> FloatArray:
+    def _directed_friction(self) -> Array:
         return self.sliding_direction * self.friction_coefficient
 
-    def by_share(self, column: FloatArray) -> FloatArray:
+    def by_share(self, column: Array) -> Array:
         """Sum a column over all pairs and tip corners, each with its part of the load.
 
         Parameters

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
@@ -16,13 +16,11 @@ from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.build import build
 from tribodyn.mesh.table import MeshTable
 from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["ComprehensiveStiffness", "comprehensive_stiffness"]
-
-FloatArray = NDArray[np.float64]
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 _OF_A_PAIR = ("film_stiffness", "tooth_stiffness", "pair_stiffness", "load_share")
@@ -74,41 +72,41 @@ class ComprehensiveStiffness:
     kind: str
     stiffness_model: str
     film_model: str
-    pinion_torque: FloatArray
-    pinion_speed: FloatArray
-    path: FloatArray
-    roll_angle: FloatArray
-    load_share: FloatArray
-    film_stiffness: FloatArray
-    tooth_stiffness: FloatArray
-    pair_stiffness: FloatArray
-    phase: FloatArray
-    film_mesh_stiffness: FloatArray
-    tooth_mesh_stiffness: FloatArray
-    comprehensive_mesh_stiffness: FloatArray
+    pinion_torque: Array
+    pinion_speed: Array
+    path: Array
+    roll_angle: Array
+    load_share: Array
+    film_stiffness: Array
+    tooth_stiffness: Array
+    pair_stiffness: Array
+    phase: Array
+    film_mesh_stiffness: Array
+    tooth_mesh_stiffness: Array
+    comprehensive_mesh_stiffness: Array
 
     @property
-    def mean_mesh_stiffness(self) -> FloatArray:
+    def mean_mesh_stiffness(self) -> Array:
         """Mean of the comprehensive stiffness over the phase (t, s) [N/m]."""
         return self._mean(self.comprehensive_mesh_stiffness)
 
     @property
-    def mean_tooth_stiffness(self) -> FloatArray:
+    def mean_tooth_stiffness(self) -> Array:
         """Mean stiffness of the teeth alone over the phase (t, s) [N/m]."""
         return self._mean(self.tooth_mesh_stiffness)
 
     @property
-    def maximum_mesh_stiffness(self) -> FloatArray:
+    def maximum_mesh_stiffness(self) -> Array:
         """Greatest comprehensive stiffness (t, s) [N/m]."""
         return np.asarray(self.comprehensive_mesh_stiffness.max(axis=2))
 
     @property
-    def series_of_totals(self) -> FloatArray:
+    def series_of_totals(self) -> Array:
         """What the literature takes: ``K_m K_o/(K_m + K_o)`` of the sums of all pairs (t, s, p)."""
         teeth, film = self.tooth_mesh_stiffness, self.film_mesh_stiffness
         return np.asarray(teeth * film / (teeth + film))
 
-    def _mean(self, values: FloatArray) -> FloatArray:
+    def _mean(self, values: Array) -> Array:
         return np.asarray(np.trapezoid(values, self.phase, axis=2) / np.ptp(self.phase))
 
     def to_xarray(self) -> xarray.Dataset:
@@ -278,7 +276,7 @@ def comprehensive_stiffness(
     )
 
 
-def _columns(table: MeshTable, kind: str) -> dict[str, FloatArray]:
+def _columns(table: MeshTable, kind: str) -> dict[str, Array]:
     """Values of one pair in the order of its way, and of the mesh over the phase."""
     film, teeth = np.asarray(table.film_stiffness), table.tooth_stiffness
     whole, pair_stiffness = table.mesh_stiffness, table.stiffness
@@ -304,12 +302,12 @@ def _columns(table: MeshTable, kind: str) -> dict[str, FloatArray]:
     }
 
 
-def _in_order(table: MeshTable, column: FloatArray) -> FloatArray:
+def _in_order(table: MeshTable, column: Array) -> Array:
     """Values of a pair from its entry to its exit: those of pair 0, then of pair 1 and so on."""
     return np.asarray(column.T[table.in_contact.T])
 
 
-def _listed(name: str, values: ArrayLike) -> FloatArray:
+def _listed(name: str, values: ArrayLike) -> Array:
     listed = np.atleast_1d(np.asarray(values, dtype=float))
     unit = "rad/s" if name == "pinion_speed" else "N*m"
     require_positive(name, listed, unit)

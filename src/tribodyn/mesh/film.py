@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS
@@ -15,10 +14,7 @@ from tribodyn.ehl.solved_films import Films
 from tribodyn.friction import TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
-
-__all__ = ["FILM_COLUMNS", "as_columns", "film_columns"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
@@ -34,7 +30,7 @@ def film_columns(
     *,
     common_face_width: float = 1.0,
     film_options: Mapping[str, Any] = _NO_OPTIONS,
-) -> dict[str, FloatArray]:
+) -> dict[str, Array]:
     """Films of the loaded contacts, as far as the model gives them; every contact on its own.
 
     Parameters
@@ -91,21 +87,8 @@ def film_columns(
     return as_columns(films, contact.composite_roughness)
 
 
-def as_columns(films: Films, composite_roughness: float) -> dict[str, FloatArray]:
-    """Name the films as columns and add their ratio to the roughness.
-
-    Parameters
-    ----------
-    films : Films
-        Films of the touching pairs.
-    composite_roughness : float [m]
-        Root of the sum of squares of both roughnesses.
-
-    Returns
-    -------
-    dict of str to array
-        What is known of :data:`FILM_COLUMNS`.
-    """
+def as_columns(films: Films, composite_roughness: float) -> dict[str, Array]:
+    """Name the films as columns and add their ratio to the roughness."""
     known = {name: getattr(films, name, None) for name in FILM_COLUMNS}
     thin = [film for film in (films.central_film, films.minimum_film) if film is not None]
     if thin and composite_roughness > 0.0:

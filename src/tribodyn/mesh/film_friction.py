@@ -12,17 +12,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl.film_state import FilmState
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.mesh.path_film import SolvedPath
 from tribodyn.mesh.positions import lobatto_points, lobatto_polynomial
-
-__all__ = ["film_friction"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Sliding speed up to which friction is about linear in it, for any oil under pressure [m/s].
 _SLOW = 1e-4
@@ -38,32 +34,8 @@ def film_friction(
     solved: SolvedPath,
     motion: Kinematics,
     composite_roughness: float,
-) -> FloatArray:
-    """Friction coefficient of every touching pair from the films at the positions.
-
-    Parameters
-    ----------
-    law : str
-        Name in ``tribodyn.friction.LAWS`` of a law that needs the film.
-    options : mapping
-        Options of the law.
-    solved : SolvedPath
-        Films at the positions, and the loads that they carry.
-    motion : Kinematics
-        Curvatures and speeds of the touching pairs.
-    composite_roughness : float [m]
-        Root of the sum of squares of both roughnesses.
-
-    Returns
-    -------
-    array
-        One value for each touching pair, never negative.
-
-    Raises
-    ------
-    InputError
-        If the law cannot be applied.
-    """
+) -> Array:
+    """Friction coefficient of every touching pair from the films at the positions."""
     path = solved.path
     found = np.zeros(path.zone.size)
     samples = _samples(np.abs(motion.sliding_speed), path.zone, path.places.zones)
@@ -81,9 +53,7 @@ def film_friction(
     return np.maximum(found, 0.0)
 
 
-def _samples(
-    speed: FloatArray, zone: NDArray[np.int64], zones: tuple[slice, ...]
-) -> list[FloatArray]:
+def _samples(speed: Array, zone: Index, zones: tuple[slice, ...]) -> list[Array]:
     """Sliding speeds of each zone [m/s], dense near zero, from its least to its greatest."""
     found = []
     for number in range(len(zones)):
@@ -98,9 +68,9 @@ def _asked(
     law: str,
     options: Mapping[str, Any],
     solved: SolvedPath,
-    samples: list[FloatArray],
+    samples: list[Array],
     composite_roughness: float,
-) -> FloatArray:
+) -> Array:
     """Ask the law for all sliding speeds of all positions at once, in the order of the zones."""
     zones = solved.path.places.zones
     index = np.concatenate(

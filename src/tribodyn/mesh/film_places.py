@@ -9,30 +9,13 @@ from dataclasses import replace
 
 from tribodyn.errors import Problem, TribodynError
 
-__all__ = ["film_places"]
-
 #: How the batch of contacts names the one that failed.
 _CONTACT = re.compile(r"contact \[([\d, ]+)\]")
 
 
 @contextmanager
 def film_places(describe: Callable[..., str]) -> Iterator[None]:
-    """Replace the index of a contact in an error by its place.
-
-    Parameters
-    ----------
-    describe : callable
-        Takes the index, one whole number for each axis, and says where the contact is.
-
-    Yields
-    ------
-    None
-
-    Raises
-    ------
-    TribodynError
-        The same error with the place in its text.
-    """
+    """Replace the index of a contact in an error by its place."""
 
     def named(problem: Problem) -> Problem:
         def place(found: re.Match[str]) -> str:

@@ -6,15 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.monotone_phase import MonotonePhaseFunction
-
-__all__ = ["MeshForceLaw"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Fall of the slope from one point to the next, relative to the largest, that is rounding.
 _ROUNDING = 1e-6
@@ -59,8 +55,8 @@ class MeshForceLaw:
     """
 
     grid: PhaseGrid
-    knot_deflection: FloatArray
-    knot_stiffness: FloatArray
+    knot_deflection: Array
+    knot_stiffness: Array
 
     def __post_init__(self) -> None:
         for name in ("knot_deflection", "knot_stiffness"):
@@ -85,7 +81,7 @@ class MeshForceLaw:
             _refuse(f"no ramp carries at the mesh phase {phase:.4g}", "Some pair is always there")
 
     @classmethod
-    def through(cls, grid: PhaseGrid, deflection: FloatArray, force: FloatArray) -> MeshForceLaw:
+    def through(cls, grid: PhaseGrid, deflection: Array, force: Array) -> MeshForceLaw:
         """Join points of a convex law by straight lines; the last one goes on.
 
         Parameters
@@ -149,7 +145,7 @@ class MeshForceLaw:
     def _columns(self) -> PhaseFunction | MonotonePhaseFunction:
         return self.over_phase(np.stack((self.knot_deflection, self.knot_stiffness), -1))
 
-    def over_phase(self, values: FloatArray) -> PhaseFunction | MonotonePhaseFunction:
+    def over_phase(self, values: Array) -> PhaseFunction | MonotonePhaseFunction:
         """Lay a curve through values at the knots.
 
         Parameters
@@ -165,7 +161,7 @@ class MeshForceLaw:
         single = self.knot_stiffness.shape[1] == 1
         return (PhaseFunction if single else MonotonePhaseFunction)(self.grid, values)
 
-    def ramps(self, phase: FloatArray | float) -> tuple[FloatArray, FloatArray]:
+    def ramps(self, phase: Array | float) -> tuple[Array, Array]:
         """Place and stiffness of every ramp at any mesh phase.
 
         Parameters
@@ -181,7 +177,7 @@ class MeshForceLaw:
         both = self._columns(phase)
         return both[..., 0], both[..., 1]
 
-    def force(self, phase: FloatArray | float, deflection: FloatArray | float) -> FloatArray:
+    def force(self, phase: Array | float, deflection: Array | float) -> Array:
         """Force of the driving flanks.
 
         Parameters
@@ -197,7 +193,7 @@ class MeshForceLaw:
         """
         return self._sum(phase, deflection, 1)
 
-    def tangent(self, phase: FloatArray | float, deflection: FloatArray | float) -> FloatArray:
+    def tangent(self, phase: Array | float, deflection: Array | float) -> Array:
         """Slope of the force over the deflection; on a knot that before it.
 
         Parameters
@@ -213,7 +209,7 @@ class MeshForceLaw:
         """
         return self._sum(phase, deflection, 0)
 
-    def energy(self, phase: FloatArray | float, deflection: FloatArray | float) -> FloatArray:
+    def energy(self, phase: Array | float, deflection: Array | float) -> Array:
         """Elastic energy: the integral of the force from no deflection on.
 
         Parameters
@@ -229,15 +225,13 @@ class MeshForceLaw:
         """
         return self._sum(phase, deflection, 2)
 
-    def _sum(
-        self, phase: FloatArray | float, deflection: FloatArray | float, power: int
-    ) -> FloatArray:
+    def _sum(self, phase: Array | float, deflection: Array | float, power: int) -> Array:
         place, stiffness = self.ramps(phase)
         beyond = np.asarray(deflection, dtype=float)[..., None] - place
         grown = beyond**power / max(power, 1)
         return np.asarray(np.where(beyond > 0.0, stiffness * grown, 0.0).sum(axis=-1))
 
-    def deflection(self, phase: FloatArray | float, force: FloatArray | float) -> FloatArray:
+    def deflection(self, phase: Array | float, force: Array | float) -> Array:
         """Deflection that a force causes at rest: the static transmission error.
 
         Parameters
@@ -280,12 +274,12 @@ class MeshForceLaw:
         return int(found[0]) if found.size else None
 
     @cached_property
-    def knot_first_touch(self) -> FloatArray:
+    def knot_first_touch(self) -> Array:
         """Deflection at which the first pair touches, at every knot [m]."""
         there = np.where(self.knot_stiffness > 0.0, self.knot_deflection, np.inf)
         return np.asarray(there.min(axis=1))
 
-    def first_touch(self, phase: FloatArray | float) -> FloatArray:
+    def first_touch(self, phase: Array | float) -> Array:
         """Deflection at which the first pair touches.
 
         Parameters

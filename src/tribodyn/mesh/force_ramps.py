@@ -10,14 +10,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import warn
 from tribodyn.stiffness import ContactProblem
-
-__all__ = ["LARGEST_ERROR", "LARGEST_GRADUAL_ERROR", "force_ramps"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Largest error of the force over the force, from a tenth of the load to three times of it, and
 #: the one where flanks vary over the face, so that pairs begin to carry gradually.
@@ -39,31 +35,8 @@ _SAME = 1e-9
 _FAINT = 1e-9
 
 
-def force_ramps(problem: ContactProblem, total_force: float) -> tuple[FloatArray, FloatArray]:
-    """Fit ramps to the force over the deflection of a mesh.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        The loaded tooth contact on the knots of a mesh table.
-    total_force : float [N]
-        Load of the mesh.
-
-    Returns
-    -------
-    tuple of array (n, ramps)
-        Deflection at which each ramp begins [m], and the stiffness that it adds [N/m].
-
-    Raises
-    ------
-    ComputationError
-        If the load is beyond what the formula of the local compression covers.
-
-    Warns
-    -----
-    ModelWarning
-        Code ``force-law`` where the law cannot be fitted as closely as it should.
-    """
+def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Array]:
+    """Fit ramps to the force over the deflection of a mesh."""
     parts = problem.compliance
     if parts.logarithm == 0.0 and not problem.places.contact.pair.has_modification:
         # Springs that all touch at once: one ramp, exactly.
@@ -96,7 +69,7 @@ def force_ramps(problem: ContactProblem, total_force: float) -> tuple[FloatArray
     return place, slope
 
 
-def _kinks(problem: ContactProblem, most: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _kinks(problem: ContactProblem, most: Array) -> tuple[Array, Array]:
     """Deflection (n, kinks) at which each pair begins to carry in a slice, and the force there."""
     order = np.argsort(problem.gaps.mean(axis=(0, 2)))
     slices = order[np.unique(np.linspace(0, order.size - 1, _SLICES).round().astype(int))]
@@ -107,9 +80,7 @@ def _kinks(problem: ContactProblem, most: FloatArray) -> tuple[FloatArray, Float
     return pairs, problem.at_approach(pairs.T)[0].T
 
 
-def _chords(
-    first: FloatArray, points: FloatArray, forces: FloatArray, last_slope: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _chords(first: Array, points: Array, forces: Array, last_slope: Array) -> tuple[Array, Array]:
     """Ramps from the first touch through all points, each column following its own point."""
     place = np.concatenate([first[:, None], points], axis=1)
     force = np.concatenate([np.zeros((first.size, 1)), forces], axis=1)
@@ -133,7 +104,7 @@ def _chords(
     return place, stiffness
 
 
-def _force(place: FloatArray, slope: FloatArray, approach: FloatArray) -> FloatArray:
+def _force(place: Array, slope: Array, approach: Array) -> Array:
     """Force of the law (d, n) at approaches (d, n)."""
     beyond = np.maximum(approach[:, :, None] - place, 0.0)
     return np.asarray((slope * beyond).sum(axis=2))

@@ -7,16 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh.force_law import MeshForceLaw
-
-__all__ = ["MeshFunctions"]
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -43,17 +39,17 @@ class MeshFunctions:
         Force over deflection at every phase.
     """
 
-    stiffness: Callable[[FloatArray | float], FloatArray]
-    friction_sum: Callable[[FloatArray | float], FloatArray]
-    friction_moment_pinion: Callable[[FloatArray | float], FloatArray]
-    friction_moment_wheel: Callable[[FloatArray | float], FloatArray]
+    stiffness: Callable[[Array | float], Array]
+    friction_sum: Callable[[Array | float], Array]
+    friction_moment_pinion: Callable[[Array | float], Array]
+    friction_moment_wheel: Callable[[Array | float], Array]
     event_phases: tuple[float, ...]
-    tangent_stiffness: Callable[[FloatArray | float], FloatArray] | None = None
-    static_transmission_error: Callable[[FloatArray | float], FloatArray] | None = None
+    tangent_stiffness: Callable[[Array | float], Array] | None = None
+    static_transmission_error: Callable[[Array | float], Array] | None = None
     total_normal_force: float | None = None
     force_law: MeshForceLaw | None = None
 
-    def tangent_error(self, phase: FloatArray | float) -> FloatArray:
+    def tangent_error(self, phase: Array | float) -> Array:
         """Error that makes the tangent stiffness deflect like the force law at the nominal load.
 
         Parameters

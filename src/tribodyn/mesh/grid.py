@@ -11,13 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["PhaseFunction", "PhaseGrid", "phase_grid"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
@@ -48,20 +44,20 @@ class PhaseGrid:
         )
 
     @cached_property
-    def phase(self) -> FloatArray:
+    def phase(self) -> Array:
         """Mesh phase of the knots, from 0 to 1; each event occurs twice."""
         ends = (*self.event_phases[1:], 1.0)
         spans = zip(self.event_phases, ends, self.intervals, strict=True)
         return np.concatenate([np.linspace(a, b, count + 1) for a, b, count in spans])
 
     @cached_property
-    def middle(self) -> FloatArray:
+    def middle(self) -> Array:
         """Phase of the middle of the segment of each knot: a place that is on no event."""
         ends = np.array((*self.event_phases[1:], 1.0))
         middles = 0.5 * (np.array(self.event_phases) + ends)
         return np.repeat(middles, np.array(self.intervals) + 1)
 
-    def mean(self, values: FloatArray) -> FloatArray:
+    def mean(self, values: Array) -> Array:
         """Mean over the cycle by Simpson's rule in each segment.
 
         Parameters
@@ -77,7 +73,7 @@ class PhaseGrid:
         return np.asarray(np.tensordot(self._weights, values, axes=(0, 0)))
 
     @cached_property
-    def _weights(self) -> FloatArray:
+    def _weights(self) -> Array:
         parts = []
         for segment, count in zip(self.segments, self.intervals, strict=True):
             simpson = np.ones(count + 1)
@@ -100,9 +96,9 @@ class PhaseFunction:
     """
 
     grid: PhaseGrid
-    values: FloatArray
+    values: Array
 
-    def __call__(self, phase: FloatArray | float) -> FloatArray:
+    def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots of one segment.
 
         Parameters

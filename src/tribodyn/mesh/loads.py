@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
@@ -19,40 +18,19 @@ from tribodyn.mesh.series import in_series
 from tribodyn.mesh.teeth import Carried, Teeth
 from tribodyn.mesh.touching import Touching
 from tribodyn.progress import Progress
+from tribodyn.types import Array
 
-__all__ = [
-    "IN_SERIES",
-    "Loads",
-    "quasi_static_loads",
-    "tribological_contact",
-    "warn_of_rigid_films",
-]
-
-FloatArray = NDArray[np.float64]
 #: Kinds of film stiffness that are springs; the printed sum of one source has the unit of a length.
 IN_SERIES = ("tangent", "secant")
-BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Loads, stiffness and film of every tooth pair.
+    """Loads, stiffness and film of every tooth pair."""
 
-    Parameters
-    ----------
-    carried : Carried
-        How the mesh carries its load, film included where it counts.
-    tribological : array (m,) [N/m]
-        Loads per width of the touching pairs for which film and friction are found; never less
-        than a thousandth of the load of all, where a relieved flank is not touched at all.
-    film_at : callable
-        Films of the touching pairs as a function of their loads per width; a
-        :class:`tribodyn.mesh.path_film.SolvedPath` where they are solved.
-    """
-
-    carried: Carried
-    tribological: FloatArray
-    film_at: FilmAt
+    carried: Carried  #: how the mesh carries its load, film included where it counts
+    tribological: Array  #: [N/m]
+    film_at: FilmAt  #: films of the touching pairs as a function of their loads per width
 
 
 def quasi_static_loads(
@@ -65,45 +43,16 @@ def quasi_static_loads(
     options: Mapping[str, Any],
     progress: Progress,
 ) -> Loads:
-    """Share the load among the pairs and find their films.
-
-    Parameters
-    ----------
-    cycle : MeshCycle
-        Places of the pairs.
-    teeth : Teeth
-        Teeth of all pairs.
-    total_load : float [N/m]
-        Load of all pairs together per face width.
-    touching : Touching
-        The pairs in contact.
-    pinion_speed : float [rad/s]
-        Speed of the pinion.
-    model : str
-        Name of the film model.
-    options : mapping
-        Its options, complete.
-    progress : Progress
-        Told how many films are solved.
-
-    Returns
-    -------
-    Loads
-
-    Raises
-    ------
-    ComputationError
-        If a film cannot be solved, or the load share does not settle.
-    """
+    """Share the load among the pairs and find their films."""
     least = teeth.least_share * total_load
 
-    def raised(loads: FloatArray) -> FloatArray:
+    def raised(loads: Array) -> Array:
         return np.where(cycle.in_contact, np.maximum(loads, least), 0.0)
 
-    def of_formula(loads: FloatArray) -> FilmAt:
+    def of_formula(loads: Array) -> FilmAt:
         return lambda load: touching.films(model, np.maximum(load, least), **options)
 
-    def of_path(loads: FloatArray) -> FilmAt:
+    def of_path(loads: Array) -> FilmAt:
         at_places = along.load_of(cycle.grid, raised(loads))
         return along.solve(np.maximum(at_places, least), progress)
 
@@ -122,18 +71,7 @@ def quasi_static_loads(
 
 
 def warn_of_rigid_films(film_at: FilmAt) -> None:
-    """Say where a solved film has no tangent stiffness, because it does not fall with the load.
-
-    Parameters
-    ----------
-    film_at : callable
-        Films as a function of their loads.
-
-    Warns
-    -----
-    ModelWarning
-        Code ``film-stiffness`` where a film counts as rigid.
-    """
+    """Say where a solved film has no tangent stiffness, because it does not fall with the load."""
     share = film_at.rigid_share if isinstance(film_at, SolvedPath) else 0.0
     if share > 0.0:
         warn(
@@ -146,25 +84,9 @@ def warn_of_rigid_films(film_at: FilmAt) -> None:
 
 
 def tribological_contact(
-    motion: Kinematics, touching: Touching, load_per_width: FloatArray, composite_roughness: float
+    motion: Kinematics, touching: Touching, load_per_width: Array, composite_roughness: float
 ) -> TribologicalContact:
-    """Loaded contacts as the friction laws see them.
-
-    Parameters
-    ----------
-    motion : Kinematics
-        Curvatures and speeds of the touching pairs.
-    touching : Touching
-        The same pairs with oil and material.
-    load_per_width : array [N/m]
-        Their loads.
-    composite_roughness : float [m]
-        Root of the sum of squares of both roughnesses.
-
-    Returns
-    -------
-    TribologicalContact
-    """
+    """Loaded contacts as the friction laws see them."""
     hertz = hertz_line(load_per_width, motion.equivalent_radius, touching.effective_modulus)
     return TribologicalContact(
         load_per_width=load_per_width,

@@ -11,15 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.table import MeshTable
-
-__all__ = ["CHANNELS", "LOADS", "MeshFriction", "mesh_friction"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: The sums of a mesh table that act on a structure, in this order.
 CHANNELS = ("friction_sum", "friction_moment_pinion", "friction_moment_wheel")
@@ -48,7 +45,7 @@ class MeshFriction:
     """
 
     grid: PhaseGrid
-    coefficients: FloatArray
+    coefficients: Array
     load: float
     limit: float
     fit_error: float
@@ -68,7 +65,7 @@ class MeshFriction:
         """
         return PhaseFunction(self.grid, self.coefficients[:, :, CHANNELS.index(name)])
 
-    def value(self, name: str, phase: ArrayLike, normal_force: ArrayLike) -> FloatArray:
+    def value(self, name: str, phase: ArrayLike, normal_force: ArrayLike) -> Array:
         """Friction sum at a phase under a load.
 
         Parameters
@@ -158,7 +155,7 @@ def mesh_friction(tables: Sequence[MeshTable], nominal: MeshTable) -> MeshFricti
     )
 
 
-def _check(tables: Sequence[MeshTable], nominal: MeshTable, ratio: FloatArray) -> None:
+def _check(tables: Sequence[MeshTable], nominal: MeshTable, ratio: Array) -> None:
     if np.unique(ratio).size <= _TERMS:
         raise InputError(
             Problem(

@@ -7,13 +7,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.mesh.grid import PhaseGrid
-
-__all__ = ["MonotonePhaseFunction"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +40,7 @@ class MonotonePhaseFunction:
     """
 
     grid: PhaseGrid
-    values: FloatArray
+    values: Array
 
     @cached_property
     def _pieces(self) -> list[Any]:
@@ -55,7 +51,7 @@ class MonotonePhaseFunction:
             for part in self.grid.segments
         ]
 
-    def __call__(self, phase: FloatArray | float) -> FloatArray:
+    def __call__(self, phase: Array | float) -> Array:
         """Interpolate.
 
         Parameters

@@ -5,20 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import effective_modulus
 from tribodyn.errors import require_between
 from tribodyn.mesh.table import MeshTable
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.ehl import RoughnessProfile, TransientLineContact
     from tribodyn.gear import Material
     from tribodyn.lubricant import Lubricant
 
-__all__ = ["moving_film"]
-
-FloatArray = NDArray[np.float64]
 
 #: Time steps of an engagement: fewer leave the change of the load unresolved.
 _LEAST, _MOST = 50, 20000
@@ -106,14 +103,14 @@ def moving_film(
     )
 
 
-def _life(mesh: MeshTable, names: tuple[str, ...]) -> tuple[FloatArray, list[FloatArray]]:
+def _life(mesh: MeshTable, names: tuple[str, ...]) -> tuple[Array, list[Array]]:
     """Columns of the table in the order in which one pair passes them, over mesh cycles."""
     alive = mesh.in_contact.T
     age = (mesh.phase[None, :] + np.arange(alive.shape[0])[:, None])[alive]
     return age, [getattr(mesh, name).T[alive] for name in names]
 
 
-def _share(cycles: FloatArray, ramp: float, least: float) -> FloatArray:
+def _share(cycles: Array, ramp: float, least: float) -> Array:
     """Factor of the load: up from ``least`` after the entry, down to it before the exit."""
     inside = np.clip(np.minimum(cycles, cycles[-1] - cycles) / ramp, 0.0, 1.0)
     return np.asarray(least + (1.0 - least) * inside**2 * (3.0 - 2.0 * inside))

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line, path_of_contact
 from tribodyn.ehl import FILM_MODELS
@@ -21,13 +21,11 @@ from tribodyn.mesh.positions import PathPositions, path_positions
 from tribodyn.mesh.teeth import LEAST_SHARE, teeth_of
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["FilmOverOperation", "film_over_operation"]
-
-FloatArray = NDArray[np.float64]
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 #: Positions for the models that have no such option.
@@ -77,18 +75,18 @@ class FilmOverOperation:
         Stiffness of the film over the common face width.
     """
 
-    pinion_torque: FloatArray
-    pinion_speed: FloatArray
-    path: FloatArray
-    roll_angle: FloatArray
-    load_per_width: FloatArray
-    hertz_pressure: FloatArray
-    entrainment_speed: FloatArray
-    central_film: FloatArray | None = None
-    minimum_film: FloatArray | None = None
-    film_ratio: FloatArray | None = None
-    film_pressure: FloatArray | None = None
-    film_stiffness: FloatArray | None = None
+    pinion_torque: Array
+    pinion_speed: Array
+    path: Array
+    roll_angle: Array
+    load_per_width: Array
+    hertz_pressure: Array
+    entrainment_speed: Array
+    central_film: Array | None = None
+    minimum_film: Array | None = None
+    film_ratio: Array | None = None
+    film_pressure: Array | None = None
+    film_stiffness: Array | None = None
 
     def to_xarray(self) -> xarray.Dataset:
         """Convert to a labelled data set with units.
@@ -225,7 +223,7 @@ def film_over_operation(
     )
 
 
-def _check(speed: FloatArray, torque: FloatArray, composite_roughness: float) -> None:
+def _check(speed: Array, torque: Array, composite_roughness: float) -> None:
     require_positive("pinion_speed", speed, "rad/s")
     require_positive("pinion_torque", torque, "N*m")
     require_between("composite_roughness", composite_roughness, 0.0, 1e-4, "m")
@@ -241,7 +239,7 @@ def _check(speed: FloatArray, torque: FloatArray, composite_roughness: float) ->
             )
 
 
-def _roll_angle(pair: SpurPair, motion: Kinematics) -> FloatArray:
+def _roll_angle(pair: SpurPair, motion: Kinematics) -> Array:
     radius = getattr(motion, f"{pair.driver}_curvature_radius")[0]
     return np.asarray(radius / pair.driving.base_radius)
 
@@ -250,10 +248,10 @@ def _shares(
     pair: SpurPair,
     material: Material,
     places: PathPositions,
-    torque: FloatArray,
+    torque: Array,
     model: str,
     options: Mapping[str, Any],
-) -> FloatArray:
+) -> Array:
     """Load share of the pair at each position for each torque (torques, positions)."""
     contact, age = path_of_contact(pair), places.sided_age
     number = np.floor(age).astype(int)

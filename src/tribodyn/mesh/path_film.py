@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import PathOfContact
 from tribodyn.ehl.solved_films import Films
@@ -23,13 +22,10 @@ from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.positions import MOST, PathPositions, path_positions
 from tribodyn.mesh.touching import Touching
 from tribodyn.progress import SILENT, Progress
-
-__all__ = ["FilmAt", "PathFilm", "SolvedPath", "path_film"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Films of all touching pairs under the loads per width given.
-FilmAt = Callable[[FloatArray], Films]
+FilmAt = Callable[[Array], Films]
 
 #: Estimated error of the film between the positions that deserves a warning.
 _ROUGH = 3e-3
@@ -41,76 +37,24 @@ _BESIDE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class PathFilm:
-    """A solved film along the path of contact, as a function of the load of every contact.
+    """A solved film along the path of contact, as a function of the load of every contact."""
 
-    Parameters
-    ----------
-    model : str
-        Name of the model in ``tribodyn.ehl.FILM_MODELS``.
-    options : mapping
-        Options of the model, with its defaults.
-    places : PathPositions
-        Positions at which the film is solved.
-    roll_angle : array [rad]
-        Roll angle of the driving gear at these positions.
-    solved : Touching
-        The pair at these positions.
-    touching : Touching
-        Contacts of the mesh table.
-    zone : array of int
-        Zone of each contact of the mesh table.
-    """
+    model: str  #: name of the model in ``tribodyn.ehl.FILM_MODELS``
+    options: Mapping[str, Any]  #: options of the model, with its defaults
+    places: PathPositions  #: positions at which the film is solved
+    roll_angle: Array  #: roll angle of the driving gear at these positions [rad]
+    solved: Touching  #: the pair at these positions
+    touching: Touching  #: contacts of the mesh table
+    zone: Index  #: zone of each contact of the mesh table
 
-    model: str
-    options: Mapping[str, Any]
-    places: PathPositions
-    roll_angle: FloatArray
-    solved: Touching
-    touching: Touching
-    zone: NDArray[np.int64]
-
-    def load_of(self, grid: PhaseGrid, load_per_width: FloatArray) -> FloatArray:
-        """Read the loads at the positions from those of a mesh table.
-
-        Parameters
-        ----------
-        grid : PhaseGrid
-            Knots of the mesh table.
-        load_per_width : array (n, pairs) [N/m]
-            Load of every pair, zero where it is not in contact.
-
-        Returns
-        -------
-        array (positions,) [N/m]
-        """
+    def load_of(self, grid: PhaseGrid, load_per_width: Array) -> Array:
+        """Read the loads at the positions from those of a mesh table."""
         age = self.places.sided_age
         at = PhaseFunction(grid, load_per_width)(age)
         return np.asarray(at[np.arange(age.size), np.floor(age).astype(int)])
 
-    def solve(self, load_per_width: FloatArray, progress: Progress = SILENT) -> SolvedPath:
-        """Solve the film at the positions.
-
-        Parameters
-        ----------
-        load_per_width : array (positions,) [N/m]
-            Load at each position.
-        progress : Progress
-            Told how many positions are done.
-
-        Returns
-        -------
-        SolvedPath
-
-        Raises
-        ------
-        ComputationError
-            If a position cannot be solved.
-
-        Warns
-        -----
-        ModelWarning
-            Code ``film-positions`` where the positions are too few.
-        """
+    def solve(self, load_per_width: Array, progress: Progress = SILENT) -> SolvedPath:
+        """Solve the film at the positions."""
         with film_places(lambda index: f"at the roll angle {self.roll_angle[index]:.4f} rad"):
             films = self.solved.films(self.model, load_per_width, **self.options, progress=progress)
         scales = self.solved.scales(load_per_width)
@@ -136,46 +80,21 @@ class PathFilm:
 
 @dataclass(frozen=True, eq=False)
 class SolvedPath:
-    """Films solved along the path of contact; called with loads it gives those of all contacts.
+    """Films solved along the path of contact; called with loads it gives those of all contacts."""
 
-    Parameters
-    ----------
-    path : PathFilm
-        Positions and contacts.
-    load_per_width : array (positions,) [N/m]
-        Load at each position.
-    films : Films
-        Films at the positions.
-    factors : array (3, m)
-        Central film, minimum film and pressure of the contacts of the mesh table over their
-        scales.
-    yielding : array (m,)
-        Compliance of their films over its scale; not positive where the film rises with the load.
-    """
-
-    path: PathFilm
-    load_per_width: FloatArray
-    films: Films
-    factors: FloatArray
-    yielding: FloatArray
+    path: PathFilm  #: positions and contacts
+    load_per_width: Array  #: load at each position [N/m]
+    films: Films  #: films at the positions
+    factors: Array
+    yielding: Array  #: compliance of their films over its scale
 
     @property
     def rigid_share(self) -> float:
         """Part of the contacts whose film does not fall with the load."""
         return float(np.mean(self.yielding < _RIGID))
 
-    def __call__(self, load_per_width: FloatArray) -> Films:
-        """Films of all contacts of the mesh table.
-
-        Parameters
-        ----------
-        load_per_width : array (m,) [N/m]
-            Their loads, near those that the positions were solved for.
-
-        Returns
-        -------
-        Films
-        """
+    def __call__(self, load_per_width: Array) -> Films:
+        """Films of all contacts of the mesh table."""
         *scales, stiffness = self.path.touching.scales(load_per_width).values()
         central, minimum, pressure = np.stack(scales) * self.factors
         film_stiffness = stiffness / np.maximum(self.yielding, _RIGID)
@@ -188,37 +107,10 @@ def path_film(
     contact: PathOfContact,
     pinion_speed: float,
     touching: Touching,
-    side: FloatArray,
+    side: Array,
     bends: tuple[float, ...] = (),
 ) -> PathFilm:
-    """Choose the positions at which a solved film is computed.
-
-    Parameters
-    ----------
-    model : str
-        Name of the model in ``tribodyn.ehl.FILM_MODELS``.
-    options : mapping
-        Options of the model, with its defaults.
-    contact : PathOfContact
-        Path of contact of the pair.
-    pinion_speed : float [rad/s]
-        Speed of the pinion.
-    touching : Touching
-        Contacts of the mesh table.
-    side : array
-        Age of a place beside each contact, on the side of an edge that is meant.
-    bends : tuple of float, optional
-        Mesh phases where the load of a pair has a bend.
-
-    Returns
-    -------
-    PathFilm
-
-    Raises
-    ------
-    InputError
-        If the number of positions is out of range.
-    """
+    """Choose the positions at which a solved film is computed."""
     places = path_positions(contact, options["positions"], bends)
     path = contact.A + contact.direction * places.age * contact.pair.base_pitch
     motion = contact.kinematics(path, pinion_speed)

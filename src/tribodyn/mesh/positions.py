@@ -11,22 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import PathOfContact
 from tribodyn.errors import require_between
-
-__all__ = [
-    "LEAST",
-    "MOST",
-    "PathPositions",
-    "lobatto_points",
-    "lobatto_polynomial",
-    "path_positions",
-]
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Number of positions that can be asked for.
 LEAST, MOST = 8, 200
@@ -44,21 +32,13 @@ _SIDE = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class PathPositions:
-    """Positions of one tooth pair from its entry to its exit, counted in mesh cycles.
+    """Positions of one tooth pair from its entry to its exit, counted in mesh cycles."""
 
-    Parameters
-    ----------
-    edges : tuple of float
-        Ages of the pair where zones begin, and where the last one ends [mesh cycles].
-    counts : tuple of int
-        Positions in each zone.
-    """
-
-    edges: tuple[float, ...]
-    counts: tuple[int, ...]
+    edges: tuple[float, ...]  #: [mesh cycles]
+    counts: tuple[int, ...]  #: positions in each zone
 
     @cached_property
-    def age(self) -> FloatArray:
+    def age(self) -> Array:
         """Mesh cycles since the pair entered; an edge between two zones occurs twice."""
         zones = zip(self.edges[:-1], self.edges[1:], self.counts, strict=True)
         parts = [0.5 * (a + b) + 0.5 * (b - a) * lobatto_points(count) for a, b, count in zones]
@@ -67,7 +47,7 @@ class PathPositions:
         return np.concatenate(parts)
 
     @cached_property
-    def sided_age(self) -> FloatArray:
+    def sided_age(self) -> Array:
         """The same ages moved by a hair into their own zone, so that edges have two sides."""
         first = np.repeat(self.edges[:-1], self.counts) + _SIDE
         last = np.repeat(self.edges[1:], self.counts) - _SIDE
@@ -82,38 +62,13 @@ class PathPositions:
             for stop, count in zip(stops, self.counts, strict=True)
         )
 
-    def zone_of(self, age: FloatArray) -> IntArray:
-        """Find the zone of a pair.
-
-        Parameters
-        ----------
-        age : array
-            Mesh cycles since the pair entered [mesh cycles]; on an edge the zone after it.
-
-        Returns
-        -------
-        array of int
-            Index of the zone.
-        """
+    def zone_of(self, age: Array) -> Index:
+        """Find the zone of a pair."""
         inner = np.array(self.edges[1:-1])
         return np.asarray(np.searchsorted(inner, age, side="right"), dtype=np.int64)
 
-    def interpolate(self, values: FloatArray, age: FloatArray, zone: IntArray) -> FloatArray:
-        """Evaluate the polynomial through the positions of a zone.
-
-        Parameters
-        ----------
-        values : array (positions, ...)
-            Values at the positions.
-        age : array (m,)
-            Mesh cycles since the pair entered [mesh cycles].
-        zone : array of int (m,)
-            Zone whose polynomial is taken, so that an edge can be seen from either side.
-
-        Returns
-        -------
-        array (m, ...)
-        """
+    def interpolate(self, values: Array, age: Array, zone: Index) -> Array:
+        """Evaluate the polynomial through the positions of a zone."""
         found = np.zeros(age.shape + values.shape[1:])
         for number, part in enumerate(self.zones):
             here = zone == number
@@ -121,38 +76,17 @@ class PathPositions:
             found[here] = np.tensordot(matrix, values[part], axes=(1, 0))
         return found
 
-    def truncation(self, values: FloatArray) -> float:
-        """Estimate the error of the interpolation from how the terms of each zone fall.
-
-        Parameters
-        ----------
-        values : array (positions,)
-            Values at the positions.
-
-        Returns
-        -------
-        float
-            Greatest rest of the Chebyshev series of any zone, in the unit of the values.
-        """
+    def truncation(self, values: Array) -> float:
+        """Estimate the error of the interpolation from how the terms of each zone fall."""
         return max(_rest(values[part]) for part in self.zones)
 
 
-def lobatto_points(count: int) -> FloatArray:
-    """Gauss-Lobatto points of Chebyshev between -1 and 1, rising.
-
-    Parameters
-    ----------
-    count : int
-        At least two.
-
-    Returns
-    -------
-    array (count,)
-    """
+def lobatto_points(count: int) -> Array:
+    """Gauss-Lobatto points of Chebyshev between -1 and 1, rising."""
     return np.asarray(-np.cos(np.pi * np.arange(count) / (count - 1)))
 
 
-def lobatto_polynomial(knots: FloatArray, at: FloatArray) -> FloatArray:
+def lobatto_polynomial(knots: Array, at: Array) -> Array:
     """Weights of the values at Gauss-Lobatto points in the polynomial through them.
 
     Parameters
@@ -179,7 +113,7 @@ def lobatto_polynomial(knots: FloatArray, at: FloatArray) -> FloatArray:
     return np.asarray(parts / parts.sum(axis=1, keepdims=True))
 
 
-def _rest(values: FloatArray) -> float:
+def _rest(values: Array) -> float:
     """What the series leaves out if its terms go on falling as the last ones do."""
     order = values.size - 1
     ends = np.ones(order + 1)
@@ -198,43 +132,7 @@ def _rest(values: FloatArray) -> float:
 def path_positions(
     contact: PathOfContact, positions: int, bends: tuple[float, ...] = ()
 ) -> PathPositions:
-    """Spread positions over the zones of the path of contact.
-
-    Parameters
-    ----------
-    contact : PathOfContact
-        Path of contact of the pair.
-    positions : int
-        Positions wanted, from 8 to 200; every zone has at least four.
-    bends : tuple of float, optional
-        Further mesh phases where the load of a pair has a bend, because another begins or ceases
-        to carry.
-
-    Returns
-    -------
-    PathPositions
-        Zones end where a pair enters or leaves, at the pitch point and at the bends.
-
-    Raises
-    ------
-    InputError
-        If the number of positions is out of range.
-
-    Notes
-    -----
-    Any contact ratio. Source: Gauss-Lobatto points, whose interpolation of a smooth function
-    converges exponentially.
-
-    Examples
-    --------
-    >>> from tribodyn.contact import path_of_contact
-    >>> from tribodyn.gear import spur_pair
-    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
-    ...                  normal_pressure_angle=0.3490658504, pinion_face_width=50e-3)
-    >>> places = path_positions(path_of_contact(pair), 30)
-    >>> [round(edge, 3) for edge in places.edges], places.counts
-    ([0.0, 0.605, 0.827, 1.0, 1.605], (11, 4, 4, 11))
-    """
+    """Spread positions over the zones of the path of contact."""
     require_between("positions", positions, LEAST, MOST)
     ratio = contact.contact_ratio
     found = [0.0, ratio]
@@ -253,7 +151,7 @@ def path_positions(
     return PathPositions(tuple(edges), _shares(np.diff(edges), int(positions)))
 
 
-def _shares(lengths: FloatArray, total: int) -> tuple[int, ...]:
+def _shares(lengths: Array, total: int) -> tuple[int, ...]:
     """Whole numbers in proportion to the lengths, at least four each, by the largest remainder."""
     free = np.maximum(total * lengths / lengths.sum(), _LEAST_IN_ZONE)
     wide = free > _LEAST_IN_ZONE

@@ -6,16 +6,11 @@ import warnings
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, ModelWarning, Problem
 from tribodyn.mesh.path_film import FilmAt
 from tribodyn.mesh.teeth import Carried, Teeth
-
-__all__ = ["in_series"]
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+from tribodyn.types import Array, Mask
 
 #: The film is solved anew until the load shares move by less than this.
 _TOLERANCE = 1e-6
@@ -36,41 +31,10 @@ _LOST = 1e-9
 def in_series(
     teeth: Teeth,
     total_load: float,
-    film_of: Callable[[FloatArray], FilmAt],
+    film_of: Callable[[Array], FilmAt],
     where: Callable[[int, int], str],
 ) -> tuple[Carried, FilmAt]:
-    """Put the film of each pair in series with its teeth, at the load share that follows.
-
-    Parameters
-    ----------
-    teeth : Teeth
-        Teeth of all pairs.
-    total_load : float [N/m]
-        Load of all pairs together per face width.
-    film_of : callable
-        Solves the film for the loads (n, pairs) of a mesh table, and returns the films of the
-        touching pairs as a function of their loads.
-    where : callable
-        Says which tooth pair a row and a column are.
-
-    Returns
-    -------
-    tuple
-        How the mesh carries its load, and the films of the touching pairs as a function of their
-        loads.
-
-    Raises
-    ------
-    ComputationError
-        If the share does not settle: the film is softer than the tooth_stiffness.
-
-    Notes
-    -----
-    ``1/k = 1/k_teeth + 1/K_film`` for each pair, never for the sum of the pairs; pairs deflect
-    alike, so that a share is in proportion to ``k``. The stiffness of the film grows with its
-    load, hence the search for a fixed point. The teeth keep the stiffness that they have at the
-    share without film, which differs by parts of a percent.
-    """
+    """Put the film of each pair in series with its teeth, at the load share that follows."""
     share = teeth.carried().share
     for _ in range(_PASSES):
         film_at = film_of(total_load * share)
@@ -86,7 +50,7 @@ def _settle(
     teeth: Teeth,
     total_load: float,
     film_at: FilmAt,
-    share: FloatArray,
+    share: Array,
     where: Callable[[int, int], str],
 ) -> Carried:
     """Find the fixed point of share and stiffness with the films as a function of their load."""
@@ -115,13 +79,10 @@ def _settle_together(
     teeth: Teeth,
     total_load: float,
     film_at: FilmAt,
-    share: FloatArray,
+    share: Array,
     where: Callable[[int, int], str],
 ) -> Carried:
-    """The same for pairs that are solved together; a share that swings to and fro is slowed down.
-
-    A pair may carry nothing, so that nothing can be extrapolated.
-    """
+    """The same for pairs solved together; a share that swings to and fro is slowed down."""
     least = teeth.least_share * total_load
     pace, before = np.ones(share.shape), np.zeros(share.shape)
     for _ in range(_STEPS):
@@ -135,7 +96,7 @@ def _settle_together(
     raise _still_moving(np.abs(step), where)
 
 
-def _still_moving(change: FloatArray, where: Callable[[int, int], str]) -> ComputationError:
+def _still_moving(change: Array, where: Callable[[int, int], str]) -> ComputationError:
     row, pair = np.unravel_index(int(np.argmax(change)), change.shape)
     return _unsettled(
         f"the load share of {where(int(row), int(pair))} still moves by {change.max():.2g} after "
@@ -143,9 +104,7 @@ def _still_moving(change: FloatArray, where: Callable[[int, int], str]) -> Compu
     )
 
 
-def _film_stiffness(
-    in_contact: BoolArray, load_per_width: FloatArray, film_at: FilmAt
-) -> FloatArray:
+def _film_stiffness(in_contact: Mask, load_per_width: Array, film_at: FilmAt) -> Array:
     """Stiffness of the films, zero where the pair is not in contact."""
     with warnings.catch_warnings():
         # What a formula has to say, it says of the load share that is found.
@@ -156,7 +115,7 @@ def _film_stiffness(
     return stiffness
 
 
-def _extrapolated(earlier: list[FloatArray], in_contact: BoolArray) -> FloatArray:
+def _extrapolated(earlier: list[Array], in_contact: Mask) -> Array:
     """Limit of the last three shares by the rule of Aitken, where it lies nearby."""
     first, second, third = earlier[-3:]
     step, bend = third - second, third - 2.0 * second + first

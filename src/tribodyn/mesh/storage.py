@@ -20,7 +20,6 @@ from tribodyn.nomenclature import QUANTITIES
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["load", "save", "to_xarray"]
 
 _FORMAT = "tribodyn mesh table 3"
 #: Tables of independent pairs, as they were written before; the first without a film in series.
@@ -38,19 +37,7 @@ _DERIVED = ("mesh_stiffness", "friction_sum", "friction_moment_pinion", "frictio
 
 
 def to_xarray(table: MeshTable) -> xarray.Dataset:
-    """Convert a mesh table to a labelled data set.
-
-    Parameters
-    ----------
-    table : MeshTable
-        The table.
-
-    Returns
-    -------
-    xarray.Dataset
-        Columns with attributes ``units`` and ``long_name`` over the dimensions ``knot`` and
-        ``pair``, events over ``event``; what made the table as attributes.
-    """
+    """Convert a mesh table to a labelled data set."""
     import xarray
 
     variables: dict[str, Any] = {}
@@ -79,20 +66,7 @@ def _describe(column: str) -> dict[str, str]:
 
 
 def save(table: MeshTable, path: str | PathLike[str]) -> None:
-    """Write a mesh table to a netCDF file.
-
-    Parameters
-    ----------
-    table : MeshTable
-        The table.
-    path : str or path
-        File to write.
-
-    Raises
-    ------
-    OutputExistsError
-        If the file exists.
-    """
+    """Write a mesh table to a netCDF file."""
     if Path(path).exists():
         raise OutputExistsError(
             Problem(
@@ -106,22 +80,7 @@ def save(table: MeshTable, path: str | PathLike[str]) -> None:
 
 
 def load(path: str | PathLike[str]) -> MeshTable:
-    """Read a mesh table from a netCDF file.
-
-    Parameters
-    ----------
-    path : str or path
-        File that :func:`save` wrote.
-
-    Returns
-    -------
-    MeshTable
-
-    Raises
-    ------
-    InputError
-        If there is no such file, or it holds no mesh table.
-    """
+    """Read a mesh table from a netCDF file."""
     import xarray
 
     try:

@@ -8,7 +8,6 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, Problem
@@ -16,13 +15,10 @@ from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["MeshTable"]
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,7 +49,7 @@ class MeshTable(MeshColumns):
         """Mean of the tangent stiffness over the cycle [N/m]."""
         return float(self.grid.mean(self.mesh_stiffness_tangent))
 
-    def harmonics(self, column: str, count: int = 5) -> FloatArray:
+    def harmonics(self, column: str, count: int = 5) -> Array:
         """Peak amplitudes of the mesh harmonics of a column over the phase.
 
         Parameters
@@ -71,7 +67,7 @@ class MeshTable(MeshColumns):
         wave = np.exp(-2j * np.pi * np.outer(self.phase, np.arange(1, count + 1)))
         return np.asarray(2.0 * np.abs(self.grid.mean(wave * getattr(self, column)[:, None])))
 
-    def at(self, column: str, phase: FloatArray | float) -> FloatArray:
+    def at(self, column: str, phase: Array | float) -> Array:
         """Interpolate a column at any mesh phase.
 
         Parameters

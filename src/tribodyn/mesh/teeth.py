@@ -7,86 +7,38 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import PathOfContact
 from tribodyn.gear import Material
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
 from tribodyn.stiffness.model import usable_stiffness
-
-__all__ = ["LEAST_SHARE", "Carried", "Teeth", "teeth_of"]
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-
+from tribodyn.types import Array, Mask
 
 #: A pair that is kept apart has the film and the friction of this part of the load of all.
 LEAST_SHARE = 1e-3
 
 
 class Carried(NamedTuple):
-    """How a mesh carries its quasi-static load.
+    """How a mesh carries its quasi-static load."""
 
-    Parameters
-    ----------
-    stiffness : array (n, pairs) [N/m]
-        Force on each pair on the path of contact over the deflection of the mesh.
-    share : array (n, pairs)
-        Part of the total force on each pair on the path of contact.
-    corner_share : array (n, 2)
-        The same on tip corners before A, and after E.
-    transmission_error : array (n,) [m]
-        Approach along the line of action, deviations included.
-    tangent : array (n,) [N/m]
-        Slope of the total force over it.
-    """
-
-    stiffness: FloatArray
-    share: FloatArray
-    corner_share: FloatArray
-    transmission_error: FloatArray
-    tangent: FloatArray
+    stiffness: Array  #: [N/m]
+    share: Array  #: part of the total force on each pair on the path of contact
+    corner_share: Array  #: the same on tip corners before A, and after E
+    transmission_error: Array  #: approach along the line of action, deviations included [m]
+    tangent: Array  #: slope of the total force over it [N/m]
 
 
 @dataclass(frozen=True, eq=False)
 class Teeth:
-    """Teeth of all pairs over one mesh cycle; made by :func:`teeth_of`.
+    """Teeth of all pairs over one mesh cycle; made by :func:`teeth_of`."""
 
-    Parameters
-    ----------
-    in_contact : bool array (n, pairs)
-        Which pairs are on the path of contact.
-    total_force : float [N]
-        Normal force of all pairs.
-    stiffness : array (n, pairs) [N/m] or None
-        Secant stiffness of pairs that are springs of their own; none where they are solved
-        together, because of their coupling or of their gaps.
-    problem : ContactProblem
-        The loaded tooth contact at the same phases.
-    """
+    in_contact: Mask  #: which pairs are on the path of contact
+    total_force: float  #: normal force of all pairs [N]
+    stiffness: Array | None  #: secant stiffness of pairs that are springs of their own [N/m]
+    problem: ContactProblem  #: the loaded tooth contact at the same phases
 
-    in_contact: BoolArray
-    total_force: float
-    stiffness: FloatArray | None
-    problem: ContactProblem
-
-    def carried(self, film_stiffness: FloatArray | None = None) -> Carried:
-        """Share the load among the pairs.
-
-        Parameters
-        ----------
-        film_stiffness : array (n, pairs) [N/m], optional
-            Stiffness of the film of each pair on the path of contact, zero elsewhere.
-
-        Returns
-        -------
-        Carried
-
-        Raises
-        ------
-        ComputationError
-            If the load is beyond what the formula of the local compression covers.
-        """
+    def carried(self, film_stiffness: Array | None = None) -> Carried:
+        """Share the load among the pairs."""
         if self.stiffness is None:
             return self._together(self.with_film(film_stiffness))
         each = self.stiffness
@@ -106,19 +58,8 @@ class Teeth:
             problem.tangent_at(load),
         )
 
-    def with_film(self, film_stiffness: FloatArray | None) -> ContactProblem:
-        """Put the films in series with the teeth.
-
-        Parameters
-        ----------
-        film_stiffness : array (n, pairs) [N/m] or None
-            Stiffness of the film of each pair on the path of contact.
-
-        Returns
-        -------
-        ContactProblem
-            A tip corner beyond the path of contact has the film of the end that is next to it.
-        """
+    def with_film(self, film_stiffness: Array | None) -> ContactProblem:
+        """Put the films in series with the teeth."""
         if film_stiffness is None:
             return self.problem
         entering, leaving = self._ends()
@@ -158,10 +99,7 @@ class Teeth:
 
     @property
     def least_share(self) -> float:
-        """Part of the load for which film and friction of a pair are found at least.
-
-        Pairs that are springs of their own all carry; others may be kept apart by their flanks.
-        """
+        """Part of the load for which film and friction of a pair are found at least."""
         return 0.0 if self.stiffness is not None else LEAST_SHARE
 
     @property
@@ -186,41 +124,13 @@ class Teeth:
 
 def teeth_of(
     contact: PathOfContact,
-    places: tuple[FloatArray, FloatArray, BoolArray],
+    places: tuple[Array, Array, Mask],
     material: Material,
     total_force: float,
     model: str,
     options: Mapping[str, Any],
 ) -> Teeth:
-    """Teeth of a mesh by a named stiffness model.
-
-    Parameters
-    ----------
-    contact : PathOfContact
-        Path of contact of the pair.
-    places : tuple
-        Phase (n,), path (n, pairs) [m] and which pairs are on the path of contact (n, pairs).
-    material : Material
-        Material of both gears.
-    total_force : float [N]
-        Normal force of all pairs.
-    model : str
-        Name in ``tribodyn.stiffness.MODELS``.
-    options : mapping
-        Options of the model.
-
-    Returns
-    -------
-    Teeth
-        Solved together where the model couples the pairs, or flanks are not perfect.
-
-    Raises
-    ------
-    InputError
-        If an option is out of range.
-    ComputationError
-        If a pair in contact has no stiffness.
-    """
+    """Teeth of a mesh by a named stiffness model."""
     chosen, pair = MODELS[model], contact.pair
     phase, path, in_contact = places
     given = {**chosen.options, **options}

@@ -5,64 +5,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line
 from tribodyn.ehl import FILM_MODELS, moes_central
 from tribodyn.ehl.solved_films import Films
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import MeshCycle
-
-__all__ = ["Touching", "touching_pairs"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
 class Touching:
-    """Pairs in contact without their load, as arrays of one shape.
+    """Pairs in contact without their load, as arrays of one shape."""
 
-    Parameters
-    ----------
-    age : array
-        Mesh cycles since the pair entered contact.
-    equivalent_radius : array [m]
-        Reduced radius of curvature.
-    entrainment_speed : array [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        Oil at working temperature.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-    common_face_width : float [m]
-        Length of the contact line.
-    """
+    age: Array  #: mesh cycles since the pair entered contact
+    equivalent_radius: Array  #: reduced radius of curvature [m]
+    entrainment_speed: Array  #: HALF the sum of the surface speeds [m/s]
+    lubricant: Lubricant  #: oil at working temperature
+    effective_modulus: float  #: ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2`` [Pa]
+    common_face_width: float  #: length of the contact line [m]
 
-    age: FloatArray
-    equivalent_radius: FloatArray
-    entrainment_speed: FloatArray
-    lubricant: Lubricant
-    effective_modulus: float
-    common_face_width: float
-
-    def films(self, model: str, load_per_width: FloatArray, **options: Any) -> Films:
-        """Films of every one of these contacts.
-
-        Parameters
-        ----------
-        model : str
-            Name in ``tribodyn.ehl.FILM_MODELS``.
-        load_per_width : array [N/m]
-            Their loads.
-        **options : object
-            Options of the model.
-
-        Returns
-        -------
-        Films
-        """
+    def films(self, model: str, load_per_width: Array, **options: Any) -> Films:
+        """Films of every one of these contacts."""
         return FILM_MODELS[model].films(
             load_per_width,
             self.equivalent_radius,
@@ -73,19 +37,8 @@ class Touching:
             **options,
         )
 
-    def scales(self, load_per_width: FloatArray) -> dict[str, FloatArray]:
-        """Estimates of the films that are right in every regime, but for a factor that is smooth.
-
-        Parameters
-        ----------
-        load_per_width : array [N/m]
-            Their loads.
-
-        Returns
-        -------
-        dict of str to array
-            One for each array of :class:`tribodyn.ehl.solved_films.Films`.
-        """
+    def scales(self, load_per_width: Array) -> dict[str, Array]:
+        """Estimates of the films, right in every regime but for a factor that is smooth."""
         arguments = (
             load_per_width, self.equivalent_radius, self.entrainment_speed,
             self.lubricant.dynamic_viscosity, self.lubricant.pressure_viscosity_coefficient,
@@ -104,23 +57,7 @@ class Touching:
 def touching_pairs(
     cycle: MeshCycle, motion: Kinematics, lubricant: Lubricant, material: Material
 ) -> Touching:
-    """Gather what the films of the touching pairs depend on, their loads excepted.
-
-    Parameters
-    ----------
-    cycle : MeshCycle
-        Places of the pairs.
-    motion : Kinematics
-        Curvatures and speeds of the touching ones.
-    lubricant : Lubricant
-        Oil at working temperature.
-    material : Material
-        Material of both gears.
-
-    Returns
-    -------
-    Touching
-    """
+    """Gather what the films of the touching pairs depend on, their loads excepted."""
     return Touching(
         age=cycle.age,
         equivalent_radius=motion.equivalent_radius,

@@ -11,8 +11,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import parameter_axis, scaled, unit_of
 from tribodyn.plot.style import PAIR_COLORS, PINION, WHEEL, figure
 
-__all__ = ["basins"]
-
 #: Colours of the attractors in the order of their shares; more of them begin anew.
 _COLORS = (PINION, PAIR_COLORS[3], PAIR_COLORS[0], PAIR_COLORS[1], PAIR_COLORS[2], WHEEL)
 _NOWHERE = "#d5dae0"

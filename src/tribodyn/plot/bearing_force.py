@@ -13,8 +13,6 @@ from tribodyn.plot.motion import Motion
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import stack
 
-__all__ = ["bearing_force"]
-
 
 def _caption(result: Any) -> str:
     return (

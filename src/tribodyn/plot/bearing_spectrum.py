@@ -10,8 +10,6 @@ from tribodyn.plot.harmonics import harmonic_layout, no_harmonics, strongest
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import stack
 
-__all__ = ["bearing_spectrum"]
-
 
 def _missing(result: Any) -> str:
     return no_translation(result) or no_harmonics(result)

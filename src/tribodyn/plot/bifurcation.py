@@ -12,8 +12,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PINION, WHEEL, Panel, line, stack
 from tribodyn.units import convert
 
-__all__ = ["bifurcation"]
-
 _COLORS = {"up": PINION, "down": WHEEL, "independent": PINION}
 _WORDS = {"up": "upwards", "down": "downwards", "independent": "from rest"}
 #: What a point that is not physics looks like.

@@ -5,19 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tribodyn.plot.harmonics import harmonic_panel
 from tribodyn.plot.labels import axis_label, axis_words, display_unit
 from tribodyn.plot.motion import Motion
 from tribodyn.plot.style import PINION, WHEEL, Panel, line
 from tribodyn.study.record import centre_column
-
-__all__ = ["harmonic_panels", "motion_panels", "no_translation"]
+from tribodyn.types import Array
 
 #: Takes a result, a gear and an axis; returns the signal on the fine samples in SI.
-Signal = Callable[[Any, str, str], NDArray[np.float64]]
+Signal = Callable[[Any, str, str], Array]
 
 #: Name and colour of each gear's curve.
 _GEARS = (("pinion", PINION), ("wheel", WHEEL))
@@ -31,18 +27,7 @@ def _words(quantity: str, direction: str) -> str:
 
 
 def no_translation(result: Any) -> str:
-    """Tell why a result has no motion of the gear centres.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    str
-        Empty when the gear centres move.
-    """
+    """Tell why a result has no motion of the gear centres."""
     if centre_column(result.response.names, "pinion", "y") is not None:
         return ""
     return (
@@ -52,22 +37,7 @@ def no_translation(result: Any) -> str:
 
 
 def motion_panels(result: Any, quantity: str, signal: Signal) -> list[Panel]:
-    """Show a signal of both gears over the mesh cycle or over time.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-    quantity : str
-        Quantity of the signal in the nomenclature.
-    signal : callable
-        Takes a result, a gear and an axis; returns the signal in SI.
-
-    Returns
-    -------
-    list of Panel
-        Along the line of action, and across it.
-    """
+    """Show a signal of both gears over the mesh cycle or over time."""
     motion, unit = Motion(result), display_unit(quantity)
 
     def curve(gear: str, axis: str, color: str) -> dict[str, Any]:
@@ -84,22 +54,7 @@ def motion_panels(result: Any, quantity: str, signal: Signal) -> list[Panel]:
 
 
 def harmonic_panels(result: Any, quantity: str, signal: Signal) -> list[Panel]:
-    """Show the mesh harmonics of a signal of both gears.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns; its response is a steady state.
-    quantity : str
-        Quantity of the signal in the nomenclature.
-    signal : callable
-        Takes a result, a gear and an axis; returns the signal in SI.
-
-    Returns
-    -------
-    list of Panel
-        Along the line of action, and across it; empty if the gear centres do not move.
-    """
+    """Show the mesh harmonics of a signal of both gears."""
     if no_translation(result):
         return []
     return [

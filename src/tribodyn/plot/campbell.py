@@ -10,8 +10,6 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, WHEEL, Panel, line, stack
 
-__all__ = ["campbell"]
-
 #: Widths of the curve of a mode without and with all of its strain in the mesh [px].
 _THIN, _THICK = 1.0, 4.0
 

@@ -13,8 +13,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
 from tribodyn.plot.torques import torque_colors, torque_texts
 
-__all__ = ["comprehensive_stiffness"]
-
 #: Panels: column, quantity and words.
 _PANELS = (
     ("film_stiffness", "film_stiffness", "Oil film K<sub>o</sub>"),

@@ -11,18 +11,7 @@ from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.plot.labels import axis_label, display_unit, displayed, significant
-
-__all__ = [
-    "Scales",
-    "contact_scales",
-    "dry_pressure",
-    "film_height",
-    "place_of_minimum",
-    "thinned",
-    "window",
-]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Films are drawn up to this many times the thickest central film: beyond lies the open gap.
 _FILMS = 3.0
@@ -32,17 +21,7 @@ _NOTHING = 0.02
 
 @dataclass(frozen=True)
 class Scales:
-    """How the curves of one contact become numbers on the axes.
-
-    Parameters
-    ----------
-    position, pressure, film : float
-        What the values of the solution are multiplied by.
-    position_label, pressure_label, film_label : str
-        Labels of the axes, with units.
-    pressure_unit, film_unit : str
-        Units behind the numbers.
-    """
+    """How the curves of one contact become numbers on the axes."""
 
     position: float
     pressure: float
@@ -54,35 +33,11 @@ class Scales:
     film_unit: str
 
     def film_text(self, film: float, digits: int = 3) -> str:
-        """Write a film with its unit.
-
-        Parameters
-        ----------
-        film : float
-            Film in the unit of the solution.
-        digits : int
-            Significant digits.
-
-        Returns
-        -------
-        str
-        """
+        """Write a film with its unit."""
         return f"{significant(self.film * film, digits)} {self.film_unit}"
 
     def pressure_text(self, pressure: float, digits: int = 3) -> str:
-        """Write a pressure with its unit.
-
-        Parameters
-        ----------
-        pressure : float
-            Pressure in the unit of the solution.
-        digits : int
-            Significant digits.
-
-        Returns
-        -------
-        str
-        """
+        """Write a pressure with its unit."""
         return f"{significant(self.pressure * pressure, digits)} {self.pressure_unit}"
 
 
@@ -114,26 +69,7 @@ def _metric() -> Scales:
 
 
 def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales]:
-    """Choose the units for contacts that share their axes.
-
-    Parameters
-    ----------
-    solutions : sequence of LineContactSolution
-        Solved contacts.
-    dimensionless : bool
-        Whether positions are drawn in half widths, pressures in Hertz pressures and films in
-        ``b^2/R``. Contacts given by the numbers of Moes have no other units.
-
-    Returns
-    -------
-    list of Scales
-        One for each contact.
-
-    Raises
-    ------
-    InputError
-        If there is no contact, or some of them have units and others have not.
-    """
+    """Choose the units for contacts that share their axes."""
     if not solutions:
         raise InputError(
             Problem(
@@ -181,35 +117,13 @@ def dry_pressure(solution: Any, points: int = 101) -> tuple[Array, Array]:
 
 
 def place_of_minimum(solution: Any) -> float:
-    """Position of the least film between inlet and outlet.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        A solved contact.
-
-    Returns
-    -------
-    float
-        Position in the unit of the solution.
-    """
+    """Position of the least film between inlet and outlet."""
     filled = solution.position <= solution.outlet
     return float(solution.position[filled][np.argmin(solution.film[filled])])
 
 
 def window(solution: Any) -> tuple[float, float]:
-    """Part of the axis in which something happens.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        A solved contact.
-
-    Returns
-    -------
-    tuple of float
-        First and last position, in the unit of the solution.
-    """
+    """Part of the axis in which something happens."""
     position, pressure, half = solution.position, solution.pressure, solution.half_width
     loaded = position[pressure > _NOTHING * pressure.max()]
     left = max(float(loaded[0]) - 0.1 * half, float(position[0]))
@@ -218,41 +132,13 @@ def window(solution: Any) -> tuple[float, float]:
 
 
 def film_height(solutions: Sequence[Any], scales: Sequence[Scales]) -> float:
-    """Upper end of an axis for the films of some contacts, in its display unit.
-
-    Parameters
-    ----------
-    solutions : sequence of LineContactSolution
-        Solved contacts.
-    scales : sequence of Scales
-        Units of each.
-
-    Returns
-    -------
-    float
-    """
+    """Upper end of an axis for the films of some contacts, in its display unit."""
     thickest = (s.film * one.central_film for one, s in zip(solutions, scales, strict=True))
     return float(_FILMS * max(thickest))
 
 
 def thinned(solution: Any, points: int) -> NDArray[np.intp]:
-    """Choose nodes that keep the shape of both curves, among them every extremum.
-
-    The nodes crowd where a curve bends: their density follows the square root of the second
-    derivative, for which straight lines between them err alike everywhere.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        A solved contact.
-    points : int
-        Largest number of nodes to keep.
-
-    Returns
-    -------
-    array of int
-        Increasing indices of the nodes, the first and the last included.
-    """
+    """Choose nodes that keep the shape of both curves, among them every extremum."""
     n = len(solution.position)
     if n <= points:
         return np.arange(n)

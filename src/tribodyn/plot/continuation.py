@@ -5,17 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.labels import axis_label, displayed, rounded, significant
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
-
-__all__ = ["continuation"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 _UNSTABLE = PAIR_COLORS[3]
 #: Kind of special point: words, colour and symbol.
@@ -49,7 +45,7 @@ def _signal(branch: Any) -> tuple[Array, list[float], str]:
     return factor * np.asarray(branch.rms[:, 0], dtype=float), special, unit
 
 
-def _part(values: Array, keep: NDArray[np.bool_]) -> Array:
+def _part(values: Array, keep: Mask) -> Array:
     """Values of the points kept and of their neighbours, so that the parts meet."""
     near = keep | np.roll(keep, 1) & (np.arange(keep.size) > 0)
     return np.where(near, values, np.nan)

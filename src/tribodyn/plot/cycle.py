@@ -8,74 +8,25 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.labels import axis_label
 from tribodyn.plot.sharing import further_changes
-
-__all__ = [
-    "CYCLES",
-    "cycles",
-    "driving_roll_angle",
-    "mesh_events",
-    "pair_life",
-    "pair_lives",
-    "positions",
-    "roll_angle_label",
-    "roll_angle_positions",
-]
+from tribodyn.types import Array
 
 #: Mesh cycles drawn, so that the transition from one cycle to the next is seen.
 CYCLES = 2
 
-Curve = tuple[NDArray[np.float64], NDArray[np.float64]]
+Curve = tuple[Array, Array]
 
 
-def cycles(phase: NDArray[np.float64], values: NDArray[np.float64], repeats: int = CYCLES) -> Curve:
-    """Repeat one mesh cycle side by side.
-
-    A phase that occurs twice carries the values before and after a jump, which is then drawn as
-    a vertical line.
-
-    Parameters
-    ----------
-    phase : array, shape (n,)
-        Mesh phase from 0 to 1.
-    values : array, shape (n,)
-        One value for each phase.
-    repeats : int
-        Mesh cycles to draw.
-
-    Returns
-    -------
-    tuple of array, each of shape (repeats * n,)
-        Mesh phase and values.
-
-    Examples
-    --------
-    >>> phase, values = cycles(np.array([0.0, 1.0]), np.array([3.0, 4.0]))
-    >>> phase.tolist(), values.tolist()
-    ([0.0, 1.0, 1.0, 2.0], [3.0, 4.0, 3.0, 4.0])
-    """
+def cycles(phase: Array, values: Array, repeats: int = CYCLES) -> Curve:
+    """Repeat one mesh cycle side by side."""
     shifted = [phase + cycle for cycle in range(repeats)]
     return np.concatenate(shifted), np.tile(values, repeats)
 
 
 def pair_life(mesh: Any, column: str) -> Curve:
-    """Follow one tooth pair from where it enters to where it leaves.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Its columns have the shape (n, pairs); pair ``i`` entered ``i`` cycles before phase 0.
-    column : str
-        Name of the column.
-
-    Returns
-    -------
-    tuple of array, each of shape (k,)
-        Age of the pair in mesh cycles, and the column in SI.
-    """
+    """Follow one tooth pair from where it enters to where it leaves."""
     values = getattr(mesh, column)
     ages = mesh.phase[:, None] + np.arange(values.shape[1])
     touching = mesh.in_contact.T
@@ -83,20 +34,7 @@ def pair_life(mesh: Any, column: str) -> Curve:
 
 
 def pair_lives(mesh: Any, column: str) -> list[Curve]:
-    """Follow every tooth pair that touches within the cycles drawn, from zero and back to zero.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Its columns have the shape (n, pairs).
-    column : str
-        Name of a column that is zero outside contact, such as ``"stiffness"``.
-
-    Returns
-    -------
-    list of tuple of array
-        Mesh phase and the column in SI, one entry for each tooth pair.
-    """
+    """Follow every tooth pair that touches within the cycles drawn, from zero and back to zero."""
     age, values = pair_life(mesh, column)
     age = np.concatenate((age[:1], age, age[-1:]))
     values = np.concatenate(([0.0], values, [0.0]))
@@ -107,59 +45,25 @@ def pair_lives(mesh: Any, column: str) -> list[Curve]:
     return lives
 
 
-def _driving(mesh: Any) -> tuple[NDArray[np.float64], float]:
+def _driving(mesh: Any) -> tuple[Array, float]:
     """Radius of curvature of the driving flank along a pair's life, and its base radius [m]."""
     radius = pair_life(mesh, f"{mesh.driver}_curvature_radius")[1]
     return radius, getattr(mesh, f"base_radius_{mesh.driver}")
 
 
-def driving_roll_angle(mesh: Any) -> NDArray[np.float64]:
-    """Roll angle of the driving gear along the life of one tooth pair.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        One mesh cycle.
-
-    Returns
-    -------
-    array, shape (k,)
-        Roll angle [rad], for the same samples as :func:`pair_life`.
-    """
+def driving_roll_angle(mesh: Any) -> Array:
+    """Roll angle of the driving gear along the life of one tooth pair."""
     radius, base_radius = _driving(mesh)
     return radius / base_radius
 
 
 def roll_angle_label(mesh: Any) -> str:
-    """Label of an axis of roll angles.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        One mesh cycle.
-
-    Returns
-    -------
-    str
-    """
+    """Label of an axis of roll angles."""
     return axis_label("roll_angle", f"Roll angle of the driving gear ({mesh.driver})")
 
 
 def positions(mesh: Any) -> dict[str, float]:
-    """Ages at which a tooth pair passes the positions A to E and further changes of sharing.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        One mesh cycle.
-
-    Returns
-    -------
-    dict of str to float
-        Mesh cycles since the pair entered at A. The pair before it leaves at B, the pair after
-        it enters at D; C, the pitch point, may lie anywhere, also outside the contact. Further
-        positions where the number of pairs changes follow; see :func:`further_changes`.
-    """
+    """Ages at which a tooth pair passes the positions A to E and further changes of sharing."""
     radius, base_radius = _driving(mesh)
     line_of_action = mesh.pinion_curvature_radius[0, 0] + mesh.wheel_curvature_radius[0, 0]
     share = base_radius / (mesh.base_radius_pinion + mesh.base_radius_wheel)
@@ -171,18 +75,7 @@ def positions(mesh: Any) -> dict[str, float]:
 
 
 def roll_angle_positions(mesh: Any) -> dict[str, float]:
-    """Roll angles of the driving gear at the positions A to E and further changes of sharing.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        One mesh cycle.
-
-    Returns
-    -------
-    dict of str to float
-        Roll angles [rad].
-    """
+    """Roll angles of the driving gear at the positions A to E and further changes of sharing."""
     radius, base_radius = _driving(mesh)
     base_pitch = abs(mesh.path[-1, 0] - mesh.path[0, 0])
     return {
@@ -192,20 +85,7 @@ def roll_angle_positions(mesh: Any) -> dict[str, float]:
 
 
 def mesh_events(mesh: Any, repeats: int = CYCLES) -> list[tuple[str, float]]:
-    """Name the phases at which a tooth pair enters, leaves or rolls without sliding.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        One mesh cycle.
-    repeats : int
-        Mesh cycles to mark.
-
-    Returns
-    -------
-    list of tuple
-        Name and mesh phase.
-    """
+    """Name the phases at which a tooth pair enters, leaves or rolls without sliding."""
     age = positions(mesh)
     marks = [("enters", 0.0), ("leaves", age["E"] % 1.0)]
     if 0.0 <= age["C"] < age["E"]:

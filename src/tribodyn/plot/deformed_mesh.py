@@ -12,15 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
 from tribodyn.gear import Material
 from tribodyn.plot.gear_drawing import tooth_angles
-
-__all__ = ["BentMesh", "Load", "bent_mesh", "loads_at"]
-
-Points = NDArray[np.complex128]
+from tribodyn.types import ComplexArray
 
 #: Part of the total force from which a load is drawn, and teeth drawn on each side of the middle.
 _LOADED, _TEETH = 1e-3, 2
@@ -28,64 +24,27 @@ _LOADED, _TEETH = 1e-3, 2
 
 @dataclass(frozen=True)
 class Load:
-    """Load on one tooth pair.
+    """Load on one tooth pair."""
 
-    Parameters
-    ----------
-    path : float [m]
-        Place on the line of action where involutes would touch.
-    pinion_curvature_radius, wheel_curvature_radius : float [m]
-        Where each gear is touched.
-    force : float [N]
-        Normal force.
-    """
-
-    path: float
-    pinion_curvature_radius: float
-    wheel_curvature_radius: float
-    force: float
+    path: float  #: place on the line of action where involutes would touch [m]
+    pinion_curvature_radius: float  #: [m]
+    wheel_curvature_radius: float  #: [m]
+    force: float  #: normal force [N]
 
 
 @dataclass(frozen=True, eq=False)
 class BentMesh:
-    """Both gears near the contact at one phase.
+    """Both gears near the contact at one phase."""
 
-    Parameters
-    ----------
-    outline : dict of str to complex array (n,) [m]
-        Of ``"pinion"`` and ``"wheel"`` without load; they touch on the line of action.
-    displacement : dict of str to complex array (n,) [m]
-        Of the same points, with the turn of the driving gear that keeps the flanks in touch.
-    contact : complex array (k,) [m]
-        Where the loaded pairs touch without load.
-    shift : complex array (k,) [m]
-        Displacement of these places.
-    loads : list of Load
-        On these pairs.
-    """
-
-    outline: dict[str, Points]
-    displacement: dict[str, Points]
-    contact: Points
-    shift: Points
-    loads: list[Load]
+    outline: dict[str, ComplexArray]  #: of ``"pinion"`` and ``"wheel"`` without load [m]
+    displacement: dict[str, ComplexArray]  #: [m]
+    contact: ComplexArray  #: where the loaded pairs touch without load [m]
+    shift: ComplexArray  #: displacement of these places [m]
+    loads: list[Load]  #: on these pairs
 
 
 def loads_at(contact: Any, phase: int, torque: int = 0) -> list[Load]:
-    """Pairs that carry load at one phase.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns.
-    phase, torque : int
-        Indices of the phase and of the torque.
-
-    Returns
-    -------
-    list of Load
-        In the order of the pairs.
-    """
+    """Pairs that carry load at one phase."""
     shape = contact.normal_force.shape
     force = contact.normal_force.reshape(-1, *shape[-2:])[torque, phase]
     return [
@@ -101,7 +60,7 @@ def loads_at(contact: Any, phase: int, torque: int = 0) -> list[Load]:
 
 def _bent(
     pair: Any, name: str, angle: float, given: list[tuple[int, float, float]], reference: str
-) -> tuple[Points, Points]:
+) -> tuple[ComplexArray, ComplexArray]:
     """Outline and displacement of one gear, whose tooth 0 points into a direction."""
     from tribodyn.stiffness.fe2d import deformed_gear
 
@@ -129,24 +88,7 @@ def _touched(pair: Any, name: str, angle: float, tooth: int, radius: float) -> c
 
 
 def bent_mesh(contact: Any, phase: int, torque: int = 0) -> BentMesh:
-    """Bend both gears by the loads of one phase.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns.
-    phase, torque : int
-        Indices of the phase and of the torque.
-
-    Returns
-    -------
-    BentMesh
-
-    Notes
-    -----
-    Gears of steel, their bores held. The driving gear turns so far that the loaded flanks touch
-    as they do without load, by the mean of all pairs weighted with their forces.
-    """
+    """Bend both gears by the loads of one phase."""
     pair, loads = contact.gear_pair, loads_at(contact, phase, torque)
     path = path_of_contact(pair)
     middle = 0.5 * (path.A + path.E)

@@ -8,32 +8,12 @@ from typing import Any
 
 from tribodyn.plot.style import MUTED
 
-__all__ = ["event_lines"]
-
 #: Width of a character relative to the axis on a narrow screen, and height of a level [px].
 _CHARACTER, _LEVEL = 0.015, 14
 
 
 def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> dict[str, Any]:
-    """Mark positions on the horizontal axis.
-
-    Parameters
-    ----------
-    places : iterable of tuple
-        Name and position. Names at one position are joined.
-    share : float
-        Part of the width of the figure that the axis takes.
-
-    Returns
-    -------
-    dict
-        The ``shapes`` and ``annotations`` of a plotly layout.
-
-    Examples
-    --------
-    >>> [note["text"] for note in event_lines([("A", 0.0), ("D", 0.0)])["annotations"]]
-    ['A, D']
-    """
+    """Mark positions on the horizontal axis."""
     joined: dict[float, list[str]] = {}
     for name, x in places:
         joined.setdefault(round(float(x), 9), []).append(name)

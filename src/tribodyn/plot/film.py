@@ -17,8 +17,6 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 
-__all__ = ["film", "no_film"]
-
 #: Column of the mesh table, name in the legend, and colour.
 _FILMS = (
     ("central_film", "in the centre", PAIR_COLORS[2]),
@@ -31,18 +29,7 @@ def _columns(mesh: Any) -> list[tuple[str, str, str]]:
 
 
 def no_film(result: Any) -> str:
-    """Say why a result has no oil film.
-
-    Parameters
-    ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
-
-    Returns
-    -------
-    str
-        Empty if it has one.
-    """
+    """Say why a result has no oil film."""
     if _columns(result.mesh):
         return ""
     return 'No film model was chosen, so no oil film was computed. Choose film.model = "newton".'

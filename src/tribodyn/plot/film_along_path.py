@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.plot.contact_scales import contact_scales
 from tribodyn.plot.film_animation import Track, animation
 from tribodyn.plot.labels import displayed
-
-__all__ = ["film_along_path", "film_over_time"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Frames of an animation over time: more are not seen and make the file large.
 _FRAMES = 60

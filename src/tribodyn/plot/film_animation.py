@@ -14,10 +14,7 @@ from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.line_contact import curve, point
 from tribodyn.plot.style import INK, MUTED, PAIR_COLORS, TOTAL, figure
-
-__all__ = ["Track", "animation"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Points of a profile, and of the dry pressure: enough for a screen, small as a file.
 _POINTS, _DRY = 200, 41
@@ -37,22 +34,12 @@ def _short(values: Any) -> NDArray[np.float32]:
 
 @dataclass(frozen=True)
 class Track:
-    """What the contact moves along: the path of contact, or time.
-
-    Parameters
-    ----------
-    quantity, words : str
-        Name in the nomenclature, and what is printed under the axis.
-    values : (n,) array
-        Place of each contact, in SI.
-    letters : mapping of str to float
-        Places to be marked, in SI.
-    """
+    """What the contact moves along: the path of contact, or time."""
 
     quantity: str
     words: str
-    values: Array
-    letters: Mapping[str, float] = field(default_factory=dict)
+    values: Array  #: place of each contact, in SI
+    letters: Mapping[str, float] = field(default_factory=dict)  #: places to be marked, in SI
 
     @property
     def places(self) -> Array:
@@ -60,20 +47,7 @@ class Track:
         return displayed(self.quantity, self.values)
 
     def axis(self, share: tuple[float, float], anchor: str) -> dict[str, Any]:
-        """Describe the axis under one of the lower panels, on which time runs to the right.
-
-        Parameters
-        ----------
-        share : tuple of float
-            Left and right end, as parts of the width.
-        anchor : str
-            Vertical axis.
-
-        Returns
-        -------
-        dict
-            A plotly axis.
-        """
+        """Describe the axis under one of the lower panels, on which time runs to the right."""
         backwards = self.values[-1] < self.values[0]
         return {
             "domain": share,
@@ -216,28 +190,7 @@ def animation(
     dry: bool = True,
     whole: tuple[Array, Array, Array] | None = None,
 ) -> Any:
-    """Draw contacts one after the other, with a slider and a play button.
-
-    Parameters
-    ----------
-    title : str
-        The answer that the figure gives.
-    contacts : sequence
-        Each has positions, pressure, film, load and films as a LineContactSolution has them.
-    scales : Scales
-        Units of all contacts.
-    track : Track
-        Place of each contact.
-    dry : bool
-        Whether the dry pressure is drawn.
-    whole : tuple of three array, optional
-        Places, loads and minimum films of the lower panels in display units, where they are
-        known at more places than the contacts.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw contacts one after the other, with a slider and a play button."""
     import plotly.graph_objects as go
 
     places = track.places

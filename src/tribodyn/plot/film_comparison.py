@@ -20,8 +20,6 @@ from tribodyn.plot.contact_scales import (
 from tribodyn.plot.line_contact import curve, point
 from tribodyn.plot.style import INK, MUTED, PAIR_COLORS, Panel, stack
 
-__all__ = ["compare_line_contacts"]
-
 _POINTS = 1000
 _COLORS = (*PAIR_COLORS, INK)
 #: Short gaps, so that none swallows a spike [px].

@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
-
-__all__ = ["film_response", "film_transient", "transit_frequency"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Default frequencies, in transit frequencies, and their number.
 _LOWEST, _HIGHEST, _POINTS = 0.01, 1.0, 81
@@ -23,18 +20,7 @@ _CHANGE = 0.1
 
 
 def transit_frequency(solution: Any) -> float:
-    """Frequency ``u_e/(2 b)`` at which the oil crosses the contact once in a period.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        A solved contact with units.
-
-    Returns
-    -------
-    float
-        Frequency [Hz].
-    """
+    """Frequency ``u_e/(2 b)`` at which the oil crosses the contact once in a period."""
     return float(solution.entrainment_speed / (2.0 * solution.half_width))
 
 

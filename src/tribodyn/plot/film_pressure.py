@@ -19,8 +19,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
-__all__ = ["film_pressure"]
-
 
 def _caption(result: Any) -> str:
     return (

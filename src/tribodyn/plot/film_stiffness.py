@@ -18,8 +18,6 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, significan
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
-__all__ = ["film_stiffness"]
-
 #: Kinds of film stiffness that are in series with the teeth.
 _SPRINGS = ("tangent", "secant")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import (
     default_relief_length,
@@ -20,10 +19,7 @@ from tribodyn.plot.loaded_life import pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import PINION, TOTAL, WHEEL, Panel, line
-
-__all__ = ["flank_modification"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Places along the profile and along the face.
 _POINTS = 201

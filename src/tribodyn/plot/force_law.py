@@ -6,16 +6,11 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.cycle import positions
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
-
-__all__ = ["force_law"]
-
-Array = NDArray[np.float64]
 
 _COLORS = (TOTAL, *PAIR_COLORS)
 #: Deflections of a curve, and how far it goes beyond the working load.

@@ -10,8 +10,6 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
-__all__ = ["forced_response"]
-
 
 def _missing(result: Any) -> str:
     if hasattr(result, "structure_force"):

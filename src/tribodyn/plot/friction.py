@@ -18,8 +18,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, WHEEL, Panel, line, stack
 
-__all__ = ["friction"]
-
 
 def _caption(result: Any) -> str:
     return (

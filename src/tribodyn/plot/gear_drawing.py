@@ -12,33 +12,16 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import gear_outline
+from tribodyn.types import Array
 
-__all__ = ["circle", "on_line_of_action", "placed_outline", "rotation_arc", "tooth_angles"]
-
-Points = NDArray[np.float64]
-
-#: Points of each tooth: enough for a smooth trochoid on the screen.
+#: Array of each tooth: enough for a smooth trochoid on the screen.
 _TOOTH_POINTS = 60
 
 
-def on_line_of_action(pair: Any, path: Any) -> Points:
-    """Place positions on the line of action in the plane.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The gear pair.
-    path : float or array, shape (n,)
-        Distance from the base tangent point of the pinion [m].
-
-    Returns
-    -------
-    array, shape (2,) or (2, n)
-        Coordinates [m].
-    """
+def on_line_of_action(pair: Any, path: Any) -> Array:
+    """Place positions on the line of action in the plane."""
     angle, radius = pair.operating_pressure_angle, pair.pinion.base_radius
     along = np.asarray(path, dtype=float)
     x = radius * math.cos(angle) + along * math.sin(angle)
@@ -47,20 +30,7 @@ def on_line_of_action(pair: Any, path: Any) -> Points:
 
 
 def tooth_angles(pair: Any, path: float) -> tuple[float, float]:
-    """Directions of the two teeth that touch at a position.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The gear pair.
-    path : float
-        Distance from the base tangent point of the pinion [m].
-
-    Returns
-    -------
-    tuple of float
-        Angle from the horizontal axis to the centre of the tooth of pinion and wheel [rad].
-    """
+    """Directions of the two teeth that touch at a position."""
     x, y = on_line_of_action(pair, path)
     places = ((pair.pinion, x, y), (pair.wheel, x - pair.center_distance, y))
     first, second = (
@@ -69,79 +39,20 @@ def tooth_angles(pair: Any, path: float) -> tuple[float, float]:
     return first, second
 
 
-def placed_outline(gear: Any, center: float, angle: float, points: int = _TOOTH_POINTS) -> Points:
-    """Outline of a whole gear at its place.
-
-    Parameters
-    ----------
-    gear : SpurGear
-        The gear.
-    center : float
-        Horizontal coordinate of its axis [m].
-    angle : float
-        Direction of the centre of one tooth [rad].
-    points : int
-        Points of each tooth.
-
-    Returns
-    -------
-    array, shape (2, n)
-        Closed outline [m].
-    """
+def placed_outline(gear: Any, center: float, angle: float, points: int = _TOOTH_POINTS) -> Array:
+    """Outline of a whole gear at its place."""
     x, y = gear_outline(gear, points)
     turned = (x + 1j * y) * cmath.exp(1j * (angle - math.pi / 2.0))
     return np.array([center + turned.real, turned.imag])
 
 
-def circle(center: float, radius: float, points: int = 181) -> Points:
-    """Points of a circle around a point of the horizontal axis.
-
-    Parameters
-    ----------
-    center : float
-        Horizontal coordinate of its centre [m].
-    radius : float
-        Radius [m].
-    points : int
-        Number of points.
-
-    Returns
-    -------
-    array, shape (2, points)
-        Coordinates [m].
-
-    Examples
-    --------
-    >>> circle(1.0, 2.0, 3).round(12).tolist()
-    [[3.0, -1.0, 3.0], [0.0, 0.0, -0.0]]
-    """
+def circle(center: float, radius: float, points: int = 181) -> Array:
+    """Array of a circle around a point of the horizontal axis."""
     angle = np.linspace(0.0, 2.0 * np.pi, points)
     return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])
 
 
-def rotation_arc(center: float, radius: float, sense: int, points: int = 25) -> Points:
-    """Points of an arc above a gear's axis, in the order in which the gear turns.
-
-    Parameters
-    ----------
-    center : float
-        Horizontal coordinate of the gear's axis [m].
-    radius : float
-        Radius [m].
-    sense : int
-        1 anticlockwise, -1 clockwise.
-    points : int
-        Number of points.
-
-    Returns
-    -------
-    array, shape (2, points)
-        Coordinates [m].
-
-    Examples
-    --------
-    >>> rotation_arc(0.0, 1.0, 1, 3).round(3).tolist()
-    [[0.707, 0.0, -0.707], [0.707, 1.0, 0.707]]
-    """
+def rotation_arc(center: float, radius: float, sense: int, points: int = 25) -> Array:
+    """Array of an arc above a gear's axis, in the order in which the gear turns."""
     angle = 0.5 * np.pi + sense * np.linspace(-0.25 * np.pi, 0.25 * np.pi, points)
     return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])

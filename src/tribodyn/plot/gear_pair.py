@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
 from tribodyn.plot.gear_drawing import (
@@ -19,8 +18,7 @@ from tribodyn.plot.labels import axis_label, displayed
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.sharing import further_changes, load_sharing
 from tribodyn.plot.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, figure
-
-__all__ = ["gear_pair"]
+from tribodyn.types import Array
 
 #: Circles of each gear: name and dash.
 _CIRCLES = (("tip", "dot"), ("pitch", "dashdot"), ("base", "dash"))
@@ -28,7 +26,7 @@ _CIRCLES = (("tip", "dot"), ("pitch", "dashdot"), ("base", "dash"))
 _ASIDE, _APART = 34, 17
 
 
-def _curve(points: NDArray[np.float64], name: str, color: str, **more: Any) -> dict[str, Any]:
+def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
     x, y = displayed("center_distance", points)
     return {
         "type": "scatter",

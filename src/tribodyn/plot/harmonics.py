@@ -7,21 +7,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.analysis import Spectrum, amplitude_spectrum
 from tribodyn.plot.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.motion import is_periodic
 from tribodyn.plot.style import Panel, button_row
-
-__all__ = [
-    "harmonic_layout",
-    "harmonic_panel",
-    "no_harmonics",
-    "strongest",
-]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Highest mesh harmonic drawn.
 _HIGHEST = 80
@@ -30,18 +21,7 @@ _DECADES = 4.0
 
 
 def no_harmonics(result: Any) -> str:
-    """Tell why a result has no mesh harmonics.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    str
-        Empty for a steady state.
-    """
+    """Tell why a result has no mesh harmonics."""
     if is_periodic(result):
         return ""
     return (
@@ -62,23 +42,7 @@ def harmonic_panel(
     label: str,
     signals: Sequence[tuple[str, str, Array]],
 ) -> Panel:
-    """Show the harmonics of one or two signals side by side.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-    quantity : str
-        Quantity of the signals in the nomenclature.
-    label : str
-        Words for the vertical axis.
-    signals : sequence of tuple
-        Name, colour and the signal in SI.
-
-    Returns
-    -------
-    Panel
-    """
+    """Show the harmonics of one or two signals side by side."""
     hertz, unit = display_unit("frequency"), display_unit(quantity)
     traces = []
     for name, color, signal in signals:
@@ -99,18 +63,7 @@ def harmonic_panel(
 
 
 def strongest(panel: Panel) -> str:
-    """Name the mesh harmonic with the largest amplitude in the first curve of a panel.
-
-    Parameters
-    ----------
-    panel : Panel
-        Made by :func:`harmonic_panel`.
-
-    Returns
-    -------
-    str
-        Its order and, in brackets, its frequency.
-    """
+    """Name the mesh harmonic with the largest amplitude in the first curve of a panel."""
     bars = panel.traces[0]
     top = int(np.argmax(bars["y"]))
     frequency = significant(float(bars["customdata"][top]))
@@ -118,18 +71,7 @@ def strongest(panel: Panel) -> str:
 
 
 def harmonic_layout(panels: Sequence[Panel]) -> dict[str, Any]:
-    """Layout of a figure of harmonics, with buttons for a linear and a logarithmic scale.
-
-    Parameters
-    ----------
-    panels : sequence of Panel
-        All panels of the figure.
-
-    Returns
-    -------
-    dict
-        Plotly layout.
-    """
+    """Layout of a figure of harmonics, with buttons for a linear and a logarithmic scale."""
     linear: dict[str, Any] = {}
     logarithmic: dict[str, Any] = {}
     for number, panel in enumerate(panels, start=1):

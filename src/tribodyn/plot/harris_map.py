@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import mesh_marks, whole_cycles
@@ -13,10 +12,7 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line
 from tribodyn.plot.torques import named, torque_colors, torque_names
-
-__all__ = ["harris_map"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _QUANTITY = "static_transmission_error"
 #: Mesh harmonics drawn, each with a dash of its own; curves of the transmission error.

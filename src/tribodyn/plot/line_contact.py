@@ -18,31 +18,12 @@ from tribodyn.plot.contact_scales import (
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 
-__all__ = ["curve", "line_contact", "point"]
-
 #: Nodes beyond this number are not seen on a screen.
 _POINTS = 2000
 
 
 def curve(x: Any, y: Any, name: str, color: str, **more: Any) -> dict[str, Any]:
-    """Describe a curve that is drawn through all of its points, for a spike is few of them.
-
-    Parameters
-    ----------
-    x, y : array, shape (n,)
-        Coordinates in display units.
-    name : str
-        Name in the legend.
-    color : str
-        Colour of the curve.
-    **more
-        Further arguments of :func:`tribodyn.plot.style.line`.
-
-    Returns
-    -------
-    dict
-        A plotly scatter trace.
-    """
+    """Describe a curve that is drawn through all of its points, for a spike is few of them."""
     described = line(x, y, name, color, **more)
     described["line"]["simplify"] = False
     return described
@@ -51,31 +32,7 @@ def curve(x: Any, y: Any, name: str, color: str, **more: Any) -> dict[str, Any]:
 def point(
     x: float, y: float, name: str, color: str, *, unit: str = "", symbol: str = "circle"
 ) -> dict[str, Any]:
-    """Describe one marked point with a name in the legend.
-
-    Parameters
-    ----------
-    x, y : float
-        Coordinates in display units.
-    name : str
-        Name in the legend.
-    color : str
-        Colour of the mark.
-    unit : str
-        Display unit of ``y``, printed on hovering.
-    symbol : str
-        Plotly symbol.
-
-    Returns
-    -------
-    dict
-        A plotly scatter trace.
-
-    Examples
-    --------
-    >>> point(0.0, 1.2, "central film", "black", unit="µm")["hovertemplate"]
-    '%{y:.4g} µm<extra>central film</extra>'
-    """
+    """Describe one marked point with a name in the legend."""
     described = line([x], [y], name, color, unit=unit)
     del described["line"]
     edge = {"color": color, "width": 2}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.cycle import pair_life, positions
 from tribodyn.plot.events import event_lines
@@ -13,32 +12,14 @@ from tribodyn.plot.labels import display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import TOTAL, Panel, line, stack
-
-__all__ = ["load_sharing", "whole_life"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Part of the total force that counts as load on a tip corner.
 _LOADED = 1e-6
 
 
 def whole_life(mesh: Any) -> tuple[Array, Array]:
-    """Follow the load share of one tooth pair, tip corners before A and after E included.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        One mesh cycle.
-
-    Returns
-    -------
-    tuple of array, each of shape (k,)
-        Age of the pair in mesh cycles since A, and its part of the total normal force.
-
-    Notes
-    -----
-    A pair before A enters when the mesh cycle ends. The one after E is the last that left.
-    """
+    """Follow the load share of one tooth pair, tip corners before A and after E included."""
     age, share = pair_life(mesh, "load_share")
     ratio = positions(mesh)["E"]
     before, after = mesh.corner_share.T

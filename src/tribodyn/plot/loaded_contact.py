@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
@@ -23,10 +22,7 @@ from tribodyn.plot.loaded_life import (
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
 from tribodyn.plot.torques import named, torque_colors, torque_names
-
-__all__ = ["loaded_contact"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _QUANTITY = "static_transmission_error"
 #: Width of lines over many mesh cycles or for more than a few torques [px].
@@ -81,10 +77,7 @@ def _curves(contact: Any, quantity: str, values: Array, **look: Any) -> list[dic
 
 
 def _stiffness(contact: Any) -> list[dict[str, Any]]:
-    """Secant solid, tangent dashed; the legend tells the dashes, not the torques again.
-
-    Over many mesh cycles the secant alone stays readable.
-    """
+    """Secant solid, tangent dashed; the legend tells the dashes, not the torques again."""
     if several_cycles(contact):
         found = _curves(contact, "mesh_stiffness_secant", contact.mesh_stiffness_secant)
         return [{**trace, "showlegend": False} for trace in found]

@@ -6,28 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
 from tribodyn.plot.labels import axis_label, displayed
 from tribodyn.plot.sharing import further_changes
 from tribodyn.plot.style import MUTED
-
-__all__ = [
-    "Life",
-    "corner_shades",
-    "mesh_marks",
-    "needs_loaded_contact",
-    "pair_letters",
-    "roll_angle_of",
-    "roll_label",
-    "rows",
-    "several_cycles",
-    "span",
-    "whole_cycles",
-]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Mesh cycles shown beyond both ends of what is loaded.
 _MARGIN = 0.04
@@ -40,18 +24,7 @@ _SHADE = "rgba(107, 119, 133, 0.13)"
 
 
 def needs_loaded_contact(result: Any) -> str:
-    """Tell why something is not a loaded tooth contact.
-
-    Parameters
-    ----------
-    result : object
-        Anything that was asked for such a figure.
-
-    Returns
-    -------
-    str
-        Empty for what :func:`tribodyn.stiffness.loaded_contact` returns.
-    """
+    """Tell why something is not a loaded tooth contact."""
     if hasattr(result, "pair_deflection"):
         return ""
     return (
@@ -62,36 +35,16 @@ def needs_loaded_contact(result: Any) -> str:
 
 @dataclass(frozen=True)
 class Life:
-    """Least, mean and greatest value over all tooth pairs, from entry to exit.
+    """Least, mean and greatest value over all tooth pairs, from entry to exit."""
 
-    Parameters
-    ----------
-    age : array (k,)
-        Mesh cycles since a pair passed A, in order; twice the same where the load jumps.
-    least, mean, greatest : array (torques, k)
-        Over the pairs; equal where all teeth are alike.
-    """
-
-    age: Array
+    age: Array  #: mesh cycles since a pair passed A, in order
     least: Array
     mean: Array
     greatest: Array
 
     @classmethod
     def of(cls, contact: Any, values: Array) -> Life:
-        """Follow the tooth pairs of a loaded contact.
-
-        Parameters
-        ----------
-        contact : LoadedContact
-            What :func:`tribodyn.stiffness.loaded_contact` returns.
-        values : array (..., p, n)
-            One value for each phase and pair.
-
-        Returns
-        -------
-        Life
-        """
+        """Follow the tooth pairs of a loaded contact."""
         many = np.reshape(values, (-1, *np.shape(values)[-2:]))
         fraction = np.round(np.mod(contact.phase, 1.0), 9)
         phases, where = np.unique(fraction, return_inverse=True)
@@ -110,51 +63,17 @@ class Life:
 
 
 def rows(contact: Any, values: Array) -> list[Array]:
-    """Split values by torque, whether there is one torque or several.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns.
-    values : array (..., p)
-        With the axis of the torques first, if there is one.
-
-    Returns
-    -------
-    list of array (p,)
-        From the first torque to the last.
-    """
+    """Split values by torque, whether there is one torque or several."""
     return list(np.reshape(values, (np.size(contact.torque), -1)))
 
 
 def several_cycles(contact: Any) -> bool:
-    """Whether the teeth differ, so that several mesh cycles pass before everything repeats.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether the teeth differ, so that several mesh cycles pass before everything repeats."""
     return bool(np.max(contact.phase) >= 1.0)
 
 
 def span(contact: Any) -> tuple[float, float]:
-    """Ages between which some pair carries load, with a little margin.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns.
-
-    Returns
-    -------
-    tuple of float
-        First and last age in mesh cycles since A; from A to E at least.
-    """
+    """Ages between which some pair carries load, with a little margin."""
     shares = Life.of(contact, contact.load_share)
     loaded = shares.age[(shares.greatest > _LOADED).any(axis=0)]
     last = max(contact.gear_pair.transverse_contact_ratio, float(loaded.max()))
@@ -162,20 +81,7 @@ def span(contact: Any) -> tuple[float, float]:
 
 
 def roll_angle_of(pair: Any, age: Any) -> Array:
-    """Roll angle of the driving gear at an age of a tooth pair.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The gear pair.
-    age : float or array
-        Mesh cycles since the pair passed A.
-
-    Returns
-    -------
-    array
-        Roll angles [rad], shape of ``age``; along the line of action also beyond A and E.
-    """
+    """Roll angle of the driving gear at an age of a tooth pair."""
     contact = path_of_contact(pair)
     first = contact.A if pair.driver == "pinion" else pair.line_of_action_length - contact.A
     radius = first + np.asarray(age, dtype=float) * pair.base_pitch
@@ -183,33 +89,12 @@ def roll_angle_of(pair: Any, age: Any) -> Array:
 
 
 def roll_label(pair: Any) -> str:
-    """Label of an axis of roll angles.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The gear pair.
-
-    Returns
-    -------
-    str
-    """
+    """Label of an axis of roll angles."""
     return axis_label("roll_angle", f"Roll angle of the driving gear ({pair.driver})")
 
 
 def pair_letters(pair: Any) -> list[tuple[str, float]]:
-    """Positions A to E and further changes of sharing, as roll angles in the display unit.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The gear pair.
-
-    Returns
-    -------
-    list of tuple
-        Name and roll angle; the pitch point C only where it lies between A and E.
-    """
+    """Positions A to E and further changes of sharing, as roll angles in the display unit."""
     contact = path_of_contact(pair)
     ratio = contact.contact_ratio
     pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
@@ -224,48 +109,14 @@ def pair_letters(pair: Any) -> list[tuple[str, float]]:
 
 
 def whole_cycles(phase: Array, values: Array, period: int, repeats: int = 1) -> tuple[Array, Array]:
-    """Repeat evenly spaced samples of a periodic curve, up to where the last cycle ends.
-
-    Parameters
-    ----------
-    phase, values : array (p,)
-        Samples within one period, the first of them at its beginning.
-    period : int
-        Mesh cycles after which everything repeats.
-    repeats : int
-        Periods that are shown.
-
-    Returns
-    -------
-    tuple of array (repeats * p + 1,)
-        Mesh phase and values.
-
-    Examples
-    --------
-    >>> phase, values = whole_cycles(np.array([0.0, 0.5]), np.array([3.0, 4.0]), 1, 2)
-    >>> phase.tolist(), values.tolist()
-    ([0.0, 0.5, 1.0, 1.5, 2.0], [3.0, 4.0, 3.0, 4.0, 3.0])
-    """
+    """Repeat evenly spaced samples of a periodic curve, up to where the last cycle ends."""
     turns = [phase + period * number for number in range(repeats)]
     end = [phase[0] + period * repeats]
     return np.concatenate([*turns, end]), np.append(np.tile(values, repeats), values[0])
 
 
 def mesh_marks(pair: Any, repeats: int) -> list[tuple[str, float]]:
-    """Mesh phases at which a tooth pair reaches A, leaves at E or passes the pitch point.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The gear pair.
-    repeats : int
-        Mesh cycles that are shown.
-
-    Returns
-    -------
-    list of tuple
-        Name and mesh phase.
-    """
+    """Mesh phases at which a tooth pair reaches A, leaves at E or passes the pitch point."""
     contact = path_of_contact(pair)
     pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
     marks = [("A", 0.0), ("E", contact.contact_ratio % 1.0)]
@@ -276,20 +127,7 @@ def mesh_marks(pair: Any, repeats: int) -> list[tuple[str, float]]:
 
 
 def corner_shades(pair: Any, first: float, last: float) -> dict[str, list[dict[str, Any]]]:
-    """Shade and name the places before A and after E, where a tip corner bears.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The gear pair.
-    first, last : float
-        Ages in mesh cycles at which the load begins and ends.
-
-    Returns
-    -------
-    dict
-        The ``shapes`` and ``annotations`` of a plotly layout.
-    """
+    """Shade and name the places before A and after E, where a tip corner bears."""
     shapes, notes = [], []
     for start, stop in ((first, 0.0), (pair.transverse_contact_ratio, last)):
         if stop <= start:

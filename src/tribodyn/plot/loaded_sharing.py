@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
@@ -21,10 +20,7 @@ from tribodyn.plot.loaded_life import (
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
 from tribodyn.plot.torques import named, torque_colors, torque_names
-
-__all__ = ["loaded_sharing"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 #: Part of the greatest force that counts as load, and difference of teeth that is drawn.
 _LOADED, _DIFFERENT = 1e-6, 1e-3
@@ -57,7 +53,7 @@ def _band(x: Array, least: Array, greatest: Array, color: str) -> dict[str, Any]
     }
 
 
-def _traces(contact: Any, life: Life, seen: NDArray[np.bool_]) -> list[dict[str, Any]]:
+def _traces(contact: Any, life: Life, seen: Mask) -> list[dict[str, Any]]:
     x = displayed("roll_angle", roll_angle_of(contact.gear_pair, life.age[seen]))
     newton, names = display_unit("normal_force"), torque_names(contact)
     traces = []

@@ -9,8 +9,6 @@ import numpy as np
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import FILLS, MUTED, PAIR_COLORS, PINION, WHEEL, Panel, line, stack
 
-__all__ = ["lyapunov"]
-
 #: Exponents that are drawn at most; the largest decides.
 _DRAWN = 3
 _COLORS = (PINION, WHEEL, PAIR_COLORS[0])

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.deformed_mesh import BentMesh, bent_mesh
 from tribodyn.plot.gear_drawing import on_line_of_action
@@ -16,8 +15,7 @@ from tribodyn.plot.loaded_life import needs_loaded_contact, several_cycles
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import FILLS, INK, MUTED, PINION, WHEEL, figure
 from tribodyn.plot.torques import torque_names
-
-__all__ = ["mesh_deformation"]
+from tribodyn.types import ComplexArray
 
 #: Mesh phases of the slider.
 _FRAMES = 8
@@ -38,7 +36,7 @@ def _exaggeration(meshes: Sequence[BentMesh], module: float) -> float:
     return power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= wanted)
 
 
-def _trace(points: NDArray[np.complex128], name: str, **more: Any) -> dict[str, Any]:
+def _trace(points: ComplexArray, name: str, **more: Any) -> dict[str, Any]:
     x, y = displayed("center_distance", np.array([points.real, points.imag]))
     return {
         "type": "scatter",

@@ -13,8 +13,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
 from tribodyn.study import record
 
-__all__ = ["mesh_force"]
-
 
 def _below_zero(result: Any) -> str:
     """Explain a negative force, which the driving flanks alone could not bear."""

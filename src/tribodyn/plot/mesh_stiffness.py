@@ -12,8 +12,6 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
-__all__ = ["mesh_stiffness"]
-
 
 @drawing(
     "mesh_stiffness",

@@ -10,8 +10,6 @@ from tribodyn.plot.labels import display_unit, displayed, rounded, significant
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Panel, stack
 
-__all__ = ["mode_shapes"]
-
 _COLORS = (PINION, WHEEL, *PAIR_COLORS, MUTED, TOTAL)
 _HATCHES = ("", "/", "x", ".")
 #: Springs below this share in every mode are not drawn.

@@ -12,10 +12,7 @@ from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, displayed, significant
 from tribodyn.plot.style import button_row
 from tribodyn.study import record
-
-__all__ = ["Motion", "is_periodic"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Samples that each part of a transient curve keeps; more would not be seen but fill the file.
 _KEPT = 2000
@@ -26,17 +23,7 @@ _JUMP = 1e-6
 
 
 def is_periodic(result: Any) -> bool:
-    """Tell a steady state from a transient, whose error has no meaning.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    bool
-    """
+    """Tell a steady state from a transient, whose error has no meaning."""
     return record.is_steady(result.response)
 
 
@@ -61,22 +48,7 @@ def _extremes(values: Array, kept: int) -> NDArray[np.intp]:
 
 
 class Motion:
-    """The horizontal axis on which a response is drawn.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Attributes
-    ----------
-    periodic : bool
-        Whether the response is one period of a steady state.
-    label : str
-        Label of the horizontal axis.
-    window : str
-        Words for the part of a transient over which figures are taken; empty for a steady state.
-    """
+    """The horizontal axis on which a response is drawn."""
 
     def __init__(self, result: Any) -> None:
         self._response = result.response
@@ -92,18 +64,7 @@ class Motion:
         self.window = "" if self.periodic else f" in the last {counted} of {periods} mesh cycles"
 
     def measured(self, values: Array) -> Array:
-        """Keep the part of a signal over which the figures of a summary are taken.
-
-        Parameters
-        ----------
-        values : array, shape (3 s,)
-            A signal on the fine samples of the response.
-
-        Returns
-        -------
-        array, shape (3 m,)
-            All of a steady state, the second half of a transient.
-        """
+        """Keep the part of a signal over which the figures of a summary are taken."""
         return values[-self._measured :]
 
     def _last(self) -> int:
@@ -112,18 +73,7 @@ class Motion:
         return count - count // periods * min(CYCLES, periods)
 
     def settling(self, values: Array) -> str:
-        """Say whether a transient has become steady, judged by its last two quarters.
-
-        Parameters
-        ----------
-        values : array, shape (3 s,)
-            A signal on the fine samples of the response.
-
-        Returns
-        -------
-        str
-            One sentence; empty for a steady state.
-        """
+        """Say whether a transient has become steady, judged by its last two quarters."""
         if self.periodic:
             return ""
         periods, weight = self._response.periods, self._response.fine.weight
@@ -146,21 +96,7 @@ class Motion:
         )
 
     def curve(self, name: str, values: Array) -> tuple[Array, Array]:
-        """Place a signal on the axis.
-
-        Parameters
-        ----------
-        name : str
-            Quantity in the nomenclature.
-        values : array, shape (3 s,)
-            The signal in SI on the fine samples of the response.
-
-        Returns
-        -------
-        tuple of array, each of shape (k,)
-            Horizontal axis and signal, both in display units. Values before and after a jump
-            stand at the same place of the axis.
-        """
+        """Place a signal on the axis."""
         shown, fine = displayed(name, values), self._response.fine
         if not self.periodic:
             last = self._last()
@@ -173,13 +109,7 @@ class Motion:
         return cycles(fine.phase[kept], shown[kept])
 
     def layout(self) -> dict[str, Any]:
-        """Marks of the events and range of the horizontal axis.
-
-        Returns
-        -------
-        dict
-            Plotly layout. A transient has no events but buttons that show its last mesh cycles.
-        """
+        """Marks of the events and range of the horizontal axis."""
         if self.periodic:
             events = event_lines(mesh_events(self._mesh, self.shown))
             return {**events, "xaxis": {"range": [0, self.shown]}}

@@ -5,34 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.labels import axis_label, display_unit, displayed, readable, rounded
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.spectrogram import MAP_HEIGHT, amplitude_heatmap, amplitude_label, with_unit
 from tribodyn.plot.style import PINION, TOTAL, WHEEL, Panel, line, stack
-
-__all__ = ["order_map", "strongest_orders"]
+from tribodyn.types import Array
 
 _CUTS = ((TOTAL, "solid"), (PINION, "dash"), (WHEEL, "dot"))
 
 
 def strongest_orders(result: Any, count: int = 3) -> list[float]:
-    """Find the orders that reach the largest amplitudes.
-
-    Parameters
-    ----------
-    result : OrderMap
-        What :func:`tribodyn.analysis.order_map` returns.
-    count : int
-        Most orders to return.
-
-    Returns
-    -------
-    list of float
-        From the strongest down; weaker than a hundredth of it are left out. An order is placed
-        by its mean square over the map, as a resonance spreads it where it is largest.
-    """
+    """Find the orders that reach the largest amplitudes."""
     most = np.sqrt(np.mean(result.amplitude**2, axis=1))
     apart = 3  # lines: main lobe of the window
     most[:apart] = 0.0
@@ -59,7 +43,7 @@ def _missing(result: Any) -> str:
     )
 
 
-def _axis(result: Any) -> tuple[NDArray[np.float64], str, str]:
+def _axis(result: Any) -> tuple[Array, str, str]:
     """Speed where it only rises or only falls, else time; label and unit on hovering."""
     change = np.diff(result.speed)
     least = 1e-6 * float(np.max(result.speed))

@@ -11,8 +11,6 @@ from tribodyn.plot.scaled import parameter_axis, scaled, unit_of
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import PAIR_COLORS, PINION, WHEEL, Panel
 
-__all__ = ["parameter_map"]
-
 #: Words and colours of the periods; the last one is for motions without bounds.
 _PERIODS = (
     ("1", "#eef3f7"), ("2", PINION), ("3", PAIR_COLORS[0]), ("4", PAIR_COLORS[2]),

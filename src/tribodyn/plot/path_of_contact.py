@@ -18,8 +18,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PINION, TOTAL, WHEEL, Panel, line, stack
 
-__all__ = ["path_of_contact"]
-
 Rows = tuple[tuple[str, str, str, str], ...]
 
 #: Column of the mesh table, name, colour and dash.

@@ -10,8 +10,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import MUTED, PINION, WHEEL, figure
 
-__all__ = ["phase_portrait"]
-
 
 def _missing(result: Any) -> str:
     if hasattr(result, "section_position"):

@@ -11,8 +11,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import PINION, TOTAL, figure
 
-__all__ = ["poincare"]
-
 
 def _missing(result: Any) -> str:
     if hasattr(result, "names") and hasattr(result, "velocity") and hasattr(result, "deflection"):

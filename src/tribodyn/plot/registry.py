@@ -9,8 +9,6 @@ from typing import Any
 from tribodyn.errors import InputError, Problem
 from tribodyn.registry import Registry
 
-__all__ = ["FIGURES", "Drawing", "drawing"]
-
 
 def _always(result: Any) -> str:
     """Give no reason against a figure: it fits every result."""

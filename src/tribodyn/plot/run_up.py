@@ -11,8 +11,6 @@ from tribodyn.plot.labels import axis_label, displayed, readable, rounded, signi
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Panel, line, stack
 
-__all__ = ["run_up", "signal_words"]
-
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
 #: Orders that are drawn by default, of those looked at, and resonances that are named.
 _DRAWN, _LOOKED, _NAMED = 4, 12, 6
@@ -23,20 +21,7 @@ _APART = 0.05
 
 
 def signal_words(run: Any, signal: str) -> tuple[str, str]:
-    """Words and display unit of a signal of a run-up.
-
-    Parameters
-    ----------
-    run : RunUp
-        What :func:`tribodyn.dynamics.run_up` returns.
-    signal : str
-        Its name.
-
-    Returns
-    -------
-    tuple of str
-        For example ``("contact force", "N")``.
-    """
+    """Words and display unit of a signal of a run-up."""
     unit = run.signal(signal)[1]
     words = signal.replace("_", " ")
     if signal in run.names:

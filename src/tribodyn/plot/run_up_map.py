@@ -5,17 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.labels import axis_label, displayed, readable, significant
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.run_up import _missing, _parts, signal_words
 from tribodyn.plot.spectrogram import amplitude_heatmap
 from tribodyn.plot.style import MUTED, WHEEL, Panel, line, stack
-
-__all__ = ["run_up_map"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _ROWS, _ORDERS = 320, 8
 #: Modes with less of their strain in the contacts are not driven by the mesh.

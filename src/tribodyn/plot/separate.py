@@ -9,32 +9,18 @@ from typing import Any
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.style import Panel, figure
 
-__all__ = ["Row", "separate"]
-
 #: Pixels of one panel, of the gap with axis and title between panels, above and below them.
 _PANEL, _GAP, _TOP, _BOTTOM = 230, 84, 74, 58
 
 
 @dataclass(frozen=True)
 class Row:
-    """A panel with its own horizontal axis.
+    """A panel with its own horizontal axis."""
 
-    Parameters
-    ----------
-    label : str
-        Label of the horizontal axis, with its unit.
-    panel : Panel
-        Curves and vertical axis.
-    axis : dict
-        Further properties of the horizontal axis.
-    marks : iterable of tuple
-        Names and places of lines across the panel.
-    """
-
-    label: str
-    panel: Panel
-    axis: dict[str, Any] = field(default_factory=dict)
-    marks: Iterable[tuple[str, float]] = ()
+    label: str  #: label of the horizontal axis, with its unit
+    panel: Panel  #: curves and vertical axis
+    axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the horizontal axis
+    marks: Iterable[tuple[str, float]] = ()  #: names and places of lines across the panel
 
 
 def _marks(row: Row, suffix: str) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
@@ -46,29 +32,7 @@ def _marks(row: Row, suffix: str) -> tuple[list[dict[str, Any]], list[dict[str, 
 
 
 def separate(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = None) -> Any:
-    """Stack panels, each over its own horizontal axis and with its own legend.
-
-    Parameters
-    ----------
-    title : str
-        The answer that the figure gives.
-    rows : sequence of Row
-        From the top down.
-    layout : dict, optional
-        Further plotly layout; its shapes and annotations come on top of the marks.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-
-    Examples
-    --------
-    >>> from tribodyn.plot.style import INK, line
-    >>> curve = Panel("Force [N]", [line([0, 1], [2, 3], "force", INK)])
-    >>> made = separate("Forces", [Row("Time [ms]", curve), Row("Path [mm]", curve)])
-    >>> made.layout.xaxis2.title.text
-    'Path [mm]'
-    """
+    """Stack panels, each over its own horizontal axis and with its own legend."""
     heights = [_PANEL * row.panel.height for row in rows]
     total = sum(heights) + _GAP * (len(rows) - 1)
     merged: dict[str, Any] = {"height": total + _TOP + _BOTTOM, "hovermode": "x unified"}

@@ -5,15 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.labels import axis_label, readable, significant
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import GRID, INK, MUTED, TOTAL, Panel, line, stack
-
-__all__ = ["MAP_HEIGHT", "amplitude_heatmap", "amplitude_label", "spectrogram", "with_unit"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: From silence to the largest amplitude, and the decades between them.
 _SCALE = [[0.0, "#ffffff"], [0.35, "#c6dbef"], [0.6, "#6baed6"], [0.8, "#2171b5"], [1.0, "#08306b"]]
@@ -26,71 +22,19 @@ _BAR = {"len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xa
 
 
 def with_unit(value: float, unit: str) -> str:
-    """Write an amplitude with three digits and its unit.
-
-    Parameters
-    ----------
-    value : float
-        Amplitude in ``unit``.
-    unit : str
-        Unit in plain characters.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> with_unit(1.2345, "m/s^2")
-    '1.23 m/s²'
-    """
+    """Write an amplitude with three digits and its unit."""
     return f"{significant(value)} {readable(unit)}".rstrip()
 
 
 def amplitude_label(unit: str) -> str:
-    """Label an axis of amplitudes.
-
-    Parameters
-    ----------
-    unit : str
-        Unit in plain characters.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> amplitude_label("um")
-    'Amplitude [µm]'
-    """
+    """Label an axis of amplitudes."""
     return f"Amplitude [{readable(unit)}]" if unit else "Amplitude"
 
 
 def amplitude_heatmap(
     x: Array, y: Array, amplitude: Array, unit: str, hover: str
 ) -> dict[str, Any]:
-    """Describe a map of amplitudes on a logarithmic scale of colours.
-
-    Parameters
-    ----------
-    x : (m,) array
-        Places along the horizontal axis, in display units.
-    y : (k,) array
-        Places along the vertical axis, in display units.
-    amplitude : (k, m) array
-        Amplitudes in ``unit``.
-    unit : str
-        Unit in plain characters.
-    hover : str
-        Plotly template of the place under the pointer.
-
-    Returns
-    -------
-    dict
-        A plotly heatmap. Three decades below the largest amplitude are told apart; of more
-        cells than the panel has pixels, the largest of each group is kept.
-    """
+    """Describe a map of amplitudes on a logarithmic scale of colours."""
     rows, columns = (-(-size // _MOST) for size in amplitude.shape)
     across, along = np.arange(0, x.size, columns), np.arange(0, y.size, rows)
     most = np.maximum.reduceat(np.maximum.reduceat(amplitude, along, axis=0), across, axis=1)

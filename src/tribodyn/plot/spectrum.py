@@ -10,8 +10,6 @@ from tribodyn.plot.harmonics import harmonic_layout, harmonic_panel, no_harmonic
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import TOTAL, stack
 
-__all__ = ["spectrum"]
-
 
 @drawing(
     "spectrum",

@@ -10,8 +10,6 @@ from tribodyn.plot.labels import axis_label, displayed, readable, rounded
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, WHEEL, Panel, line, stack
 
-__all__ = ["speed_sweep"]
-
 _COLORS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
 _WORDS = {"up": "upwards", "down": "downwards"}
 

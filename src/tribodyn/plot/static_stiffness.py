@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.cycle import pair_life
 from tribodyn.plot.events import event_lines
@@ -13,10 +12,7 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
-
-__all__ = ["static_stiffness"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _PAIR = "one tooth pair"
 #: Mesh cycles shown before A and after E.

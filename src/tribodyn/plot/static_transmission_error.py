@@ -12,8 +12,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line
 
-__all__ = ["static_transmission_error"]
-
 _QUANTITY = "static_transmission_error"
 #: Mesh harmonics drawn.
 _ORDERS = 8

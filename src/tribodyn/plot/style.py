@@ -10,23 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = [
-    "FILLS",
-    "FONT",
-    "GRID",
-    "INK",
-    "MUTED",
-    "PAIR_COLORS",
-    "PINION",
-    "TOTAL",
-    "WHEEL",
-    "Panel",
-    "button_row",
-    "figure",
-    "line",
-    "stack",
-]
-
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 INK = "#1f2933"
 MUTED = "#6b7785"
@@ -55,24 +38,12 @@ _SPIKE = {
 
 @dataclass(frozen=True)
 class Panel:
-    """One panel of a stacked figure.
+    """One panel of a stacked figure."""
 
-    Parameters
-    ----------
-    label : str
-        Label of the vertical axis, with its unit.
-    traces : sequence of dict
-        Curves made by :func:`line`.
-    axis : dict
-        Further properties of the vertical axis.
-    height : float
-        Height relative to the other panels.
-    """
-
-    label: str
-    traces: Sequence[dict[str, Any]]
-    axis: dict[str, Any] = field(default_factory=dict)
-    height: float = 1.0
+    label: str  #: label of the vertical axis, with its unit
+    traces: Sequence[dict[str, Any]]  #: curves made by :func:`line`
+    axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the vertical axis
+    height: float = 1.0  #: height relative to the other panels
 
 
 def _axis(**more: Any) -> dict[str, Any]:
@@ -94,27 +65,7 @@ def _axis(**more: Any) -> dict[str, Any]:
 def figure(
     title: str, traces: Sequence[dict[str, Any]], layout: dict[str, Any] | None = None
 ) -> Any:
-    """Make a plotly figure in the look of the package.
-
-    Parameters
-    ----------
-    title : str
-        The answer that the figure gives, as a sentence.
-    traces : sequence of dict
-        Plotly traces.
-    layout : dict, optional
-        Plotly layout that comes on top of the common one.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-
-    Examples
-    --------
-    >>> made = figure("Two points", [line([0, 1], [2, 3], "a curve", INK)])
-    >>> made.layout.title.text
-    'Two points'
-    """
+    """Make a plotly figure in the look of the package."""
     import plotly.graph_objects as go
 
     common: dict[str, Any] = {
@@ -140,23 +91,7 @@ def figure(
 
 
 def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
-    """Describe buttons above the left end of the panels, clear of the menu of the figure.
-
-    Parameters
-    ----------
-    choices : sequence of tuple
-        Words on the button, and the changes of the layout that it makes.
-
-    Returns
-    -------
-    dict
-        A plotly update menu.
-
-    Examples
-    --------
-    >>> button_row([("linear", {"yaxis.type": "linear"})])["buttons"][0]["label"]
-    'linear'
-    """
+    """Describe buttons above the left end of the panels, clear of the menu of the figure."""
     return {
         "type": "buttons",
         "direction": "right",
@@ -184,33 +119,7 @@ def line(
     dash: str = "solid",
     width: float = 2.0,
 ) -> dict[str, Any]:
-    """Describe one curve whose hover text carries its unit.
-
-    Parameters
-    ----------
-    x, y : array, shape (n,)
-        Coordinates in display units.
-    name : str
-        Name in the legend.
-    color : str
-        Colour of the curve.
-    unit : str
-        Display unit of ``y``, printed on hovering.
-    dash : str
-        Plotly dash style.
-    width : float
-        Width of the line [px].
-
-    Returns
-    -------
-    dict
-        A plotly scatter trace.
-
-    Examples
-    --------
-    >>> line([0, 1], [2, 3], "force", INK, unit="N")["hovertemplate"]
-    '%{y:.4g} N<extra>force</extra>'
-    """
+    """Describe one curve whose hover text carries its unit."""
     return {
         "type": "scatter",
         "mode": "lines",
@@ -236,30 +145,7 @@ def _domains(panels: Sequence[Panel]) -> tuple[list[tuple[float, float]], float]
 def stack(
     title: str, x_label: str, panels: Sequence[Panel], layout: dict[str, Any] | None = None
 ) -> Any:
-    """Stack panels over one common horizontal axis, each with its own legend beside it.
-
-    Parameters
-    ----------
-    title : str
-        The answer that the figure gives.
-    x_label : str
-        Label of the common axis, with its unit.
-    panels : sequence of Panel
-        From the top down.
-    layout : dict, optional
-        Further plotly layout; its ``xaxis`` is merged into the common axis.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-
-    Examples
-    --------
-    >>> curves = [line([0, 1], [2, 3], "force", INK)]
-    >>> made = stack("Forces", "Time [ms]", [Panel("Force [N]", curves)] * 2)
-    >>> made.layout.yaxis2.title.text
-    'Force [N]'
-    """
+    """Stack panels over one common horizontal axis, each with its own legend beside it."""
     more = dict(layout or {})
     domains, height = _domains(panels)
     last = "" if len(panels) == 1 else str(len(panels))

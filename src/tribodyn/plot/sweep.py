@@ -13,8 +13,6 @@ from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, WHEEL, Panel, figure
 from tribodyn.study.summary_names import SUMMARY
 from tribodyn.units import convert
 
-__all__ = ["sweep"]
-
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
 #: More curves than this make a map.
 _CURVES = len(_COLORS)

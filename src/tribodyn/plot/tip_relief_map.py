@@ -11,8 +11,6 @@ from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import INK, MUTED, TOTAL, WHEEL, Panel, line
 from tribodyn.plot.torques import torque_colors, torque_names
 
-__all__ = ["tip_relief_map"]
-
 _QUANTITY = "static_transmission_error"
 _CYCLES = 2
 #: From little to much transmission error.

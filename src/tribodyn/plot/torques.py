@@ -5,14 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.plot.labels import display_unit, displayed
 from tribodyn.plot.style import TOTAL
-
-__all__ = ["named", "torque_colors", "torque_names", "torque_texts"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Colours from the least to the greatest torque; between them they are mixed.
 _ANCHORS = ("#0d0887", "#7e03a8", "#cc4778", "#f0893e")
@@ -21,59 +17,18 @@ _NAMED = 8
 
 
 def torque_names(contact: Any) -> list[str]:
-    """Name of each torque with its unit.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns.
-
-    Returns
-    -------
-    list of str
-    """
+    """Name of each torque with its unit."""
     return torque_texts(np.ravel(contact.torque))
 
 
 def torque_texts(torques: Array) -> list[str]:
-    """Write torques with as many digits as tell them apart.
-
-    Parameters
-    ----------
-    torques : array [N*m]
-        Torques.
-
-    Returns
-    -------
-    list of str
-
-    Examples
-    --------
-    >>> torque_texts(np.array([50.0, 112.5]))
-    ['50 N·m', '112.5 N·m']
-    """
+    """Write torques with as many digits as tell them apart."""
     unit = display_unit("torque")
     return [f"{torque:.4g} {unit}" for torque in displayed("torque", torques)]
 
 
 def torque_colors(count: int) -> list[str]:
-    """Colours of curves that belong to rising torques.
-
-    Parameters
-    ----------
-    count : int
-        Number of torques.
-
-    Returns
-    -------
-    list of str
-        From dark to light; black for a single one.
-
-    Examples
-    --------
-    >>> torque_colors(1), torque_colors(2)
-    (['#1f2933'], ['#0d0887', '#f0893e'])
-    """
+    """Colours of curves that belong to rising torques."""
     if count == 1:
         return [TOTAL]
     anchors = np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in _ANCHORS])
@@ -83,23 +38,6 @@ def torque_colors(count: int) -> list[str]:
 
 
 def named(count: int, most: int = _NAMED) -> list[bool]:
-    """Which of many torques are named in a legend: all of few, first, last and some of many.
-
-    Parameters
-    ----------
-    count : int
-        Number of torques.
-    most : int
-        Number of names.
-
-    Returns
-    -------
-    list of bool
-
-    Examples
-    --------
-    >>> named(2), sum(named(20))
-    ([True, True], 8)
-    """
+    """Which of many torques are named in a legend: all of few, first, last and some of many."""
     chosen = np.linspace(0, count - 1, min(count, most)).round().astype(int)
     return [number in set(chosen.tolist()) for number in range(count)]

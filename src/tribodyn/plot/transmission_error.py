@@ -13,8 +13,6 @@ from tribodyn.plot.motion import Motion, is_periodic
 from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
 
-__all__ = ["transmission_error"]
-
 
 def _caption(result: Any) -> str:
     sentences = [

@@ -11,8 +11,6 @@ from tribodyn.plot.registry import drawing
 from tribodyn.plot.spectrogram import with_unit
 from tribodyn.plot.style import INK, MUTED, WHEEL, Panel, line, stack
 
-__all__ = ["waterfall"]
-
 #: Most spectra drawn, most points in one, and how many steps up the largest amplitude reaches.
 _CURVES, _POINTS, _REACH = 40, 600, 6.0
 

@@ -8,8 +8,6 @@ from typing import Any
 
 from tribodyn.plot import FIGURES, Drawing
 
-__all__ = ["SECTIONS", "Block", "figure_blocks", "script_json"]
-
 #: Order of the figures in the report.
 SECTIONS = (
     "gear_pair",
@@ -36,51 +34,19 @@ _MARGIN = 44
 
 @dataclass(frozen=True)
 class Block:
-    """One section of the report.
-
-    Parameters
-    ----------
-    name, heading : str
-        From the figure's registration.
-    caption : str
-        What to look for in the figure.
-    missing : str
-        Why there is no figure; empty if there is one.
-    title : str
-        Title of the figure.
-    height : int
-        Height of the figure [px].
-    json : str
-        Data and layout of the figure, safe within a script element.
-    """
+    """One section of the report."""
 
     name: str
     heading: str
-    caption: str = ""
-    missing: str = ""
-    title: str = ""
-    height: int = 0
-    json: str = ""
+    caption: str = ""  #: what to look for in the figure
+    missing: str = ""  #: why there is no figure
+    title: str = ""  #: title of the figure
+    height: int = 0  #: height of the figure [px]
+    json: str = ""  #: data and layout of the figure, safe within a script element
 
 
 def script_json(text: str) -> str:
-    r"""Make JSON safe within a script element, which ends at the first closing tag it meets.
-
-    Parameters
-    ----------
-    text : str
-        Any JSON.
-
-    Returns
-    -------
-    str
-        The same JSON with the sign ``<`` written as an escape.
-
-    Examples
-    --------
-    >>> script_json('["</script>"]')
-    '["\\u003c/script>"]'
-    """
+    r"""Make JSON safe within a script element, which ends at the first closing tag it meets."""
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
@@ -121,17 +87,6 @@ def _joined(blocks: Iterable[Block]) -> list[Block]:
 
 
 def figure_blocks(result: Any) -> list[Block]:
-    """Draw every figure of the report; what lacks for one reason is told once.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    list of Block
-        In the order of :data:`SECTIONS`.
-    """
+    """Draw every figure of the report; what lacks for one reason is told once."""
     figures = (FIGURES[name] for name in SECTIONS)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

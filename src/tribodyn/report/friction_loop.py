@@ -7,26 +7,16 @@ from dataclasses import dataclass
 
 from tribodyn.report.numbers import Number, describe
 
-__all__ = ["Compared", "compared_friction"]
-
 _ENDING = "_nominal_friction"
 
 
 @dataclass(frozen=True)
 class Compared:
-    """One figure with friction in the loop and without.
-
-    Parameters
-    ----------
-    own, nominal : Number
-        The figure with friction that follows the load, and with that of the nominal load.
-    change : str
-        Change of the former from the latter, with its sign [%].
-    """
+    """One figure with friction in the loop and without."""
 
     own: Number
     nominal: Number
-    change: str
+    change: str  #: change of the former from the latter, with its sign [%]
 
 
 def compared_friction(summary: Mapping[str, float]) -> list[Compared]:

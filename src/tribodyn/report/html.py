@@ -13,25 +13,12 @@ from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.study.save import write_file
 
-__all__ = ["plotly_script", "render_report", "template", "text_of", "write_report"]
-
 _HERE = Path(__file__).parent
 
 
 @lru_cache(maxsize=4)
 def template(name: str) -> Any:
-    """Read a template of this package.
-
-    Parameters
-    ----------
-    name : str
-        Its file.
-
-    Returns
-    -------
-    jinja2.Template
-        Every text that it is given is escaped.
-    """
+    """Read a template of this package."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(
@@ -45,31 +32,14 @@ def template(name: str) -> Any:
 
 
 def text_of(name: str) -> Any:
-    """Read a file of this package.
-
-    Parameters
-    ----------
-    name : str
-        Its file.
-
-    Returns
-    -------
-    markupsafe.Markup
-        Its text, marked as safe.
-    """
+    """Read a file of this package."""
     from markupsafe import Markup
 
     return Markup((_HERE / name).read_text(encoding="utf-8"))
 
 
 def plotly_script() -> Any:
-    """Return the script that draws figures.
-
-    Returns
-    -------
-    markupsafe.Markup
-        Marked as safe.
-    """
+    """Return the script that draws figures."""
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
 

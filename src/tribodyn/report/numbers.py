@@ -11,8 +11,6 @@ from tribodyn.plot.labels import readable
 from tribodyn.study.summary_names import SUMMARY
 from tribodyn.units import convert
 
-__all__ = ["HEADLINES", "Number", "describe", "headlines", "in_words", "table"]
-
 #: Summary figures shown on cards at the top, most wanted first.
 HEADLINES = (
     "transverse_contact_ratio",
@@ -56,48 +54,19 @@ _ENDINGS = (
 
 @dataclass(frozen=True)
 class Number:
-    """One figure ready to be printed.
+    """One figure ready to be printed."""
 
-    Parameters
-    ----------
-    name : str
-        Key in the summary.
-    words : str
-        The same in words.
-    shown, unit : str
-        Value in the display unit, and that unit.
-    si, si_unit : str
-        Value in SI, and its unit.
-    meaning : str
-        One line.
-    """
-
-    name: str
-    words: str
+    name: str  #: key in the summary
+    words: str  #: the same in words
     shown: str
     unit: str
     si: str
     si_unit: str
-    meaning: str
+    meaning: str  #: one line
 
 
 def in_words(name: str) -> str:
-    """Write the name of a summary figure in words, the quantity first.
-
-    Parameters
-    ----------
-    name : str
-        Key in the summary.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> in_words("rms_bearing_force_oloa_pinion")
-    'Bearing force, rms, across the line of action, pinion'
-    """
+    """Write the name of a summary figure in words, the quantity first."""
     if name in _WORDS:
         return _WORDS[name]
     said: list[str] = []
@@ -117,27 +86,7 @@ def in_words(name: str) -> str:
 
 
 def describe(name: str, value: float, digits: int = 5) -> Number:
-    """Put one figure of a summary into words.
-
-    Parameters
-    ----------
-    name : str
-        Key in the summary, such as ``"mesh_frequency"``.
-    value : float
-        Value in SI.
-    digits : int
-        Significant digits in the display unit.
-
-    Returns
-    -------
-    Number
-
-    Examples
-    --------
-    >>> number = describe("peak_to_peak_dynamic_transmission_error", 1.38e-5)
-    >>> number.words, number.shown, number.unit
-    ('Dynamic transmission error, peak to peak', '13.8', 'µm')
-    """
+    """Put one figure of a summary into words."""
     figure = SUMMARY[name]
     return Number(
         name,
@@ -151,31 +100,10 @@ def describe(name: str, value: float, digits: int = 5) -> Number:
 
 
 def table(summary: Mapping[str, float]) -> list[Number]:
-    """Put a whole summary into words.
-
-    Parameters
-    ----------
-    summary : mapping
-        Names and SI values.
-
-    Returns
-    -------
-    list of Number
-    """
+    """Put a whole summary into words."""
     return [describe(name, value) for name, value in summary.items()]
 
 
 def headlines(summary: Mapping[str, float]) -> list[Number]:
-    """Pick the figures that everybody asks for first.
-
-    Parameters
-    ----------
-    summary : mapping
-        Names and SI values.
-
-    Returns
-    -------
-    list of Number
-        In the order of :data:`HEADLINES`; those that the summary lacks are left out.
-    """
+    """Pick the figures that everybody asks for first."""
     return [describe(name, summary[name], digits=4) for name in HEADLINES if name in summary]

@@ -9,24 +9,12 @@ from typing import Any
 
 from tribodyn.plot.labels import display_unit, displayed
 
-__all__ = ["operating_point", "provenance", "version"]
-
 #: Packages whose version may change a figure.
 _PACKAGES = ("numpy", "scipy", "numba")
 
 
 def version() -> str:
-    """Version of the package.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> version().count(".") >= 1
-    True
-    """
+    """Version of the package."""
     import tribodyn
 
     return tribodyn.__version__
@@ -37,18 +25,7 @@ def _shown(name: str, value: float) -> str:
 
 
 def operating_point(case: Any) -> list[tuple[str, str]]:
-    """Speed, load, surfaces, oil and models of a case, ready to be printed.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    list of tuple of str
-        Name and value.
-    """
+    """Speed, load, surfaces, oil and models of a case, ready to be printed."""
     pair, operation = case.gear_pair, case.operation
     point = [
         ("Teeth", f"{pair.pinion.teeth} : {pair.wheel.teeth}"),
@@ -70,18 +47,7 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
 
 
 def provenance(result: Any) -> list[tuple[str, str]]:
-    """Versions and date that stand behind a report.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    list of tuple of str
-        Name and value.
-    """
+    """Versions and date that stand behind a report."""
     packages = ", ".join(f"{name} {installed(name)}" for name in _PACKAGES)
     return [
         ("Software", f"tribodyn {version()}"),

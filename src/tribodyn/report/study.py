@@ -16,8 +16,6 @@ from tribodyn.study.provenance import assumptions
 from tribodyn.study.save import write_file
 from tribodyn.study.summary_names import SUMMARY
 
-__all__ = ["SWEEP_FIGURES", "write_bifurcation_report", "write_sweep_report"]
-
 #: Figures of the summary that the report of a sweep draws and tabulates, where they occur.
 SWEEP_FIGURES = (
     "rms_mesh_force",

@@ -6,7 +6,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.gear import Material, SpurGear, half_tooth
@@ -19,10 +18,7 @@ from tribodyn.stiffness.ring_fourier_feet import foot_compliance, foot_stresses
 from tribodyn.stiffness.sainsot import LARGEST_RATIO
 from tribodyn.stiffness.tooth_compliance import check_reference, tooth_compliance
 from tribodyn.stiffness.wind_up import wind_up_compliance
-
-__all__ = ["FOUNDATIONS", "analytic_influence"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: What the loaded tooth stands on: the elastic ring itself, or the formula fitted to rings.
 FOUNDATIONS = ("ring", "sainsot")
@@ -41,9 +37,9 @@ class _Body(NamedTuple):
     ring: RingCompliance
     half_angle: float
     pitch_angle: float
-    stresses: FloatArray
+    stresses: Array
 
-    def influence(self, neighbour: int) -> FloatArray:
+    def influence(self, neighbour: int) -> Array:
         """Compliance [m^2/N] of the ring alone, ``[loaded, seen]``."""
         # The tooth with the larger radius of curvature is the clockwise one.
         work = foot_compliance(self.ring, self.half_angle, -neighbour * self.pitch_angle)
@@ -131,7 +127,7 @@ def _body(
     gear: SpurGear,
     material: Material,
     reference: str,
-    outline: tuple[FloatArray, FloatArray],
+    outline: tuple[Array, Array],
     load: LoadPoint,
 ) -> tuple[_Body, float]:
     """Ring under the teeth, and its wind-up [m^2/N] where that is to be left out."""

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import Material
 from tribodyn.stiffness.load_point import LoadPoint
 from tribodyn.stiffness.tooth_bending import ToothBendingCompliance, tooth_bending_compliance
-
-__all__ = ["beam_to_axis"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Shear correction of a rectangular section.
 _SHEAR_FACTOR = 1.2
 
 
 def beam_to_axis(
-    outline: tuple[FloatArray, FloatArray], load: LoadPoint, material: Material
+    outline: tuple[Array, Array], load: LoadPoint, material: Material
 ) -> ToothBendingCompliance:
     """Compliance of a tooth below the local compression, per unit face width.
 

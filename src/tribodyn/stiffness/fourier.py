@@ -6,24 +6,22 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
-
-__all__ = ["fourier_mesh_stiffness"]
+from tribodyn.types import Array, Mask
 
 #: Points at which the sign of the series is checked, per cycle of its highest harmonic.
 _POINTS_PER_WAVE = 64
 
 
 def fourier_mesh_stiffness(
-    phase: NDArray[np.float64] | float,
+    phase: Array | float,
     mean_stiffness: float,
     cosine: Sequence[float] = (),
     sine: Sequence[float] = (),
-) -> NDArray[np.float64]:
+) -> Array:
     """Stiffness of the whole mesh, ``K = k0 + sum a_k cos(2 pi k phi) + b_k sin(2 pi k phi)``.
 
     Parameters
@@ -81,25 +79,23 @@ def fourier_mesh_stiffness(
     return _series(np.asarray(phase, dtype=float), mean_stiffness, coefficients)
 
 
-def _series(
-    phase: NDArray[np.float64], mean_stiffness: float, coefficients: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _series(phase: Array, mean_stiffness: float, coefficients: Array) -> Array:
     harmonics = np.arange(1, coefficients.shape[1] + 1)
     angle = 2.0 * np.pi * phase[..., None] * harmonics
     waves = np.cos(angle) @ coefficients[0] + np.sin(angle) @ coefficients[1]
-    total: NDArray[np.float64] = mean_stiffness + waves
+    total: Array = mean_stiffness + waves
     return total
 
 
 def _model(
     pair: SpurPair,
     material: Material,
-    path: NDArray[np.float64],
-    in_contact: NDArray[np.bool_],
-    phase: NDArray[np.float64],
+    path: Array,
+    in_contact: Mask,
+    phase: Array,
     normal_force: float,
     **options: Any,
-) -> NDArray[np.float64]:
+) -> Array:
     if options["mean_stiffness"] is None:
         raise InputError(
             Problem(

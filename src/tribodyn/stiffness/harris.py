@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
@@ -15,13 +15,11 @@ from tribodyn.stiffness.loaded import loaded_contact
 from tribodyn.stiffness.loaded.gaps import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.harmonics import harmonic_amplitudes
 from tribodyn.stiffness.loaded.prepare import NO_OPTIONS
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["HarrisMap", "increasing_torques", "transmission_error_over_torque"]
-
-FloatArray = NDArray[np.float64]
 
 #: Loads of single pairs in single slices that are held in memory at the same time.
 _AT_ONCE = 4_000_000
@@ -63,22 +61,22 @@ class HarrisMap:
     gear_pair: SpurPair
     provider: str
     reference: str
-    torque: FloatArray
-    phase: FloatArray
+    torque: Array
+    phase: Array
     mesh_cycles: int
-    transmission_error: FloatArray
-    unloaded_transmission_error: FloatArray
-    harmonics: FloatArray
-    mean_mesh_stiffness_secant: FloatArray
-    mean_mesh_stiffness_tangent: FloatArray
+    transmission_error: Array
+    unloaded_transmission_error: Array
+    harmonics: Array
+    mean_mesh_stiffness_secant: Array
+    mean_mesh_stiffness_tangent: Array
 
     @property
-    def mean_transmission_error(self) -> FloatArray:
+    def mean_transmission_error(self) -> Array:
         """Mean over the phases (t,) [m]."""
         return np.asarray(self.transmission_error.mean(axis=1))
 
     @property
-    def peak_to_peak_transmission_error(self) -> FloatArray:
+    def peak_to_peak_transmission_error(self) -> Array:
         """Largest less least transmission error (t,) [m]."""
         return np.asarray(np.ptp(self.transmission_error, axis=1))
 
@@ -138,29 +136,8 @@ class HarrisMap:
         )
 
 
-def increasing_torques(torque: ArrayLike) -> FloatArray:
-    """Check torques and put them in order.
-
-    Parameters
-    ----------
-    torque : float or array (t,) [N*m]
-        Torques on the pinion.
-
-    Returns
-    -------
-    array (t,) [N*m]
-        Each once, increasing.
-
-    Raises
-    ------
-    InputError
-        If one is not positive, or they are no list.
-
-    Examples
-    --------
-    >>> increasing_torques([300.0, 90.0, 300.0]).tolist()
-    [90.0, 300.0]
-    """
+def increasing_torques(torque: ArrayLike) -> Array:
+    """Check torques and put them in order."""
     torques = np.atleast_1d(np.asarray(torque, dtype=float))
     require_positive("torque", torques, "N*m")
     if torques.ndim != 1 or torques.size == 0:

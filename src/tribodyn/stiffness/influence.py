@@ -11,16 +11,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["GearInfluence"]
-
-FloatArray = NDArray[np.float64]
 
 #: Distance beyond the end nodes, over their span, that is rounding and not a place off the flank.
 _ROUNDING = 1e-9
@@ -61,9 +58,9 @@ class GearInfluence:
     1.015000e-05 mm^2/N 0.0
     """
 
-    curvature_radius: FloatArray
-    self_compliance: FloatArray
-    cross_compliance: FloatArray
+    curvature_radius: Array
+    self_compliance: Array
+    cross_compliance: Array
 
     def __post_init__(self) -> None:
         nodes = self.curvature_radius.size
@@ -85,12 +82,10 @@ class GearInfluence:
         return int(self.cross_compliance.shape[0])
 
     @cached_property
-    def _self(self) -> Callable[[FloatArray], FloatArray]:
+    def _self(self) -> Callable[[Array], Array]:
         from scipy.interpolate import CubicSpline
 
-        spline: Callable[[FloatArray], FloatArray] = CubicSpline(
-            self.curvature_radius, self.self_compliance
-        )
+        spline: Callable[[Array], Array] = CubicSpline(self.curvature_radius, self.self_compliance)
         return spline
 
     @cached_property
@@ -100,7 +95,7 @@ class GearInfluence:
         nodes = self.curvature_radius
         return [RectBivariateSpline(nodes, nodes, table) for table in self.cross_compliance]
 
-    def at(self, curvature_radius: FloatArray | float) -> FloatArray:
+    def at(self, curvature_radius: Array | float) -> Array:
         """Compliance at the loaded place.
 
         Parameters
@@ -122,10 +117,10 @@ class GearInfluence:
 
     def between(
         self,
-        loaded_radius: FloatArray | float,
-        seen_radius: FloatArray | float,
+        loaded_radius: Array | float,
+        seen_radius: Array | float,
         neighbour: int,
-    ) -> FloatArray:
+    ) -> Array:
         """Displacement of another tooth per load.
 
         Parameters
@@ -163,7 +158,7 @@ class GearInfluence:
             first, second = second, first
         return np.asarray(self._cross[abs(neighbour) - 1](first, second, grid=False))
 
-    def _inside(self, curvature_radius: FloatArray | float) -> FloatArray:
+    def _inside(self, curvature_radius: Array | float) -> Array:
         """Bring rounding back to the nodes, and refuse what lies beyond them."""
         places = np.asarray(curvature_radius, dtype=float)
         low, high = self.curvature_radius[[0, -1]]

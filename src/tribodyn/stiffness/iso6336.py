@@ -5,16 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import require_positive, warn
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel
-
-__all__ = ["iso6336_mesh_stiffness", "iso6336_pair_stiffness", "iso6336_single_stiffness"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 #: N/(mm um) in SI.
 _PER_WIDTH = 1e9
@@ -155,8 +151,8 @@ def iso6336_mesh_stiffness(single_stiffness: float, transverse_contact_ratio: fl
 
 
 def iso6336_pair_stiffness(
-    pair: SpurPair, material: Material, path: FloatArray, normal_force: float, **factors: float
-) -> FloatArray:
+    pair: SpurPair, material: Material, path: Array, normal_force: float, **factors: float
+) -> Array:
     """Stiffness of one tooth pair along the path of contact.
 
     The standard gives two numbers and no course: the maximum of a single pair and the mean of
@@ -211,12 +207,12 @@ def iso6336_pair_stiffness(
 def _model(
     pair: SpurPair,
     material: Material,
-    path: FloatArray,
-    in_contact: NDArray[np.bool_],
-    phase: FloatArray,
+    path: Array,
+    in_contact: Mask,
+    phase: Array,
     normal_force: float,
     **options: Any,
-) -> FloatArray:
+) -> Array:
     stiffness = iso6336_pair_stiffness(pair, material, path, normal_force)
     return np.where(in_contact, stiffness, 0.0)
 

@@ -5,14 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import require_positive
 from tribodyn.gear import SpurGear
-
-__all__ = ["LoadPoint", "load_point"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 class LoadPoint(NamedTuple):
@@ -32,14 +28,14 @@ class LoadPoint(NamedTuple):
         Distance from the point to the tooth axis along the load.
     """
 
-    height: FloatArray
-    half_thickness: FloatArray
-    load_angle: FloatArray
-    axis_height: FloatArray
-    depth: FloatArray
+    height: Array
+    half_thickness: Array
+    load_angle: Array
+    axis_height: Array
+    depth: Array
 
 
-def load_point(gear: SpurGear, curvature_radius: FloatArray | float) -> LoadPoint:
+def load_point(gear: SpurGear, curvature_radius: Array | float) -> LoadPoint:
     """Find the load on the tooth when the contact has a given radius of curvature.
 
     The load is tangent to the base circle, so its angle to the normal of the tooth axis is the

@@ -12,17 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.registry import Registry
 from tribodyn.stiffness.influence import GearInfluence
-
-__all__ = ["MODELS", "StiffnessModel", "share_equally", "usable_stiffness"]
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+from tribodyn.types import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -47,7 +42,7 @@ class StiffnessModel:
     """
 
     name: str
-    function: Callable[..., FloatArray]
+    function: Callable[..., Array]
     options: Mapping[str, Any]
     influence: Callable[..., GearInfluence] | None = None
     coupled: bool = False
@@ -56,13 +51,13 @@ class StiffnessModel:
         self,
         pair: SpurPair,
         material: Material,
-        path: FloatArray,
-        in_contact: BoolArray,
-        phase: FloatArray,
+        path: Array,
+        in_contact: Mask,
+        phase: Array,
         normal_force: float,
         /,
         **options: Any,
-    ) -> FloatArray:
+    ) -> Array:
         """Return the pair stiffness over the mesh cycle.
 
         Parameters
@@ -114,50 +109,13 @@ class StiffnessModel:
 MODELS: Registry[StiffnessModel] = Registry("stiffness model", "tribodyn.stiffness")
 
 
-def share_equally(total: FloatArray, in_contact: BoolArray) -> FloatArray:
-    """Spread the stiffness of the whole mesh evenly over the pairs in contact.
-
-    Parameters
-    ----------
-    total : array (n,) [N/m]
-        Stiffness of all pairs together.
-    in_contact : bool array (n, pairs)
-        Whether the pair is in contact; at least one in every row.
-
-    Returns
-    -------
-    array (n, pairs) [N/m]
-        Zero where not in contact.
-
-    Examples
-    --------
-    >>> share_equally(np.array([3e8]), np.array([[True, True, False]]))
-    array([[1.5e+08, 1.5e+08, 0.0e+00]])
-    """
+def share_equally(total: Array, in_contact: Mask) -> Array:
+    """Spread the stiffness of the whole mesh evenly over the pairs in contact."""
     return np.where(in_contact, (total / in_contact.sum(axis=1))[:, None], 0.0)
 
 
-def usable_stiffness(found: FloatArray, in_contact: BoolArray, model: str) -> FloatArray:
-    """Check what a stiffness model gave; models of third parties are checked here once for all.
-
-    Parameters
-    ----------
-    found : array
-        What the model returned [N/m].
-    in_contact : bool array (n, pairs)
-        Whether the pair is in contact.
-    model : str
-        Name of the model.
-
-    Returns
-    -------
-    array (n, pairs) [N/m]
-
-    Raises
-    ------
-    ComputationError
-        If a pair in contact has no stiffness.
-    """
+def usable_stiffness(found: Array, in_contact: Mask, model: str) -> Array:
+    """Check what a stiffness model gave; models of third parties are checked here once for all."""
     stiffness = np.asarray(found)
     sound = stiffness.shape == in_contact.shape and bool(
         np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))

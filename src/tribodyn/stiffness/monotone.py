@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-from numpy.typing import NDArray
-
-__all__ = ["monotone_cubic"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
-def monotone_cubic(x: FloatArray, y: FloatArray) -> Callable[[FloatArray], FloatArray]:
+def monotone_cubic(x: Array, y: Array) -> Callable[[Array], Array]:
     """Lay a monotone piecewise cubic through points.
 
     Parameters
@@ -40,5 +35,5 @@ def monotone_cubic(x: FloatArray, y: FloatArray) -> Callable[[FloatArray], Float
     """
     from scipy.interpolate import PchipInterpolator
 
-    curve: Callable[[FloatArray], FloatArray] = PchipInterpolator(x, y)  # type: ignore[no-untyped-call]
+    curve: Callable[[Array], Array] = PchipInterpolator(x, y)  # type: ignore[no-untyped-call]
     return curve

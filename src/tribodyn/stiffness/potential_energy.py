@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ComputationError, Problem, require_positive
@@ -21,14 +20,7 @@ from tribodyn.stiffness.load_point import load_point
 from tribodyn.stiffness.model import MODELS, StiffnessModel
 from tribodyn.stiffness.tooth_compliance import tooth_compliance
 from tribodyn.stiffness.weber_banaschek import weber_banaschek_compression
-
-__all__ = [
-    "potential_energy_influence",
-    "potential_energy_stiffness",
-    "single_pair_stiffness",
-]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 #: The load share settles to this relative change; each pass gains more than one digit.
 _TOLERANCE = 1e-13
@@ -38,13 +30,13 @@ _PASSES = 60
 class _PairContacts(NamedTuple):
     """What the deflection of tooth pairs at given places depends on, their load excepted."""
 
-    structure: FloatArray
-    equivalent_radius: FloatArray
-    depths: tuple[FloatArray, FloatArray]
+    structure: Array
+    equivalent_radius: Array
+    depths: tuple[Array, Array]
     face_width: float
     material: Material
 
-    def stiffness(self, force: FloatArray) -> FloatArray:
+    def stiffness(self, force: Array) -> Array:
         """Secant stiffness [N/m] of each pair under its own force [N]."""
         load = force / self.face_width
         modulus = effective_modulus(self.material, self.material)
@@ -56,9 +48,7 @@ class _PairContacts(NamedTuple):
         return force / (force * self.structure + local)
 
 
-def _contacts(
-    pair: SpurPair, material: Material, path: FloatArray, reference: str
-) -> _PairContacts:
+def _contacts(pair: SpurPair, material: Material, path: Array, reference: str) -> _PairContacts:
     radii = (path, pair.line_of_action_length - path)
     loads = [load_point(g, r) for g, r in zip((pair.pinion, pair.wheel), radii, strict=True)]
     width = pair.common_face_width
@@ -78,10 +68,10 @@ def _contacts(
 def single_pair_stiffness(
     pair: SpurPair,
     material: Material,
-    path: FloatArray | float,
-    normal_force: FloatArray | float,
+    path: Array | float,
+    normal_force: Array | float,
     reference: str = "bore",
-) -> FloatArray:
+) -> Array:
     """Secant stiffness of one tooth pair that carries a given force alone.
 
     Parameters
@@ -175,12 +165,12 @@ def potential_energy_influence(
 def potential_energy_stiffness(
     pair: SpurPair,
     material: Material,
-    path: FloatArray,
-    in_contact: NDArray[np.bool_],
+    path: Array,
+    in_contact: Mask,
     normal_force: float,
     *,
     reference: str = "bore",
-) -> FloatArray:
+) -> Array:
     """Secant stiffness of every pair at the load share that makes their deflections equal.
 
     Parameters
@@ -250,12 +240,12 @@ def potential_energy_stiffness(
 def _model(
     pair: SpurPair,
     material: Material,
-    path: FloatArray,
-    in_contact: NDArray[np.bool_],
-    phase: FloatArray,
+    path: Array,
+    in_contact: Mask,
+    phase: Array,
     normal_force: float,
     **options: Any,
-) -> FloatArray:
+) -> Array:
     return potential_energy_stiffness(pair, material, path, in_contact, normal_force, **options)
 
 

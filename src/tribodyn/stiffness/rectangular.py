@@ -5,22 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
-
-__all__ = ["rectangular_stiffness"]
+from tribodyn.types import Array, Mask
 
 
 def rectangular_stiffness(
-    in_contact: NDArray[np.bool_],
+    in_contact: Mask,
     *,
     pair_stiffness: float | None = None,
     single_pair_stiffness: float | None = None,
     double_pair_stiffness: float | None = None,
-) -> NDArray[np.float64]:
+) -> Array:
     """Constant stiffness of each zone.
 
     Give either ``pair_stiffness``, which every pair in contact has and which adds up, or the two
@@ -113,12 +111,12 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
 def _model(
     pair: SpurPair,
     material: Material,
-    path: NDArray[np.float64],
-    in_contact: NDArray[np.bool_],
-    phase: NDArray[np.float64],
+    path: Array,
+    in_contact: Mask,
+    phase: Array,
     normal_force: float,
     **options: Any,
-) -> NDArray[np.float64]:
+) -> Array:
     return rectangular_stiffness(in_contact, **options)
 
 

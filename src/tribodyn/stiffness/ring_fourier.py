@@ -6,14 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material
-
-__all__ = ["RingCompliance", "ring_compliance"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Ratio of inner to outer radius up to which the solution keeps eight digits.
 _LARGEST_INNER = 0.995
@@ -22,72 +18,18 @@ _DECAYED = 24.0
 
 
 class RingCompliance(NamedTuple):
-    """Displacement of the rim of a ring per stress on the rim, wave by wave.
+    """Displacement of the rim of a ring per stress on the rim, wave by wave."""
 
-    Parameters
-    ----------
-    outer_radius : float [m]
-        Radius of the rim.
-    expansion : float [m/Pa]
-        Radial displacement under an even radial stress.
-    torsion : float [m/Pa]
-        Tangential displacement under an even tangential stress.
-    waves : array (n, 2, 2) [m/Pa]
-        For ``k = 1 .. n`` waves around the rim: radial stress ``p cos(k phi)`` and tangential
-        stress ``q sin(k phi)`` give displacements ``u cos(k phi)`` and ``v sin(k phi)`` with
-        ``(u, v) = waves[k - 1] @ (p, q)``.
-    """
-
-    outer_radius: float
-    expansion: float
-    torsion: float
-    waves: FloatArray
+    outer_radius: float  #: radius of the rim [m]
+    expansion: float  #: radial displacement under an even radial stress [m/Pa]
+    torsion: float  #: tangential displacement under an even tangential stress [m/Pa]
+    waves: Array  #: for ``k = 1  [m/Pa]
 
 
 def ring_compliance(
     inner_radius: float, outer_radius: float, material: Material, waves: int
 ) -> RingCompliance:
-    """Compliance of the rim of a ring whose inner circle is held.
-
-    Parameters
-    ----------
-    inner_radius : float [m]
-        Radius of the circle that does not move.
-    outer_radius : float [m]
-        Radius of the rim, where the stress acts.
-    material : Material
-        Material of the ring.
-    waves : int
-        Largest number of waves around the rim, at least 1.
-
-    Returns
-    -------
-    RingCompliance
-
-    Raises
-    ------
-    InputError
-        If a radius is not positive or the inner one is not below 0.995 of the outer one.
-
-    Notes
-    -----
-    Exact in plane stress. The solutions for ``k`` waves have the complex potentials ``z^(k+1)``,
-    ``z^(k-1)`` and their mirror powers, for one wave also the force terms ``ln z``; powers are
-    scaled to their largest value, so that any number of waves can be taken. Source: Muskhelishvili,
-    Some Basic Problems of the Mathematical Theory of Elasticity, sections 39 and 59; Timoshenko and
-    Goodier, Theory of Elasticity, general solution in polar coordinates (Michell).
-
-    Examples
-    --------
-    The torque 1 N m/m turns the rim as the ring in torsion does.
-
-    >>> steel = Material()
-    >>> ring = ring_compliance(0.015, 0.03, steel, 4)
-    >>> stress = 1.0 / (2.0 * np.pi * 0.03**2)
-    >>> turn = (1.0 / 0.015**2 - 1.0 / 0.03**2) / (4.0 * np.pi * steel.shear_modulus)
-    >>> bool(abs(ring.torsion * stress / 0.03 / turn - 1.0) < 1e-12)
-    True
-    """
+    """Compliance of the rim of a ring whose inner circle is held."""
     require_positive("inner_radius", inner_radius, "m")
     require_positive("outer_radius", outer_radius, "m")
     if inner_radius > _LARGEST_INNER * outer_radius:
@@ -119,7 +61,7 @@ def ring_compliance(
     )
 
 
-def _long(waves: int, ratio: float, material: Material) -> FloatArray:
+def _long(waves: int, ratio: float, material: Material) -> Array:
     """Compliance of the rim (times 2 G over its radius) for all waves up to a number."""
     inside = _solutions(waves, ratio, ratio, material)
     outside = _solutions(waves, 1.0, ratio, material)
@@ -129,7 +71,7 @@ def _long(waves: int, ratio: float, material: Material) -> FloatArray:
     return np.asarray(outside[:, :2] @ np.linalg.solve(conditions, stress))
 
 
-def _short(beyond: int, waves: int, material: Material) -> FloatArray:
+def _short(beyond: int, waves: int, material: Material) -> Array:
     """The same for more waves, which do not reach the inner circle: those of a full disk."""
     n = np.arange(beyond + 1.0, waves + 1.0)
     nu = material.poissons_ratio
@@ -141,12 +83,8 @@ def _short(beyond: int, waves: int, material: Material) -> FloatArray:
     return table
 
 
-def _solutions(waves: int, radius: float, ratio: float, material: Material) -> FloatArray:
-    """Radial and tangential displacement (times 2 G) and stress of the four solutions per wave.
-
-    Radii are over the outer one, the inner one being ``ratio``. The first two solutions grow
-    outwards and are scaled at the rim, the last two decay and are scaled at the inner circle.
-    """
+def _solutions(waves: int, radius: float, ratio: float, material: Material) -> Array:
+    """Radial and tangential displacement (times 2 G) and stress of the four solutions per wave."""
     n = np.arange(1.0, waves + 1.0)
     nu = material.poissons_ratio
     kappa = (3.0 - nu) / (1.0 + nu)
@@ -163,12 +101,12 @@ def _solutions(waves: int, radius: float, ratio: float, material: Material) -> F
 
 
 def _column(
-    size: FloatArray,
+    size: Array,
     radius: float,
-    moves: tuple[FloatArray | float, FloatArray | float],
-    stresses: tuple[FloatArray | float, FloatArray | float],
-    factor: FloatArray,
-) -> FloatArray:
+    moves: tuple[Array | float, Array | float],
+    stresses: tuple[Array | float, Array | float],
+    factor: Array,
+) -> Array:
     rows = [size * radius * move for move in moves]
     rows += [size * factor * stress for stress in stresses]
     return np.stack(rows, axis=1)

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import require_positive
 from tribodyn.stiffness.ring_fourier import RingCompliance
-
-__all__ = ["foot_compliance", "foot_stresses"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def foot_stresses(
-    load_angle: FloatArray | float,
+    load_angle: Array | float,
     base_radius: float,
     root_radius: float,
     half_angle: float,
-) -> FloatArray:
+) -> Array:
     """Spread a tooth load over the foot of the tooth.
 
     The load turns the gear counter-clockwise. Over the foot an even tangential stress carries the
@@ -74,43 +70,8 @@ def foot_stresses(
     return np.stack([tangential, -np.sin(angle) / chord, linear])
 
 
-def foot_compliance(ring: RingCompliance, half_angle: float, turn: float) -> FloatArray:
-    """Displacement of one foot under the stress on another, in the pattern of the stresses.
-
-    Parameters
-    ----------
-    ring : RingCompliance
-        Ring under the teeth.
-    half_angle : float [rad]
-        Half of the angle that a foot covers.
-    turn : float [rad]
-        Angle from the loaded foot counter-clockwise to the one that is seen.
-
-    Returns
-    -------
-    array (3, 3) [m^2/Pa]
-        ``[seen, loaded]``, in the order of :func:`foot_stresses`: work per width that the unit
-        stress on the seen foot does in the displacement under the unit stress on the loaded one.
-
-    Raises
-    ------
-    InputError
-        If the half angle is not positive.
-
-    Notes
-    -----
-    The result for the opposite turn is the transpose, exactly. The error falls with the
-    square of the number of waves. Source: Fourier series of the stress on the rim.
-
-    Examples
-    --------
-    >>> from tribodyn.gear import Material
-    >>> from tribodyn.stiffness.ring_fourier import ring_compliance
-    >>> ring = ring_compliance(0.015, 0.03, Material(), 200)
-    >>> ahead, behind = (foot_compliance(ring, 0.1, turn) for turn in (0.4, -0.4))
-    >>> bool(np.all(np.abs(ahead - behind.T) < 1e-15 * np.abs(ahead).max()))
-    True
-    """
+def foot_compliance(ring: RingCompliance, half_angle: float, turn: float) -> Array:
+    """Displacement of one foot under the stress on another, in the pattern of the stresses."""
     require_positive("half_angle", half_angle, "rad")
     n = np.arange(1.0, ring.waves.shape[0] + 1.0)
     phase = n * half_angle

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import require_positive, warn
 from tribodyn.gear import Material
+from tribodyn.types import Array
 
-__all__ = ["LARGEST_RATIO", "sainsot_coefficients", "sainsot_compliance"]
-
-Number = TypeVar("Number", float, NDArray[np.float64])
+Number = TypeVar("Number", float, Array)
 
 #: Rows L*, M*, P*, Q*; columns A..F of ``A/theta^2 + B h^2 + C h/theta + D/theta + E h + F``.
 _POLYNOMIALS = np.array(

@@ -6,28 +6,26 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.stiffness.monotone import monotone_cubic
-
-__all__ = ["tabulated_stiffness"]
+from tribodyn.types import Array, Mask
 
 #: Roll angles of a table may fall short of A..E by this much [rad] (rounding in print).
 _COVERAGE_TOLERANCE = 1e-6
 
 
 def tabulated_stiffness(
-    abscissa: Sequence[float] | NDArray[np.float64],
-    stiffness: Sequence[float] | NDArray[np.float64],
-    at: NDArray[np.float64],
+    abscissa: Sequence[float] | Array,
+    stiffness: Sequence[float] | Array,
+    at: Array,
     *,
     name: str = "abscissa",
     unit: str = "",
-) -> NDArray[np.float64]:
+) -> Array:
     """Interpolate a stiffness table without overshoot.
 
     Parameters
@@ -80,7 +78,7 @@ def tabulated_stiffness(
     return monotone_cubic(x, y)(np.clip(at, x[0], x[-1]))
 
 
-def _shape_problems(x: NDArray[np.float64], y: NDArray[np.float64], name: str) -> list[Problem]:
+def _shape_problems(x: Array, y: Array, name: str) -> list[Problem]:
     if x.ndim == 1 and x.shape == y.shape and x.size >= 2:
         return []
     return [
@@ -93,7 +91,7 @@ def _shape_problems(x: NDArray[np.float64], y: NDArray[np.float64], name: str) -
     ]
 
 
-def _order_problems(x: NDArray[np.float64], name: str, unit: str) -> list[Problem]:
+def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
     bad = np.flatnonzero(~np.isfinite(x))
     if bad.size:
         return [
@@ -122,13 +120,13 @@ def _order_problems(x: NDArray[np.float64], name: str, unit: str) -> list[Proble
 def _model(
     pair: SpurPair,
     material: Material,
-    path: NDArray[np.float64],
-    in_contact: NDArray[np.bool_],
-    phase: NDArray[np.float64],
+    path: Array,
+    in_contact: Mask,
+    phase: Array,
     normal_force: float,
     /,
     **options: Any,
-) -> NDArray[np.float64]:
+) -> Array:
     given = {name for name, value in options.items() if value is not None}
     if given == {"phase", "mesh_stiffness"}:
         whole_cycle = np.concatenate(([0.0, 1.0], phase))
@@ -151,10 +149,10 @@ def _model(
 
 def _over_roll_angle(
     pair: SpurPair,
-    path: NDArray[np.float64],
-    in_contact: NDArray[np.bool_],
+    path: Array,
+    in_contact: Mask,
     options: dict[str, Any],
-) -> NDArray[np.float64]:
+) -> Array:
     radius = pair.driving.base_radius
     from_tangent_point = path if pair.driver == "pinion" else pair.line_of_action_length - path
     ends = path_of_contact(pair).roll_angles

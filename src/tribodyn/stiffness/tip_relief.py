@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded.gaps import mesh_period, slice_widths
@@ -19,10 +19,7 @@ from tribodyn.stiffness.tip_relief_bounds import (
 )
 from tribodyn.stiffness.tip_relief_mesh import relief_mesh, with_tip_relief
 from tribodyn.stiffness.tip_relief_result import TipReliefOptimum
-
-__all__ = ["optimize_tip_relief"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Phases of a mesh cycle where nothing multiplies the work, and where something does.
 _MOST, _LEAST = 512, 64
@@ -136,11 +133,11 @@ def optimize_tip_relief(
     axes = relief_axes(pair, amount, length, deflection, grid)
     before = relief_mesh(pair, gears, shape, torques, settings).error(0.0, 0.0)
 
-    def measure(error: FloatArray) -> float:
+    def measure(error: Array) -> float:
         peak = np.ptp(error, axis=1)
         return float(peak.max() if objective == "largest" else weights @ peak)
 
-    def value(place: FloatArray) -> float:
+    def value(place: Array) -> float:
         return measure(mesh.error(float(place[0]), float(place[1])))
 
     mapped = np.array([[value(np.array([a, b])) for b in axes[1]] for a in axes[0]])
@@ -166,7 +163,7 @@ def optimize_tip_relief(
     )
 
 
-def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> FloatArray:
+def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:
     """Mesh phases, as many as asked for or as there is time for."""
     cycles = mesh_period(pair)
     work = cycles * slice_widths(pair, slices).size
@@ -180,7 +177,7 @@ def _options(provider: str, reference: str | None, options: Mapping[str, Any]) -
 
 
 def _search(
-    value: Callable[[FloatArray], float], axes: list[FloatArray], mapped: FloatArray
+    value: Callable[[Array], float], axes: list[Array], mapped: Array
 ) -> tuple[tuple[float, float], float]:
     """Go on from the best points of the map; amount and length, and the objective there."""
     from scipy.optimize import minimize
@@ -211,7 +208,7 @@ def _search(
     return (float(best[0]), float(best[1])), least
 
 
-def _starts(mapped: FloatArray) -> list[tuple[int, int]]:
+def _starts(mapped: Array) -> list[tuple[int, int]]:
     """Rows and columns of the least local minima of the map, the least of all first."""
     padded = np.pad(mapped, 1, constant_values=np.inf)
     rows, columns = mapped.shape

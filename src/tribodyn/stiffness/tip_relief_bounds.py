@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import SpurPair, default_relief_length, flank_ranges
 from tribodyn.gear.modification_checks import LARGEST_AMOUNT
 from tribodyn.stiffness.harris import increasing_torques
-
-__all__ = ["check_choices", "relief_axes", "torques_and_weights"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Torques of a range that is given by its ends.
 _TORQUES = 5
@@ -28,20 +25,7 @@ _CHOICES = {
 
 
 def check_choices(grid: tuple[int, int], **chosen: str) -> None:
-    """Refuse words that are not known, and a map without points.
-
-    Parameters
-    ----------
-    grid : tuple of int
-        Amounts and lengths of the map.
-    **chosen : str
-        ``gears``, ``shape`` and ``objective``.
-
-    Raises
-    ------
-    InputError
-        Listing all of them.
-    """
+    """Refuse words that are not known, and a map without points."""
     problems = [
         Problem(
             what=f'{name} = "{value}"',
@@ -61,33 +45,8 @@ def check_choices(grid: tuple[int, int], **chosen: str) -> None:
         raise InputError(problems)
 
 
-def torques_and_weights(
-    torque: ArrayLike, weight: ArrayLike | None
-) -> tuple[FloatArray, FloatArray]:
-    """Torques of a range and their weights.
-
-    Parameters
-    ----------
-    torque : float or array (t,) [N*m]
-        Torques; two are the ends of a range in which three more are taken.
-    weight : array (t,) or None
-        How much each counts: pure numbers in the order of the torques.
-
-    Returns
-    -------
-    tuple of array (t,)
-        Increasing torques [N*m], and weights that sum to one.
-
-    Raises
-    ------
-    InputError
-        If a torque is not positive, or the weights do not fit.
-
-    Examples
-    --------
-    >>> [values.tolist() for values in torques_and_weights((60.0, 100.0), None)]
-    [[60.0, 70.0, 80.0, 90.0, 100.0], [0.2, 0.2, 0.2, 0.2, 0.2]]
-    """
+def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Array, Array]:
+    """Torques of a range and their weights."""
     given = np.atleast_1d(np.asarray(torque, dtype=float))
     ordered = increasing_torques(given)
     torques = ordered
@@ -116,30 +75,8 @@ def relief_axes(
     length: tuple[float, float] | None,
     deflection: float,
     grid: tuple[int, int],
-) -> list[FloatArray]:
-    """Amounts and lengths of the map, from the least to the greatest that are searched.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        Both gears in their working position.
-    amount, length : tuple of float or None [m]
-        As the user gave them.
-    deflection : float [m]
-        Mean deflection under the greatest torque.
-    grid : tuple of int
-        Number of amounts and of lengths.
-
-    Returns
-    -------
-    list of array [m]
-        Amounts and lengths.
-
-    Raises
-    ------
-    InputError
-        If a range is empty or beyond what a flank has.
-    """
+) -> list[Array]:
+    """Amounts and lengths of the map, from the least to the greatest that are searched."""
     flank = flank_ranges(pair)[0].length
     if amount is None:
         amount = (0.0, min(_AMOUNT * deflection, LARGEST_AMOUNT))

@@ -7,17 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import FlankModification, SpurGear, SpurPair, flank_ranges, profile_gap
 from tribodyn.stiffness.loaded.prepare import contact_problem
 from tribodyn.stiffness.loaded.problem import ContactProblem
 from tribodyn.stiffness.model import MODELS
-
-__all__ = ["ReliefMesh", "relief_mesh", "with_tip_relief"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def with_tip_relief(
@@ -83,43 +79,16 @@ def _shaped(gear: SpurGear, modification: FlankModification) -> SpurGear:
 
 @dataclass(frozen=True, eq=False)
 class ReliefMesh:
-    """The loaded tooth contact of a pair without the relief that is searched.
+    """The loaded tooth contact of a pair without the relief that is searched."""
 
-    Parameters
-    ----------
-    pair : SpurPair
-        The pair.
-    gears, shape : str
-        Which gears are relieved, and how.
-    problems : list of ContactProblem
-        One for all loads, or one for each where the stiffness itself depends on the load.
-    totals : list of array [N]
-        Normal forces of each problem, increasing.
-    """
-
-    pair: SpurPair
+    pair: SpurPair  #: the pair
     gears: str
     shape: str
     problems: list[ContactProblem]
-    totals: list[FloatArray]
+    totals: list[Array]  #: normal forces of each problem, increasing [N]
 
-    def error(self, amount: float, length: float) -> FloatArray:
-        """Transmission error with a relief.
-
-        Parameters
-        ----------
-        amount, length : float [m]
-            Material taken away at the tip, and roll length; no relief with an amount of zero.
-
-        Returns
-        -------
-        array (t, p) [m]
-
-        Raises
-        ------
-        ComputationError
-            If the load is beyond what the formula of the local compression covers.
-        """
+    def error(self, amount: float, length: float) -> Array:
+        """Transmission error with a relief."""
         gap = self._gap(amount, length) if amount > 0.0 else 0.0
         rows = [
             replace(problem, gaps=problem.gaps + gap).at_loads(totals).approach
@@ -127,7 +96,7 @@ class ReliefMesh:
         ]
         return np.concatenate(rows)
 
-    def _gap(self, amount: float, length: float) -> FloatArray:
+    def _gap(self, amount: float, length: float) -> Array:
         """What the relief adds to the gaps (p, 1, n) [m]."""
         places = self.problems[0].places
         gap = np.zeros(places.path.shape)
@@ -143,30 +112,9 @@ class ReliefMesh:
 
 
 def relief_mesh(
-    pair: SpurPair, gears: str, shape: str, torque: FloatArray, settings: dict[str, Any]
+    pair: SpurPair, gears: str, shape: str, torque: Array, settings: dict[str, Any]
 ) -> ReliefMesh:
-    """Prepare a mesh to be asked for many tip reliefs.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        The pair without the relief that is searched.
-    gears, shape : str
-        Which gears are relieved, and how.
-    torque : array (t,) [N*m]
-        Torques on the pinion, increasing.
-    settings : dict
-        Keywords of :func:`tribodyn.stiffness.loaded.prepare.contact_problem`.
-
-    Returns
-    -------
-    ReliefMesh
-
-    Raises
-    ------
-    InputError
-        If a setting is out of range.
-    """
+    """Prepare a mesh to be asked for many tip reliefs."""
     total = torque / pair.pinion.base_radius
     one = MODELS[settings["provider"]].influence is not None
     totals = [total] if one else [total[k : k + 1] for k in range(total.size)]

@@ -6,16 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import SpurPair
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["TipReliefOptimum"]
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,25 +52,25 @@ class TipReliefOptimum:
     shape: str
     amount: float
     length: float
-    torque: FloatArray
-    weight: FloatArray
+    torque: Array
+    weight: Array
     objective_kind: str
     objective: float
     objective_before: float
-    phase: FloatArray
-    transmission_error_before: FloatArray
-    transmission_error_after: FloatArray
-    map_amount: FloatArray
-    map_length: FloatArray
-    map_objective: FloatArray
+    phase: Array
+    transmission_error_before: Array
+    transmission_error_after: Array
+    map_amount: Array
+    map_length: Array
+    map_objective: Array
 
     @property
-    def peak_to_peak_before(self) -> FloatArray:
+    def peak_to_peak_before(self) -> Array:
         """Peak-to-peak transmission error of the pair as it was given (t,) [m]."""
         return np.asarray(np.ptp(self.transmission_error_before, axis=1))
 
     @property
-    def peak_to_peak_after(self) -> FloatArray:
+    def peak_to_peak_after(self) -> Array:
         """Peak-to-peak transmission error with the relief that was found (t,) [m]."""
         return np.asarray(np.ptp(self.transmission_error_after, axis=1))
 

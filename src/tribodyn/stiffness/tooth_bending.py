@@ -6,15 +6,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material
 from tribodyn.stiffness.monotone import monotone_cubic
-
-__all__ = ["ToothBendingCompliance", "tooth_bending_compliance"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Shear correction of a rectangular section.
 _SHEAR_FACTOR = 1.2
@@ -30,21 +26,21 @@ class ToothBendingCompliance(NamedTuple):
         Contributions, which add up.
     """
 
-    bending: FloatArray
-    shear: FloatArray
-    axial: FloatArray
+    bending: Array
+    shear: Array
+    axial: Array
 
     @property
-    def total(self) -> FloatArray:
+    def total(self) -> Array:
         """Sum of the three [m/N]."""
         return self.bending + self.shear + self.axial
 
 
 def tooth_bending_compliance(
-    outline: tuple[FloatArray, FloatArray],
-    height: FloatArray | float,
-    half_thickness: FloatArray | float,
-    load_angle: FloatArray | float,
+    outline: tuple[Array, Array],
+    height: Array | float,
+    half_thickness: Array | float,
+    load_angle: Array | float,
     face_width: float,
     material: Material,
 ) -> ToothBendingCompliance:
@@ -112,18 +108,16 @@ def tooth_bending_compliance(
     )
 
 
-def _section_integrals(
-    section: Callable[[FloatArray], FloatArray], knots: FloatArray, y_load: FloatArray
-) -> FloatArray:
+def _section_integrals(section: Callable[[Array], Array], knots: Array, y_load: Array) -> Array:
     """Integrals of ``s^k / x^3`` (k = 0, 1, 2) and ``1 / (2 x)`` from the foot to each load."""
 
-    def integrate(start: FloatArray, stop: FloatArray) -> FloatArray:
+    def integrate(start: Array, stop: Array) -> Array:
         half = 0.5 * (stop - start)
         y = 0.5 * (stop + start) + half * _NODES.reshape(-1, *([1] * half.ndim))
         x = section(y)
         s = y - knots[0]
         integrands = np.stack([x**-3, s * x**-3, s**2 * x**-3, 0.5 / x])
-        result: FloatArray = half * np.tensordot(_WEIGHTS, integrands, axes=(0, 1))
+        result: Array = half * np.tensordot(_WEIGHTS, integrands, axes=(0, 1))
         return result
 
     per_interval = integrate(knots[:-1], knots[1:])
@@ -133,8 +127,8 @@ def _section_integrals(
 
 
 def _checked(
-    outline: tuple[FloatArray, FloatArray], height: FloatArray | float, face_width: float
-) -> tuple[FloatArray, FloatArray]:
+    outline: tuple[Array, Array], height: Array | float, face_width: float
+) -> tuple[Array, Array]:
     require_positive("face_width", face_width, "m")
     knots, thickness = (np.asarray(part, dtype=float) for part in outline)
     require_positive("half thickness of the outline", thickness[:-1], "m")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import Material, SpurGear, half_tooth
@@ -13,10 +12,7 @@ from tribodyn.stiffness.load_point import LoadPoint
 from tribodyn.stiffness.sainsot import LARGEST_RATIO, sainsot_compliance
 from tribodyn.stiffness.tooth_bending import tooth_bending_compliance
 from tribodyn.stiffness.wind_up import wind_up_compliance
-
-__all__ = ["REFERENCES", "ToothCompliance", "check_reference", "tooth_compliance"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Where the gear body is held: at the bore, or rigidly under the teeth.
 REFERENCES = ("bore", "rim")
@@ -37,35 +33,20 @@ class ToothCompliance(NamedTuple):
         Torsion of the body between bore and root circle; zero with the rim as reference.
     """
 
-    bending: FloatArray
-    shear: FloatArray
-    axial: FloatArray
-    foundation: FloatArray
+    bending: Array
+    shear: Array
+    axial: Array
+    foundation: Array
     wind_up: float
 
     @property
-    def total(self) -> FloatArray:
+    def total(self) -> Array:
         """Sum of all [m/N]."""
         return self.bending + self.shear + self.axial + self.foundation + self.wind_up
 
 
 def check_reference(reference: str) -> None:
-    """Refuse a name that is no body reference.
-
-    Parameters
-    ----------
-    reference : str
-        ``"bore"`` or ``"rim"``.
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-
-    Examples
-    --------
-    >>> check_reference("rim")
-    """
+    """Refuse a name that is no body reference."""
     if reference not in REFERENCES:
         raise InputError(
             Problem(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.gear import Material, SpurGear, half_tooth
@@ -14,21 +13,18 @@ from tribodyn.stiffness.analytic_nodes import flank_nodes
 from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.load_point import load_point
 from tribodyn.stiffness.tooth_compliance import check_reference
-
-__all__ = ["half_plane_compliance", "weber_influence"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Points of the tooth outline, as for the other models.
 _OUTLINE_POINTS = 400
 
 
 def half_plane_compliance(
-    load_angle: FloatArray | float,
-    load_height: FloatArray | float,
+    load_angle: Array | float,
+    load_height: Array | float,
     foot_width: float,
     material: Material,
-) -> FloatArray:
+) -> Array:
     """Compliance of the half plane under a tooth, per unit face width.
 
     ``cos^2(a) (1 - nu^2) / E [18/pi (u/s)^2 + 2 (1 - 2 nu)/(1 - nu) u/s

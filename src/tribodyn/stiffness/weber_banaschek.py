@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, Problem, require_positive
 from tribodyn.gear import Material
+from tribodyn.types import Array
 
-__all__ = ["weber_banaschek_compression"]
-
-Number = TypeVar("Number", float, NDArray[np.float64])
+Number = TypeVar("Number", float, Array)
 
 
 def weber_banaschek_compression(

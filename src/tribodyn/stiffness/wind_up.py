@@ -7,8 +7,6 @@ import numpy as np
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material
 
-__all__ = ["wind_up_compliance"]
-
 
 def wind_up_compliance(
     base_radius: float,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.study.damping import damping_of
 from tribodyn.study.geometry import geometry
 from tribodyn.study.rig import rig_of
 from tribodyn.study.tooth_contact import load_friction_of, mesh_law_of
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
@@ -18,25 +18,12 @@ if TYPE_CHECKING:
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
 
-__all__ = ["static_error", "system_of", "whole_system"]
 
 _GEARS = ("pinion", "wheel")
 
 
-def static_error(case: Case, phase: NDArray[np.float64] | float) -> NDArray[np.float64]:
-    """Static transmission error of a case: a cosine at mesh frequency.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    phase : float or array
-        Mesh phase.
-
-    Returns
-    -------
-    array [m]
-    """
+def static_error(case: Case, phase: Array | float) -> Array:
+    """Static transmission error of a case: a cosine at mesh frequency."""
     amplitude = case.dynamics.transmission_error_amplitude
     angle = 2.0 * np.pi * np.asarray(phase) + case.dynamics.transmission_error_phase
     return np.asarray(amplitude * np.cos(angle))
@@ -45,24 +32,7 @@ def static_error(case: Case, phase: NDArray[np.float64] | float) -> NDArray[np.f
 def system_of(
     case: Case, mesh: MeshTable, damping: Damping, friction: MeshFriction | None = None
 ) -> System:
-    """Build the structure of a case with its tooth contact.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    mesh : MeshTable
-        Its tooth contact.
-    damping : Damping
-        Its damping.
-    friction : MeshFriction, optional
-        Friction that follows the load of the teeth; that of the mesh at the nominal load by
-        default.
-
-    Returns
-    -------
-    System
-    """
+    """Build the structure of a case with its tooth contact."""
     from tribodyn.dynamics import follow_load
 
     system = _structure(case, mesh, damping)
@@ -70,19 +40,7 @@ def system_of(
 
 
 def whole_system(case: Case, mesh: MeshTable) -> System:
-    """Build the structure of a case with its tooth contact, its damping and its friction.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    mesh : MeshTable
-        Its tooth contact.
-
-    Returns
-    -------
-    System
-    """
+    """Build the structure of a case with its tooth contact, its damping and its friction."""
     return system_of(case, mesh, damping_of(case, mesh), load_friction_of(case, mesh))
 
 

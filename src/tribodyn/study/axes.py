@@ -19,7 +19,6 @@ from tribodyn.study.values import Plain, read_value
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["Axis", "ends_of", "read_axes"]
 
 _EXAMPLE = 'Write, for example, {"operation.speed": ("400 rpm", "3500 rpm", 60)}'
 _WORD = 'Write, for example, "operation.speed=400..3500 rpm:60"'
@@ -29,20 +28,10 @@ _MOST = 100_000
 
 @dataclass(frozen=True)
 class Axis:
-    """One key that varies.
+    """One key that varies."""
 
-    Parameters
-    ----------
-    key : str
-        Dotted key of the case file.
-    values : tuple
-        Its values: floats in SI, whole numbers or names.
-    unit, display_unit : str
-        SI unit and the unit shown; empty for a pure number or a name.
-    """
-
-    key: str
-    values: tuple[Any, ...]
+    key: str  #: dotted key of the case file
+    values: tuple[Any, ...]  #: its values: floats in SI, whole numbers or names
     unit: str = ""
     display_unit: str = ""
 
@@ -57,13 +46,7 @@ class Axis:
         return all(isinstance(v, int | float) and not isinstance(v, bool) for v in self.values)
 
     def shown(self) -> NDArray[Any]:
-        """Return the values as engineers read them.
-
-        Returns
-        -------
-        array
-            Numbers in ``display_unit``, or names.
-        """
+        """Return the values as engineers read them."""
         from tribodyn.units import convert
 
         if not self.numeric:
@@ -72,17 +55,7 @@ class Axis:
         return np.asarray(self.values, dtype=float) * factor
 
     def show(self, value: Any) -> str:
-        """Write one of the values with its unit.
-
-        Parameters
-        ----------
-        value : object
-            One of ``values``.
-
-        Returns
-        -------
-        str
-        """
+        """Write one of the values with its unit."""
         from tribodyn.units import convert
 
         if not self.numeric:
@@ -92,29 +65,7 @@ class Axis:
 
 
 def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple[float, ...]:
-    """Read values of one key as the case does, each by itself.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    key : str
-        Dotted key of a number.
-    ends : sequence
-        Floats in SI, or text with a unit.
-    by : str
-        What asks, for messages; then a bare number for a dimension is refused as in a file.
-
-    Returns
-    -------
-    tuple of float
-        In SI.
-
-    Raises
-    ------
-    InputError
-        If there is no such key, it is no number, or a value is out of range.
-    """
+    """Read values of one key as the case does, each by itself."""
     found = [_one(case, key, end, by) for end in ends]
     if not all(isinstance(value, float) for value in found):
         what, why = f"{key} goes from {ends[0]} to {ends[-1]}", "It has no values in between"
@@ -154,26 +105,7 @@ def _first_key(case: Case, key: str) -> str:
 
 
 def read_axes(case: Case, over: Mapping[str, Any], *, by: str = "") -> tuple[Axis, ...]:
-    """Read the keys that vary.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    over : mapping
-        Dotted key to ``(first, last, points)``, a tuple, or to a list of values.
-    by : str
-        What asks, for messages.
-
-    Returns
-    -------
-    tuple of Axis
-
-    Raises
-    ------
-    InputError
-        Naming the first key that is unknown, has fewer than two values, or runs backwards.
-    """
+    """Read the keys that vary."""
     if not over:
         raise InputError(Problem("nothing varies", "argument over", "", _EXAMPLE))
     axes = tuple(_axis(case, key, values, by) for key, values in over.items())

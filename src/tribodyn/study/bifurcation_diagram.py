@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.study.case import Case
 
-__all__ = ["bifurcation"]
 
 #: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
 _COARSER, _FEWEST = 4, 512

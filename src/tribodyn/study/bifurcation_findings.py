@@ -7,18 +7,15 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.study.axes import Axis
 from tribodyn.study.provenance import spec_of
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.analysis.bifurcation_result import Bifurcation
     from tribodyn.study.case import Case
 
-__all__ = ["Findings"]
-
-Array = NDArray[np.float64]
 
 #: A jump changes the rms by more than this part of it, and by more than this times as much as
 #: the changes before and after it.
@@ -28,15 +25,7 @@ _APART = 0.05
 
 
 class Findings:
-    """What a diagram says.
-
-    Parameters
-    ----------
-    case : Case
-        The case that was varied.
-    found : Bifurcation
-        Its diagram.
-    """
+    """What a diagram says."""
 
     def __init__(self, case: Case, found: Bifurcation) -> None:
         spec = spec_of(case, found.parameter_name)
@@ -45,35 +34,19 @@ class Findings:
         self.found, self.axis = found, Axis(found.parameter_name, values, *units)
 
     def lead(self) -> str:
-        """Tell what varies.
-
-        Returns
-        -------
-        str
-        """
+        """Tell what varies."""
         ends = f"from {self._at(0)} to {self._at(-1)}"
         return f"{len(self.axis.values)} values of {self.axis.key} {ends}"
 
     def sentences(self) -> list[str]:
-        """Tell verdicts, runaways, step limit, periods, jumps and where two motions are possible.
-
-        Returns
-        -------
-        list of str
-        """
+        """Tell verdicts, run-aways, step limit, periods, jumps, and where two motions exist."""
         return [
             *self._counts(), *self._lost(), *self._limit(), *self._periods(), *self._jumps(),
             *self._two(),
         ]  # fmt: skip
 
     def figures(self) -> dict[str, Any]:
-        """Return the same for a program, in SI.
-
-        Returns
-        -------
-        dict
-            Counts of verdicts and runaways, onset of the step limit, periods and jumps.
-        """
+        """Return the same for a program, in SI."""
         onset = self._onset()
         return {
             "parameter": self.found.parameter_name,
@@ -97,13 +70,7 @@ class Findings:
         }
 
     def rows(self) -> tuple[list[str], list[list[str]]]:
-        """Return the diagram as a table.
-
-        Returns
-        -------
-        tuple of (list of str, list of list of str)
-            Its head and its rows.
-        """
+        """Return the diagram as a table."""
         found = self.found
         unit = f" [{self.axis.display_unit}]" if self.axis.display_unit else ""
         turns = self.found.signal.endswith("theta")

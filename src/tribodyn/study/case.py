@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from tribodyn.gear import Material, SpurPair
     from tribodyn.lubricant import Lubricant
 
-__all__ = ["Case"]
 
 #: Keys whose choice decides which other keys of their table are allowed.
 _SELECTORS = ("film.model", "stiffness.model", "friction.law", "dynamics.model", "solver.method")

@@ -21,13 +21,6 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case import Case
 
-__all__ = [
-    "case_cautions",
-    "friction_cautions",
-    "mesh_cautions",
-    "motion_cautions",
-    "teeth_cautions",
-]
 
 #: Hertzian pressure that case-hardened steel does not survive [Pa].
 _STEEL = 3e9
@@ -40,18 +33,7 @@ _INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
 
 def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
-    """Find what is odd about the gears of a case, before anything is computed.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    tuple of ModelWarning
-        Those of the geometry first.
-    """
+    """Find what is odd about the gears of a case, before anything is computed."""
     pair = case.gear_pair
     found = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
@@ -124,36 +106,14 @@ def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
 
 
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
-    """Find a load that no gear stands, and flanks that the film does not keep apart.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        The tooth contact.
-
-    Returns
-    -------
-    tuple of ModelWarning
-    """
+    """Find a load that no gear stands, and flanks that the film does not keep apart."""
     return (*_pressure(mesh), *_mixed(mesh))
 
 
 def friction_cautions(
     friction: MeshFriction | None, response: Response
 ) -> tuple[ModelWarning, ...]:
-    """Find loads of the teeth beyond those for which friction is known.
-
-    Parameters
-    ----------
-    friction : MeshFriction or None
-        Friction over the load, where it follows it.
-    response : Response
-        The motion.
-
-    Returns
-    -------
-    tuple of ModelWarning
-    """
+    """Find loads of the teeth beyond those for which friction is known."""
     if friction is None:
         return ()
     force = np.abs(mesh_force(measured(response)))
@@ -195,21 +155,7 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
 
 
 def motion_cautions(case: Case, system: System, response: Response) -> tuple[ModelWarning, ...]:
-    """Find flanks that part in a steady motion.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    system : System
-        Its structure.
-    response : Response
-        Its motion.
-
-    Returns
-    -------
-    tuple of ModelWarning
-    """
+    """Find flanks that part in a steady motion."""
     if case.backlash == 0.0 or not is_steady(response):
         return ()
     samples = measured(response)
@@ -227,17 +173,7 @@ def motion_cautions(case: Case, system: System, response: Response) -> tuple[Mod
 
 
 def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
-    """Say what the motion leaves out where teeth differ from each other.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    tuple of ModelWarning
-    """
+    """Say what the motion leaves out where teeth differ from each other."""
     if not case.gear_pair.teeth_differ:
         return ()
     message = (

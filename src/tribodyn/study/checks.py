@@ -16,8 +16,6 @@ from tribodyn.study.options import (
 )
 from tribodyn.study.rig import is_rig_key
 
-__all__ = ["DEFAULT_MARK", "cross_problems"]
-
 #: The reason that marks a written value as the default of the library that wrote it.
 DEFAULT_MARK = "default"
 
@@ -194,20 +192,7 @@ _CHECKS: tuple[Callable[[Given], Found], ...] = (
 
 
 def cross_problems(given: Given, faulty: set[str]) -> list[tuple[str, Problem]]:
-    """Check the keys of a case against each other.
-
-    Parameters
-    ----------
-    given : Given
-        What the user gave.
-    faulty : set of str
-        Keys already found faulty; what follows from them alone is not reported again.
-
-    Returns
-    -------
-    list of (str, Problem)
-        Dotted key and problem.
-    """
+    """Check the keys of a case against each other."""
     found = [problem for check in _CHECKS for problem in check(given)]
     found += _assumed(given, faulty)
     if "stiffness.model" not in faulty:

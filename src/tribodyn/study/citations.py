@@ -12,7 +12,6 @@ from tribodyn.study.provenance import changed_keys
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["STYLES", "cite", "papers", "sources_of"]
 
 STYLES = ("text", "bibtex")
 
@@ -53,19 +52,7 @@ def _library() -> dict[str, dict[str, Any]]:
 
 
 def papers(case: Case) -> dict[str, dict[str, Any]]:
-    """Papers behind the models that a case uses, each once.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict of str to dict
-        Citation key to the fields of its BibTeX entry; the software itself comes first, then
-        the documents that the values of the case and of its oil come from.
-    """
+    """Papers behind the models that a case uses, each once."""
     chosen = {
         "stiffness": case.stiffness.model,
         "friction": case.friction.law,
@@ -156,30 +143,7 @@ def _bibtex(key: str, entry: dict[str, Any]) -> str:
 
 
 def cite(case: Case, style: str = "text") -> str:
-    """Write the papers behind a case.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    style : str
-        ``"text"``, one line each, or ``"bibtex"``.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InputError
-        If there is no such style.
-
-    Examples
-    --------
-    >>> import tribodyn
-    >>> "Benedict" in cite(tribodyn.load_case("fzg-roughness"))
-    True
-    """
+    """Write the papers behind a case."""
     found = papers(case)
     if style == "bibtex":
         return "\n\n".join(_bibtex(key, entry) for key, entry in found.items())

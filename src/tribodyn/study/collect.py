@@ -8,26 +8,10 @@ from contextlib import contextmanager
 
 from tribodyn.errors import ModelWarning
 
-__all__ = ["collected"]
-
 
 @contextmanager
 def collected() -> Iterator[list[ModelWarning]]:
-    """Collect the model warnings issued inside the block, each once; others pass as usual.
-
-    Yields
-    ------
-    list of ModelWarning
-        Filled when the block ends, also when it ends by an error.
-
-    Examples
-    --------
-    >>> from tribodyn.errors import warn
-    >>> with collected() as found:
-    ...     warn("friction-range", "speed 25 m/s is above 20 m/s")
-    >>> found[0].code
-    'friction-range'
-    """
+    """Collect the model warnings issued inside the block, each once; others pass as usual."""
     found: list[ModelWarning] = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ModelWarning)

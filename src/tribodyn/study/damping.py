@@ -13,71 +13,26 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case import Case
 
-__all__ = ["Damping", "damping_of", "equivalent_mass"]
-
 
 @dataclass(frozen=True)
 class Damping:
-    """Damping coefficients of a case.
+    """Damping coefficients of a case."""
 
-    Parameters
-    ----------
-    mesh : float
-        Of the tooth contact along the line of action [N*s/m].
-    bearing_pinion, bearing_wheel : float
-        Of each gear's support in each direction [N*s/m]; zero without supports.
-    """
-
-    mesh: float
-    bearing_pinion: float
-    bearing_wheel: float
+    mesh: float  #: of the tooth contact along the line of action [N*s/m]
+    bearing_pinion: float  #: [N*s/m]
+    bearing_wheel: float  #: [N*s/m]
 
 
 def equivalent_mass(
     inertia_pinion: float, inertia_wheel: float, radius_pinion: float, radius_wheel: float
 ) -> float:
-    """Mass that vibrates along the line of action when both gears turn freely.
-
-    Parameters
-    ----------
-    inertia_pinion, inertia_wheel : float
-        Moments of inertia [kg*m^2].
-    radius_pinion, radius_wheel : float
-        Base radii [m].
-
-    Returns
-    -------
-    float [kg]
-
-    Notes
-    -----
-    ``m_e = I_p I_g / (I_p r_bg^2 + I_g r_bp^2)``.
-
-    Examples
-    --------
-    >>> round(equivalent_mass(407e-6, 1168e-6, 33.828934e-3, 50.743402e-3), 5)
-    0.19935
-    """
+    """Mass that vibrates along the line of action when both gears turn freely."""
     weighted = inertia_pinion * radius_wheel**2 + inertia_wheel * radius_pinion**2
     return inertia_pinion * inertia_wheel / weighted
 
 
 def damping_of(case: Case, mesh: MeshTable) -> Damping:
-    """Damping of a case.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    mesh : MeshTable
-        Its tooth contact, for the mean stiffness.
-
-    Returns
-    -------
-    Damping
-        From ratios: mesh ``2 zeta sqrt(K m_e)`` with the mean mesh stiffness, supports
-        ``2 zeta sqrt(k m)`` with the mass of each gear.
-    """
+    """Damping of a case."""
     data, body = case.dynamics, geometry(case)
     mesh_damping = data.mesh_damping
     if mesh_damping is None:

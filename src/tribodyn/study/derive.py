@@ -23,15 +23,6 @@ if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
     from tribodyn.study.case import Case
 
-__all__ = [
-    "case_problems",
-    "gear_pair",
-    "gear_problems",
-    "gear_warnings",
-    "lubricant",
-    "material",
-    "unused_lubricant",
-]
 
 #: Arguments of the physics that the case file calls otherwise.
 _KEYS = {
@@ -54,42 +45,12 @@ _PASSED = (
 
 
 def gear_pair(gears: Gears, backlash: float | None = None) -> SpurPair:
-    """Build the gear pair of a case, silently; what was to be said is in :func:`gear_warnings`.
-
-    Parameters
-    ----------
-    gears : Gears
-        The ``[gears]`` table.
-    backlash : float, optional
-        Total play on the line of action [m]; both teeth are thinned to make it. Zero or nothing
-        leaves the teeth full.
-
-    Returns
-    -------
-    SpurPair
-
-    Raises
-    ------
-    InputError
-        Listing everything that makes the pair impossible.
-    """
+    """Build the gear pair of a case, silently; what was to be said is in :func:`gear_warnings`."""
     return _built(gears, backlash or None, _modifications(gears))[0]
 
 
 def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWarning, ...]:
-    """Warnings about the geometry of the pair.
-
-    Parameters
-    ----------
-    gears : Gears
-        The ``[gears]`` table.
-    backlash : float, optional
-        Total play on the line of action [m].
-
-    Returns
-    -------
-    tuple of ModelWarning
-    """
+    """Warnings about the geometry of the pair."""
     return _built(gears, backlash or None, _modifications(gears))[1]
 
 
@@ -164,39 +125,14 @@ def _spur_pair(gears: Gears, backlash: float | None, modified: _Modified) -> Spu
 
 
 def material(data: MaterialData) -> Material:
-    """Build the material of the gears.
-
-    Parameters
-    ----------
-    data : MaterialData
-        The ``[material]`` table.
-
-    Returns
-    -------
-    Material
-    """
+    """Build the material of the gears."""
     from tribodyn.gear import Material
 
     return Material(data.youngs_modulus, data.poissons_ratio, data.density)
 
 
 def lubricant(data: LubricantData) -> Lubricant:
-    """Build the oil, from the library or from its properties.
-
-    Parameters
-    ----------
-    data : LubricantData
-        The ``[lubricant]`` table.
-
-    Returns
-    -------
-    Lubricant
-
-    Raises
-    ------
-    InputError
-        If the oil is not known at the temperature.
-    """
+    """Build the oil, from the library or from its properties."""
     from tribodyn.lubricant import Lubricant, from_library
 
     if data.name is not None:
@@ -214,12 +150,7 @@ def lubricant(data: LubricantData) -> Lubricant:
 
 
 def unused_lubricant() -> Lubricant:
-    """Return an oil for a case that needs none: no law or formula of such a case looks at it.
-
-    Returns
-    -------
-    Lubricant
-    """
+    """Return an oil for a case that needs none: no law or formula of such a case looks at it."""
     from tribodyn.lubricant import Lubricant
 
     return Lubricant(0.1, 900.0, 2e-8, name="unused")
@@ -247,18 +178,7 @@ def _faults(section: str, build: Callable[[], object]) -> list[tuple[str, Proble
 
 
 def gear_problems(given: Given) -> list[tuple[str, Problem]]:
-    """Find the faults of the gear pair alone, where other tables are faulty.
-
-    Parameters
-    ----------
-    given : Given
-        What the user gave.
-
-    Returns
-    -------
-    list of (str, Problem)
-        Empty when the pair is possible, or when its own keys are faulty.
-    """
+    """Find the faults of the gear pair alone, where other tables are faulty."""
     try:
         gears = Gears.model_validate(given.value("gears"))
     except ValidationError:
@@ -269,18 +189,7 @@ def gear_problems(given: Given) -> list[tuple[str, Problem]]:
 
 
 def case_problems(case: Case) -> list[tuple[str, Problem]]:
-    """Find what makes a well-written case physically impossible.
-
-    Parameters
-    ----------
-    case : Case
-        Case whose keys are all in order.
-
-    Returns
-    -------
-    list of (str, Problem)
-        Dotted key and problem.
-    """
+    """Find what makes a well-written case physically impossible."""
     found = _faults("gears", lambda: case.gear_pair)
     found += _faults("lubricant", lambda: case.lubricant_properties)
     return found + _bores(case)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["BASIS", "derived_values"]
 
 #: Keys whose missing value is derived, and from what.
 BASIS = {
@@ -24,18 +23,7 @@ BASIS = {
 
 
 def derived_values(case: Case) -> dict[str, float]:
-    """All values that are derived because the case does not give them.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict of str to float
-        Dotted key to SI value.
-    """
+    """All values that are derived because the case does not give them."""
     from tribodyn.gear import default_relief_length, mass_properties
 
     pair, values = case.gear_pair, {}

@@ -12,19 +12,9 @@ from tribodyn.errors import Problem
 from tribodyn.study.section import Section
 from tribodyn.study.values import written
 
-__all__ = ["section_at", "translate"]
-
 
 def section_at(model: type[BaseModel], path: tuple[str, ...]) -> type[Section] | None:
-    """Return the section class at a dotted path below ``model``, or None.
-
-    Parameters
-    ----------
-    model : type
-        Class of the whole case.
-    path : tuple of str
-        Names of tables.
-    """
+    """Return the section class at a dotted path below ``model``, or None."""
     section: Any = model
     for name in path:
         field = section.model_fields.get(name)
@@ -95,19 +85,6 @@ def _one(model: type[BaseModel], error: ErrorDetails) -> Problem:
 
 
 def translate(model: type[BaseModel], error: ValidationError) -> list[tuple[str, Problem]]:
-    """Turn a pydantic error into problems with the key of each.
-
-    Parameters
-    ----------
-    model : type
-        Class of the whole case, to look up names near an unknown one.
-    error : ValidationError
-        What pydantic found.
-
-    Returns
-    -------
-    list of (str, Problem)
-        Dotted key and problem.
-    """
+    """Turn a pydantic error into problems with the key of each."""
     details = error.errors(include_url=False)
     return [(".".join(str(p) for p in one["loc"]), _one(model, one)) for one in details]

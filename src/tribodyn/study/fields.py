@@ -18,50 +18,25 @@ from pydantic import Field
 from tribodyn import units
 from tribodyn.nomenclature import QUANTITIES
 
-__all__ = ["Spec", "choice", "file_path", "flag", "integer", "number", "numbers", "text"]
-
 Names = Callable[[], list[str]]
 
 
 @dataclass(frozen=True)
 class Spec:
-    """What is known about one field.
-
-    Parameters
-    ----------
-    kind : str
-        ``"number"``, ``"numbers"``, ``"integer"``, ``"choice"``, ``"flag"``, ``"text"`` or
-        ``"file"``.
-    meaning : str
-        One line.
-    symbol, unit, display_unit : str
-        Symbol of the field, SI unit and the unit shown; empty for a pure number.
-    low, high : float
-        Inclusive limits in ``unit``.
-    positive : bool
-        Zero is refused although ``low`` is zero.
-    origin : str
-        Why the limits are what they are.
-    names : callable
-        Names allowed, for a choice.
-    later : tuple of str
-        Names that a later release will have.
-    example : str
-        TOML value shown where the field is missing.
-    """
+    """What is known about one field."""
 
     kind: str
-    meaning: str
+    meaning: str  #: one line
     symbol: str = ""
     unit: str = ""
     display_unit: str = ""
     low: float = -math.inf
     high: float = math.inf
-    positive: bool = False
-    origin: str = ""
-    names: Names | None = None
-    later: tuple[str, ...] = ()
-    example: str = ""
+    positive: bool = False  #: zero is refused although ``low`` is zero
+    origin: str = ""  #: why the limits are what they are
+    names: Names | None = None  #: names allowed, for a choice
+    later: tuple[str, ...] = ()  #: names that a later release will have
+    example: str = ""  #: TOML value shown where the field is missing
 
     def show(self, value: Any) -> str:
         """Write a value in the display unit, lists in brackets, flags as TOML does."""

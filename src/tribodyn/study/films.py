@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from tribodyn.mesh import FilmOverOperation
     from tribodyn.study.case import Case
 
-__all__ = ["film_over_operation"]
-
 
 def film_over_operation(
     case: Case,

@@ -8,8 +8,6 @@ from tribodyn.study.fields import choice, integer, number
 from tribodyn.study.modification import Modification
 from tribodyn.study.section import Section
 
-__all__ = ["Gear", "Gears"]
-
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"
 

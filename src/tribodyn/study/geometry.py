@@ -8,7 +8,6 @@ if TYPE_CHECKING:
     from tribodyn.gear import SpurGear, SpurPair
     from tribodyn.study.case import Case
 
-__all__ = ["geometry"]
 
 #: Modifications that are one figure each.
 _AMOUNTS = (
@@ -18,24 +17,7 @@ _AMOUNTS = (
 
 
 def geometry(case: Case) -> dict[str, float]:
-    """Geometry, masses and inertias that follow from a case.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict of str to float
-        Names and units as in :data:`tribodyn.study.SUMMARY`.
-
-    Examples
-    --------
-    >>> import tribodyn
-    >>> round(geometry(tribodyn.load_case("fzg-roughness"))["transverse_contact_ratio"], 6)
-    1.326952
-    """
+    """Geometry, masses and inertias that follow from a case."""
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
     pair = case.gear_pair

@@ -8,8 +8,6 @@ from typing import Any
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.values import Plain, written
 
-__all__ = ["Given", "plain"]
-
 
 def plain(data: Any) -> Any:
     """Mark every value of nested mappings as coming from Python, where a bare float is SI."""
@@ -33,13 +31,7 @@ def _marks(table: Any) -> Any:
 
 
 class Given:
-    """Read access by dotted keys to what the user gave; never fails on odd shapes.
-
-    Parameters
-    ----------
-    data : mapping
-        Nested tables.
-    """
+    """Read access by dotted keys to what the user gave; never fails on odd shapes."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.data = data
@@ -72,22 +64,7 @@ class Given:
                 yield key
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return a copy with dotted keys set.
-
-        Parameters
-        ----------
-        changes : mapping
-            Dotted key to value; None takes the key away.
-
-        Returns
-        -------
-        dict
-
-        Raises
-        ------
-        InputError
-            If a key leads through a value that is no table.
-        """
+        """Return a copy with dotted keys set."""
         result: dict[str, Any] = _copy(self.data)
         for key, value in changes.items():
             *tables, name = key.split(".")

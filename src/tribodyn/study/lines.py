@@ -7,8 +7,6 @@ brackets well enough to skip values, and leaves all judgement about the text to 
 
 from __future__ import annotations
 
-__all__ = ["key_lines"]
-
 _SPACE = " \t\r"
 
 
@@ -121,22 +119,5 @@ class _Scanner:
 
 
 def key_lines(text: str) -> dict[str, list[int]]:
-    r"""Map every dotted key and table of TOML text to the lines on which it stands.
-
-    Parameters
-    ----------
-    text : str
-        TOML text, valid or nearly so.
-
-    Returns
-    -------
-    dict of str to list of int
-        Lines counted from 1; more than one where a key is repeated. Parts of a key are joined
-        by dots, quoted parts without their quotes.
-
-    Examples
-    --------
-    >>> key_lines('title = "x"\n[gears]\npinion = { teeth = 16 }\n')
-    {'title': [1], 'gears': [2], 'gears.pinion': [3], 'gears.pinion.teeth': [3]}
-    """
+    r"""Map every dotted key and table of TOML text to the lines on which it stands."""
     return _Scanner(text).run()

@@ -10,7 +10,6 @@ from tribodyn.study.section import Section
 if TYPE_CHECKING:
     from tribodyn.gear import FlankModification, ProfileMap
 
-__all__ = ["Modification", "flank_modification"]
 
 _GUARD = "guards against a wrong unit"
 _MOST = 0.5e-3
@@ -73,24 +72,7 @@ class Modification(Section):
 
 
 def flank_modification(data: Modification | None, chart: ProfileMap | None) -> FlankModification:
-    """Build the modification of one gear.
-
-    Parameters
-    ----------
-    data : Modification or None
-        Its table of the case file; nothing is no modification.
-    chart : ProfileMap or None
-        The map that the table names.
-
-    Returns
-    -------
-    FlankModification
-
-    Raises
-    ------
-    InputError
-        Listing what is out of range or contradicts itself.
-    """
+    """Build the modification of one gear."""
     from tribodyn.gear import FlankModification
 
     if data is None:

@@ -15,35 +15,13 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.study.case import Case
 
-__all__ = ["motion_of"]
 
 #: Mesh cycles after which a steady motion may repeat.
 _PERIODS = (1, 2, 3, 4)
 
 
 def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progress) -> Response:
-    """Compute the motion of a case.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    system : System
-        Its structure and contact.
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    progress : Progress
-        Told how far the search has come.
-
-    Returns
-    -------
-    Response
-
-    Raises
-    ------
-    ComputationError
-        If no motion repeats within four mesh cycles.
-    """
+    """Compute the motion of a case."""
     steps = steps_of(case, system, mesh_frequency)
     if case.solver.method == "steady":
         response = _steady(system, mesh_frequency, steps, progress)

@@ -14,31 +14,9 @@ from tribodyn.study.values import Plain, read_value
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["operation_values", "pinion_speeds", "pinion_torques"]
-
 
 def operation_values(name: str, given: Any, case: Case) -> list[float]:
-    """Read one or several torques or speeds, each checked like the key of the case.
-
-    Parameters
-    ----------
-    name : str
-        ``"torque"`` or ``"speed"``.
-    given : float, str, list or None
-        Floats in SI, or text with a unit; nothing for the value of the case.
-    case : Case
-        The case.
-
-    Returns
-    -------
-    list of float
-        In SI.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range or has no unit of its kind.
-    """
+    """Read one or several torques or speeds, each checked like the key of the case."""
     if given is None:
         return [getattr(case.operation, name)]
     several = isinstance(given, Iterable) and not isinstance(given, str)
@@ -52,36 +30,12 @@ def operation_values(name: str, given: Any, case: Case) -> list[float]:
 
 
 def pinion_torques(case: Case, given: Any) -> list[float]:
-    """Read torques on the gear named by ``operation.speed_of`` as those of the pinion.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    given : float, str, list or None
-        As for :func:`operation_values`.
-
-    Returns
-    -------
-    list of float [N*m]
-    """
+    """Read torques on the gear named by ``operation.speed_of`` as those of the pinion."""
     return [value / _turns(case) for value in operation_values("torque", given, case)]
 
 
 def pinion_speeds(case: Case, given: Any) -> list[float]:
-    """Read speeds of the gear named by ``operation.speed_of`` as those of the pinion.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    given : float, str, list or None
-        As for :func:`operation_values`.
-
-    Returns
-    -------
-    list of float [rad/s]
-    """
+    """Read speeds of the gear named by ``operation.speed_of`` as those of the pinion."""
     return [value * _turns(case) for value in operation_values("speed", given, case)]
 
 

@@ -9,16 +9,6 @@ from tribodyn.errors import Problem
 from tribodyn.study.given import Given
 from tribodyn.study.rig import RIG_KEYS
 
-__all__ = [
-    "TABLE_FORMS",
-    "film_problems",
-    "foreign_dynamics",
-    "friction_problems",
-    "left_behind",
-    "model_options",
-    "stiffness_problems",
-]
-
 Found = Iterator[tuple[str, Problem]]
 
 #: Abscissa of a stiffness table -> what its values are called by the model.
@@ -28,20 +18,7 @@ _RECTANGULAR = ("single_pair_stiffness", "double_pair_stiffness")
 
 
 def model_options(section: str, name: str) -> Mapping[str, Any]:
-    """Options of a film model, stiffness model or friction law, with their defaults.
-
-    Parameters
-    ----------
-    section : str
-        ``"film"``, ``"stiffness"`` or ``"friction"``.
-    name : str
-        Name of a known model or law.
-
-    Returns
-    -------
-    mapping of str to object
-        Names as the case file writes them.
-    """
+    """Options of a film model, stiffness model or friction law, with their defaults."""
     if section == "film":
         from tribodyn.ehl import FILM_MODELS
 
@@ -58,22 +35,7 @@ def model_options(section: str, name: str) -> Mapping[str, Any]:
 
 
 def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, str]) -> set[str]:
-    """Find the options of an earlier choice that a new choice of model, law or method cannot take.
-
-    Parameters
-    ----------
-    given : Given
-        What a sound case gives.
-    changes : mapping
-        Dotted key to its new value.
-    choices : mapping of str to str
-        Dotted keys that choose, each with the name that holds after the changes.
-
-    Returns
-    -------
-    set of str
-        Dotted keys given by the case, and not by the changes.
-    """
+    """Options of an earlier choice that a new model, law or method cannot take."""
     return {
         key
         for selector, name in choices.items()
@@ -83,22 +45,7 @@ def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, 
 
 
 def foreign_dynamics(model: str) -> tuple[str, ...]:
-    """Keys of ``[dynamics]`` that a structure does not take.
-
-    Parameters
-    ----------
-    model : str
-        Name of the structure.
-
-    Returns
-    -------
-    tuple of str
-
-    Examples
-    --------
-    >>> "bearing_stiffness" in foreign_dynamics("torsional")
-    True
-    """
+    """Keys of ``[dynamics]`` that a structure does not take."""
     supports = ("bearing_stiffness", "bearing_damping", "bearing_damping_ratio")
     shafts = () if model == "fzg-12dof" else RIG_KEYS
     return (*supports, *shafts) if model == "torsional" else shafts
@@ -133,17 +80,7 @@ def _film_stiffnesses(name: str) -> tuple[str, ...]:
 
 
 def film_problems(given: Given, name: str, faulty: set[str]) -> Found:
-    """Check the options of the film model.
-
-    Parameters
-    ----------
-    given : Given
-        What the user gave.
-    name : str
-        Name of a known model.
-    faulty : set of str
-        Keys already found faulty.
-    """
+    """Check the options of the film model."""
     yield from _foreign(given, "film", "model", name)
     key, kinds = "film.stiffness", _film_stiffnesses(name)
     if given.value(key, "none") not in kinds:
@@ -188,15 +125,7 @@ def _both(given: Given, one: str, other: str) -> Problem:
 
 
 def stiffness_problems(given: Given, name: str) -> Found:
-    """Check the options of the stiffness model.
-
-    Parameters
-    ----------
-    given : Given
-        What the user gave.
-    name : str
-        Name of a known model.
-    """
+    """Check the options of the stiffness model."""
     yield from _foreign(given, "stiffness", "model", name)
     checks = {"rectangular": _rectangular, "table": _table, "fourier": _fourier}
     if name in checks:
@@ -248,15 +177,7 @@ def _table(given: Given) -> Found:
 
 
 def friction_problems(given: Given, name: str) -> Found:
-    """Check the options of the friction law.
-
-    Parameters
-    ----------
-    given : Given
-        What the user gave.
-    name : str
-        Name of a known law.
-    """
+    """Check the options of the friction law."""
     yield from _foreign(given, "friction", "law", name)
     for option, default in model_options("friction", name).items():
         if default is None and f"friction.{option}" not in given:

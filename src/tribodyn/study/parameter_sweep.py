@@ -18,8 +18,6 @@ from tribodyn.study.sweep_result import Sweep, SweepPoint
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["sweep"]
-
 
 def sweep(
     case: Case,

@@ -24,8 +24,6 @@ from tribodyn.study.tooth_contact import load_friction_of, mesh_of
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["run"]
-
 
 def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Result:
     """Compute a case.

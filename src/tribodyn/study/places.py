@@ -12,7 +12,6 @@ from tribodyn.errors import InputError, Problem
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["placed"]
 
 #: Arguments of the physics and the keys that they come from.
 _KEYS = {
@@ -43,22 +42,7 @@ def _key(case: Case, problem: Problem) -> str:
 
 @contextmanager
 def placed(case: Case) -> Iterator[None]:
-    """Name file, line and key in the input errors that are raised inside the block.
-
-    Parameters
-    ----------
-    case : Case
-        The case being computed.
-
-    Yields
-    ------
-    None
-
-    Raises
-    ------
-    InputError
-        With the same problems; those whose key is known name it.
-    """
+    """Name file, line and key in the input errors that are raised inside the block."""
     try:
         yield
     except InputError as error:

@@ -13,7 +13,6 @@ from tribodyn.errors import InputError, Problem
 if TYPE_CHECKING:
     from tribodyn.gear import ProfileMap
 
-__all__ = ["read_profile_map"]
 
 _PLACES = ("roll_length", "diameter")
 _FORM = (
@@ -28,29 +27,7 @@ def _fault(path: str, line: int, what: str, why: str, remedy: str) -> InputError
 
 
 def read_profile_map(path: str, interpolation: str) -> ProfileMap:
-    """Read a map; the same file is read again when it has changed.
-
-    Parameters
-    ----------
-    path : str
-        Path of the CSV file.
-    interpolation : str
-        ``"linear"`` or ``"cubic"``.
-
-    Returns
-    -------
-    ProfileMap
-
-    Raises
-    ------
-    InputError
-        If there is no such file, or naming the line that is wrong, the unit that is missing or
-        the points that do not make a full grid.
-
-    Notes
-    -----
-    Points may come in any order. Every place along the profile needs every place along the face.
-    """
+    """Read a map; the same file is read again when it has changed."""
     try:
         state = Path(path).stat()
     except OSError as error:

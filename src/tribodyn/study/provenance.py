@@ -18,8 +18,6 @@ from tribodyn.study.tooth_contact import mesh_law_of
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["Assumption", "assumptions", "effective", "provenance", "spec_of"]
-
 
 _TRANSIENT_CYCLES = 50
 #: Keys of a case that are words about it.
@@ -28,24 +26,12 @@ _WORDS = ("title", "origin")
 
 @dataclass(frozen=True)
 class Assumption:
-    """A value that nobody stated, and why it is what it is.
+    """A value that nobody stated, and why it is what it is."""
 
-    Parameters
-    ----------
-    key : str
-        Dotted key of the case file.
-    value : str
-        Value with unit.
-    kind : str
-        ``"assumed"`` by whoever wrote the case, or a ``"default"`` of tribodyn.
-    reason : str
-        Why.
-    """
-
-    key: str
-    value: str
-    kind: str
-    reason: str
+    key: str  #: dotted key of the case file
+    value: str  #: value with unit
+    kind: str  #: ``"assumed"`` by whoever wrote the case, or a ``"default"`` of tribodyn
+    reason: str  #: why
 
     def __str__(self) -> str:
         """One line."""
@@ -53,15 +39,7 @@ class Assumption:
 
 
 def spec_of(case: Case, key: str) -> Spec | None:
-    """Return the Spec of a dotted key, or None if there is no such plain field.
-
-    Parameters
-    ----------
-    case : Case
-        Any case.
-    key : str
-        Dotted key.
-    """
+    """Return the Spec of a dotted key, or None if there is no such plain field."""
     *path, name = key.split(".")
     section = section_at(type(case), tuple(path))
     return section.spec(name) if section and name in section.model_fields else None
@@ -86,18 +64,7 @@ def _option_default(case: Case, key: str) -> Any:
 
 
 def effective(case: Case) -> dict[str, Any]:
-    """Return all values in force by dotted key, defaults of options and solver filled in.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict
-        SI values; None where a value is derived from the geometry or not used.
-    """
+    """Return all values in force by dotted key, defaults of options and solver filled in."""
     values = {}
     for key, value in case.values():
         values[key] = _option_default(case, key) if value is None else value
@@ -156,18 +123,7 @@ def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:
 
 
 def provenance(case: Case) -> dict[str, str]:
-    """Tell the origin of every value in force.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict of str to str
-        Dotted key to ``"given"``, ``"default"`` or ``"assumed: reason"``.
-    """
+    """Tell the origin of every value in force."""
     origins, changed = {}, changed_keys(case)
     for key, value in effective(case).items():
         if key in case.assumed:
@@ -180,17 +136,7 @@ def provenance(case: Case) -> dict[str, str]:
 
 
 def assumptions(case: Case) -> tuple[Assumption, ...]:
-    """List everything that the user did not state: assumed values and defaults.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    tuple of Assumption
-    """
+    """List everything that the user did not state: assumed values and defaults."""
     values, derived, rows = effective(case), derived_values(case), []
     for key, origin in provenance(case).items():
         kind, _, reason = origin.partition(": ")

@@ -12,8 +12,6 @@ from tribodyn.study.case import Case
 from tribodyn.study.lines import key_lines
 from tribodyn.study.source import Source
 
-__all__ = ["read_case", "read_text"]
-
 #: A number followed by a unit, without quotes.
 _BARE_UNIT = re.compile(r"=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-zµ°%][^\"'#]*?)\s*(?:#.*)?$")
 _COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
@@ -24,22 +22,7 @@ _SHOWN = 80
 
 
 def read_text(path: Path) -> str:
-    """Read a text file in UTF-8.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InputError
-        If it cannot be read or is not text.
-    """
+    """Read a text file in UTF-8."""
     try:
         return path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:

@@ -10,22 +10,9 @@ from tribodyn.study.faults import section_at
 from tribodyn.study.fields import Spec
 from tribodyn.study.section import Section
 
-__all__ = ["case_keys", "reference_tables"]
-
 
 def case_keys() -> Iterator[tuple[str, Spec, str]]:
-    """Walk over all keys of the case file.
-
-    Yields
-    ------
-    tuple of (str, Spec, str)
-        Dotted key, its Spec and its default in words.
-
-    Examples
-    --------
-    >>> next(key for key, spec, _ in case_keys() if spec.symbol == "alpha_wt" or spec.symbol == "a")
-    'gears.center_distance'
-    """
+    """Walk over all keys of the case file."""
     yield from _walk(Case, ())
 
 
@@ -52,12 +39,7 @@ def _default(spec: Spec, name: str, required: bool, value: object) -> str:
 
 
 def reference_tables() -> str:
-    """Write all keys as Markdown tables, one for each table of the case file.
-
-    Returns
-    -------
-    str
-    """
+    """Write all keys as Markdown tables, one for each table of the case file."""
     lines: list[str] = []
     table = ""
     for key, spec, default in case_keys():

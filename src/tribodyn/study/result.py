@@ -9,12 +9,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tribodyn.study.assembly import static_error
 from tribodyn.study.provenance import Assumption, assumptions
 from tribodyn.study.save import new_directory
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -26,7 +24,6 @@ if TYPE_CHECKING:
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
 
-__all__ = ["Result"]
 
 _PLOT = "plot_"
 
@@ -92,7 +89,7 @@ class Result:
         """Half of the play on the line of action [m]; zero is a linear mesh."""
         return 0.5 * self.case.backlash
 
-    def static_error(self, phase: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    def static_error(self, phase: Array | float) -> Array:
         """Static transmission error that was prescribed.
 
         Parameters

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from tribodyn.study.case import Case
     from tribodyn.study.damping import Damping
 
-__all__ = ["RIG", "RIG_KEYS", "is_rig_key", "rig_of"]
 
 #: Options of the structure and their defaults: those of the benchmark rig, whose first elastic
 #: mode lies at 492 Hz. No source prints them.
@@ -40,51 +39,13 @@ _BODIES = ("shaft1", "wheel", "pinion", "shaft2")
 
 
 def is_rig_key(key: str) -> bool:
-    """Tell whether a dotted key belongs to this structure alone.
-
-    Parameters
-    ----------
-    key : str
-        For example ``"dynamics.shaft1_stiffness"``.
-
-    Returns
-    -------
-    bool
-
-    Examples
-    --------
-    >>> is_rig_key("dynamics.shaft1_stiffness"), is_rig_key("dynamics.backlash")
-    (True, False)
-    """
+    """Tell whether a dotted key belongs to this structure alone."""
     section, _, name = key.partition(".")
     return section == "dynamics" and name in RIG_KEYS
 
 
 def rig_of(case: Case, mesh: MeshTable, damping: Damping, shared: Mapping[str, Any]) -> System:
-    """Build the structure with twelve coordinates.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    mesh : MeshTable
-        Its tooth contact.
-    damping : Damping
-        Its damping.
-    shared : mapping
-        Options that all structures have; inertias and torque are those of (pinion, wheel).
-
-    Returns
-    -------
-    System
-        Coordinates v across the line of action, w along it and theta of shaft 1, wheel, pinion
-        and shaft 2.
-
-    Notes
-    -----
-    Shaft 1 carries the wheel and shaft 2 the pinion. Each turns a disc at its far end, where the
-    torque acts. Every body is on a support of the same stiffness.
-    """
+    """Build the structure with twelve coordinates."""
     from tribodyn.dynamics import fzg12
 
     given = dict(shared)

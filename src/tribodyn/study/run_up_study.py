@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, System
     from tribodyn.study.case import Case
 
-__all__ = ["run_up", "speed_systems"]
 
 _SPEED = "operation.speed"
 
@@ -104,22 +103,7 @@ def run_up(
 def speed_systems(
     case: Case, speeds: Any, progress: Progress = SILENT
 ) -> tuple[dict[float, System], float]:
-    """Structures of a case at some speeds, by mesh frequency.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    speeds : (m,) array
-        Values of ``operation.speed`` [rad/s].
-    progress : Progress
-        Told about the speeds.
-
-    Returns
-    -------
-    tuple of dict and float
-        Systems by mesh frequency [Hz], and mesh frequency over speed [1/rad].
-    """
+    """Structures of a case at some speeds, by mesh frequency."""
     systems: dict[float, System] = {}
     per_speed = 1.0
     progress.start("tooth contact", len(speeds))

@@ -11,15 +11,6 @@ from pathlib import Path
 
 from tribodyn.errors import InputError, OutputExistsError, Problem
 
-__all__ = [
-    "BIFURCATION_FILES",
-    "RESULT_FILES",
-    "SWEEP_FILES",
-    "check_target",
-    "new_directory",
-    "write_file",
-]
-
 #: What a result directory holds; only such a directory may be replaced.
 RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.html")
 #: The same of studies.
@@ -34,20 +25,7 @@ _KINDS = {
 
 
 def write_file(path: Path, text: str) -> None:
-    """Write a text file at once: it appears complete or not at all.
-
-    Parameters
-    ----------
-    path : Path
-        File to write; an existing one is replaced.
-    text : str
-        Its content.
-
-    Raises
-    ------
-    InputError
-        If the place cannot be written to.
-    """
+    """Write a text file at once: it appears complete or not at all."""
     try:
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     except OSError as error:
@@ -76,24 +54,7 @@ def _cannot(path: Path, error: OSError) -> Problem:
 def check_target(
     target: Path, force: bool, *, remedy: str = "Choose another directory, or set force=True"
 ) -> None:
-    """Refuse a directory that cannot or must not be written, before any work is done.
-
-    Parameters
-    ----------
-    target : Path
-        Directory to make.
-    force : bool
-        An existing result may be replaced.
-    remedy : str
-        What to do about an existing result.
-
-    Raises
-    ------
-    OutputExistsError
-        If something is there that is not to be replaced.
-    InputError
-        If the place cannot be written to.
-    """
+    """Refuse a directory that cannot or must not be written, before any work is done."""
     parent = target.absolute().parent
     if parent.exists() and not parent.is_dir():
         raise InputError(
@@ -135,27 +96,7 @@ def _strangers(target: Path) -> str:
 
 @contextmanager
 def new_directory(target: Path, *, force: bool = False) -> Iterator[Path]:
-    """Fill a directory beside its place and move it there when it is complete.
-
-    Parameters
-    ----------
-    target : Path
-        Directory to make.
-    force : bool
-        Replace an existing result.
-
-    Yields
-    ------
-    Path
-        Directory to write into. If the block fails or is interrupted, nothing of it remains.
-
-    Raises
-    ------
-    OutputExistsError
-        If something is there that is not to be replaced.
-    InputError
-        If the place cannot be written to.
-    """
+    """Fill a directory beside its place and move it there when it is complete."""
     check_target(target, force)
     place = target.absolute()
     try:

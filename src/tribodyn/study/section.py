@@ -11,8 +11,6 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.study.fields import Spec
 from tribodyn.study.values import read_value
 
-__all__ = ["Section"]
-
 
 class Section(BaseModel):
     """Base of the sections of a case file."""

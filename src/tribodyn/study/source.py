@@ -7,24 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from tribodyn.errors import Problem
 
-__all__ = ["Source"]
-
 
 @dataclass(frozen=True)
 class Source:
-    """Origin of the keys of a case.
+    """Origin of the keys of a case."""
 
-    Parameters
-    ----------
-    name : str
-        File name as the user gave it; empty for a case made in Python.
-    lines : mapping of str to list of int
-        Lines of each dotted key, from :func:`tribodyn.study.lines.key_lines`.
-    replaced : mapping of str to str
-        Keys that were replaced afterwards, and by what, for example ``"--set"``.
-    """
-
-    name: str = ""
+    name: str = ""  #: file name as the user gave it
     lines: Mapping[str, list[int]] = field(default_factory=dict)
     replaced: Mapping[str, str] = field(default_factory=dict)
 

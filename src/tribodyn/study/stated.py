@@ -118,15 +118,8 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 def settled(
     case: Case, values: Mapping[str, Any], given: Given, stated: Stated
 ) -> tuple[Stated, set[str]]:
-    """Compare what was stated with the values in force [SI].
-
-    A reason without a recorded value belongs to the value beside it.
-
-    Returns
-    -------
-    tuple of Stated and set of str
-        What holds from now on, and the keys whose reason was that of another value.
-    """
+    """What holds of the values in force [SI], and the keys whose reason was that of another value."""
+    # A reason without a recorded value belongs to the value that it came with.
     marks = {key: stated.marks.get(key, values.get(key)) for key in case.assumed}
     stale = {key for key, value in marks.items() if not same(value, values.get(key))}
     said = {key: value for key, value in marks.items() if case.assumed[key] != DEFAULT_MARK}

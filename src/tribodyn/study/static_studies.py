@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from tribodyn.stiffness import HarrisMap, TipReliefOptimum
     from tribodyn.study.case import Case
 
-__all__ = ["comprehensive_stiffness", "harris_map", "optimize_tip_relief"]
 
 #: Torques of a map over those of the case.
 _RANGE = (0.1, 2.0)

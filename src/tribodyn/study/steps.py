@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.study.case import Case
 
-__all__ = ["steps_of"]
 
 _STEPS = "steps_per_mesh_cycle"
 #: Margin of the least speed that is recommended.
@@ -21,26 +20,7 @@ _COARSE = 1024
 
 
 def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
-    """Steps per mesh cycle that were asked for, else those that follow the fastest motion.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    system : System
-        Its structure.
-    mesh_frequency : float
-        Mesh frequency [Hz].
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    InputError
-        If the gears turn so slowly that no allowed number of steps is stable.
-    """
+    """Steps per mesh cycle that were asked for, else those that follow the fastest motion."""
     from tribodyn.dynamics import recommended_steps
     from tribodyn.dynamics.program import compile_system
     from tribodyn.dynamics.step_limit import LIMIT, largest_rate

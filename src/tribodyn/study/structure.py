@@ -5,8 +5,6 @@ from __future__ import annotations
 from tribodyn.study.fields import choice, flag, integer, number, numbers
 from tribodyn.study.section import Section
 
-__all__ = ["Dynamics", "Friction", "Solver", "Stiffness"]
-
 _GUARD = "guards against a wrong unit"
 _TWO_PI = 6.283185307179586
 

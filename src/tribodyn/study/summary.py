@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.result import Result
 
-__all__ = ["summarize"]
 
 #: Direction in the names of the summary -> letter of the coordinate.
 _DIRECTIONS = {"loa": "y", "oloa": "x"}
@@ -34,19 +33,7 @@ _HARMONICS = 5
 
 
 def summarize(result: Result) -> dict[str, float]:
-    """Compute all figures of a result.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` made.
-
-    Returns
-    -------
-    dict of str to float
-        Names and units as in :data:`tribodyn.study.SUMMARY`. A transient is measured over the
-        second half of its mesh cycles. Figures that a model does not have are left out.
-    """
+    """Compute all figures of a result."""
     samples = measured(result.response)
     values: dict[str, Any] = {
         **geometry(result.case),

@@ -9,27 +9,15 @@ from importlib.resources import files
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.units import format_quantity
 
-__all__ = ["SUMMARY", "SummaryFigure"]
-
 
 @dataclass(frozen=True)
 class SummaryFigure:
-    """One figure of a summary.
+    """One figure of a summary."""
 
-    Parameters
-    ----------
-    name : str
-        Key in the summary.
-    unit, display_unit : str
-        SI unit of the value, and the unit shown; empty for a pure number.
-    meaning : str
-        One line.
-    """
-
-    name: str
+    name: str  #: key in the summary
     unit: str
     display_unit: str
-    meaning: str
+    meaning: str  #: one line
 
     def show(self, value: float) -> str:
         """Write the value in the display unit with six digits."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 from tribodyn.study.fields import choice, integer, number, numbers
 from tribodyn.study.section import Section
 
-__all__ = ["Film", "LubricantData", "MaterialData", "Operation"]
-
 _GUARD = "guards against a wrong unit"
 _RPM = 0.10471975511965977
 

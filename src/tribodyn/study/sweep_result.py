@@ -17,15 +17,13 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.study.axes import Axis
 from tribodyn.study.save import new_directory
 from tribodyn.study.summary_names import SUMMARY
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
     from tribodyn.study.case import Case
 
-__all__ = ["Sweep", "SweepPoint"]
-
-Array = NDArray[np.float64]
 
 #: Reason where a sweep was interrupted before.
 _NOT_REACHED = "not computed: the sweep was interrupted before"
@@ -33,24 +31,12 @@ _NOT_REACHED = "not computed: the sweep was interrupted before"
 
 @dataclass(frozen=True)
 class SweepPoint:
-    """One value of a sweep.
+    """One value of a sweep."""
 
-    Parameters
-    ----------
-    values : tuple
-        Of the keys that vary, in SI.
-    figures : mapping of str to float
-        The summary; empty if the computation failed.
-    failed : str
-        Why it failed; empty if it did not.
-    warned : tuple of str
-        Codes of the warnings of the models.
-    """
-
-    values: tuple[Any, ...]
-    figures: Mapping[str, float] = field(repr=False)
-    failed: str = ""
-    warned: tuple[str, ...] = ()
+    values: tuple[Any, ...]  #: of the keys that vary, in SI
+    figures: Mapping[str, float] = field(repr=False)  #: the summary
+    failed: str = ""  #: why it failed
+    warned: tuple[str, ...] = ()  #: codes of the warnings of the models
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,24 +15,13 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case import Case
 
-__all__ = ["load_friction_of", "mesh_law_of", "mesh_of", "model_settings"]
 
 #: Load over the nominal load below which friction may be missing.
 _LIGHT = 0.3
 
 
 def mesh_law_of(case: Case) -> MeshForce:
-    """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    "stiffness", "tangent" or "force-law"
-    """
+    """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law."""
     from tribodyn.stiffness import MODELS
 
     if case.dynamics.mesh_law is not None:
@@ -55,18 +44,7 @@ def _options(case: Case, section: str, name: str) -> dict[str, Any]:
 
 
 def model_settings(case: Case) -> dict[str, Any]:
-    """Material, oil, stiffness and film of a case, as the mesh asks for them.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict of str to object
-        Keywords of :func:`tribodyn.mesh.build`.
-    """
+    """Material, oil, stiffness and film of a case, as the mesh asks for them."""
     return {
         "material": case.material_properties,
         "stiffness_model": case.stiffness.model,
@@ -79,21 +57,7 @@ def model_settings(case: Case) -> dict[str, Any]:
 
 
 def mesh_of(case: Case, progress: Progress = SILENT, *, load: float = 1.0) -> MeshTable:
-    """Compute the tooth contact of a case over one mesh cycle.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    progress : Progress
-        Told how many films are solved.
-    load : float
-        Factor of the torque [1].
-
-    Returns
-    -------
-    MeshTable
-    """
+    """Compute the tooth contact of a case over one mesh cycle."""
     from tribodyn.mesh import build
 
     return build(
@@ -109,27 +73,7 @@ def mesh_of(case: Case, progress: Progress = SILENT, *, load: float = 1.0) -> Me
 
 
 def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
-    """Friction of a case under any load of the teeth.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    nominal : MeshTable
-        Its tooth contact.
-
-    Returns
-    -------
-    MeshFriction or None
-        None where friction stays that of the nominal load. What the laws say about light and heavy
-        loads, among them that these lie outside of their ranges, is not repeated.
-
-    Raises
-    ------
-    ComputationError
-        If the tooth contact cannot be computed at a heavy load; light loads at which a film in
-        series with the teeth has no solution are left out.
-    """
+    """Friction of a case under any load of the teeth."""
     if case.dynamics.friction_load == "nominal":
         return None
     from tribodyn.mesh import LOADS, mesh_friction

@@ -12,22 +12,9 @@ if TYPE_CHECKING:
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case import Case
 
-__all__ = ["loaded_contact", "loaded_settings"]
-
 
 def loaded_settings(case: Case) -> dict[str, Any]:
-    """Provider, its options and the material of a case, as the loaded tooth contact has them.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    dict of str to object
-        Keywords of :func:`tribodyn.stiffness.loaded_contact`.
-    """
+    """Provider, its options and the material of a case, as the loaded tooth contact has them."""
     settings = model_settings(case)
     options = dict(settings["stiffness_options"])
     return {

@@ -16,8 +16,6 @@ from pydantic_core import PydanticCustomError
 from tribodyn import units
 from tribodyn.study.fields import Spec
 
-__all__ = ["Plain", "read_value", "written"]
-
 #: A number with a comma for its decimal point.
 _COMMA = re.compile(r"\s*[+-]?\d+,\d+(?!\d*,)")
 
@@ -139,27 +137,7 @@ def _name(spec: Spec, name: str, value: Any) -> str:
 
 
 def read_value(spec: Spec, name: str, value: Any) -> Any:
-    """Check one value and return it in SI.
-
-    Parameters
-    ----------
-    spec : Spec
-        The field.
-    name : str
-        Key, for messages.
-    value : object
-        What was typed in a file or on the command line, where a dimension needs a unit; or a
-        :class:`Plain` value from Python.
-
-    Returns
-    -------
-    float, int, bool, str or tuple of float
-
-    Raises
-    ------
-    PydanticCustomError
-        Carrying ``what``, ``why`` and ``remedy``.
-    """
+    """Check one value and return it in SI."""
     as_text = not isinstance(value, Plain)
     if isinstance(value, Plain):
         value = value.value

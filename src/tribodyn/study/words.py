@@ -6,8 +6,6 @@ import tomllib
 from functools import lru_cache
 from importlib.resources import files
 
-__all__ = ["choice_meanings", "warning_meanings"]
-
 
 @lru_cache(maxsize=1)
 def _words() -> dict[str, dict[str, str]]:
@@ -16,30 +14,10 @@ def _words() -> dict[str, dict[str, str]]:
 
 
 def warning_meanings() -> dict[str, str]:
-    """Meaning of every warning by its code.
-
-    Returns
-    -------
-    dict of str to str
-
-    Examples
-    --------
-    >>> warning_meanings()["thin-tip"]
-    'a tooth tip is thinner than 0.2 modules'
-    """
+    """Meaning of every warning by its code."""
     return dict(_words()["warnings"])
 
 
 def choice_meanings() -> dict[str, str]:
-    """Meaning of the models, laws and methods that a case chooses among.
-
-    Returns
-    -------
-    dict of str to str
-
-    Examples
-    --------
-    >>> choice_meanings()["torsional"]
-    'both gears turn about fixed axes'
-    """
+    """Meaning of the models, laws and methods that a case chooses among."""
     return dict(_words()["choices"])

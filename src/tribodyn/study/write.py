@@ -16,8 +16,6 @@ from tribodyn.study.provenance import changed_keys, effective, provenance, spec_
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
 
-__all__ = ["case_table", "case_toml"]
-
 
 def _quantity(spec: Spec, value: float) -> str:
     """Text with a unit that reads back to exactly the same float."""
@@ -63,21 +61,7 @@ def _unset_example(spec: Spec) -> str:
 
 
 def case_toml(case: Case) -> str:
-    """Write the complete commented case file.
-
-    Values that are defaults are written out and marked in ``[assumed]`` by the reason
-    ``"default"``, so that the file gives the same results in a later version and still tells
-    what its user chose.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    str
-    """
+    """Write the complete commented case file."""
     values, origins, derived = effective(case), provenance(case), derived_values(case)
     changed = changed_keys(case)
     lines: list[str] = []
@@ -155,17 +139,7 @@ def _table_meaning(case: Case, place: str) -> str:
 
 
 def case_table(case: Case) -> str:
-    """Write the case as a table with units, one row for each value in force.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    str
-    """
+    """Write the case as a table with units, one row for each value in force."""
     origins, derived = provenance(case), derived_values(case)
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
     rows = [

@@ -3,42 +3,14 @@
 from __future__ import annotations
 
 import numba as nb
-import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.options import INNER
-
-__all__ = ["band_factor", "band_solve"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 
 @nb.njit(**INNER)
 def band_factor(n: int, w: int, a: Array, pivot: Index) -> bool:
-    """Factor a matrix of half bandwidth ``w`` in place.
-
-    Parameters
-    ----------
-    n : int
-        Number of rows.
-    w : int
-        Half bandwidth.
-    a : (n, 4 w + 1) array
-        ``a[i, j - i + w]`` is the element (i, j) for ``|i - j| <= w``; the columns from
-        ``2 w + 1`` on are room for fill and for the multipliers, and need no value.
-    pivot : (n,) array of int
-        Receives the row that was taken in each step.
-
-    Returns
-    -------
-    bool
-        False if the matrix is singular.
-
-    Notes
-    -----
-    Golub and Van Loan, Matrix Computations, band Gaussian elimination with partial pivoting.
-    """
+    """Factor a matrix of half bandwidth ``w`` in place."""
     for i in range(n):
         for c in range(2 * w + 1, 3 * w + 1):
             a[i, c] = 0.0

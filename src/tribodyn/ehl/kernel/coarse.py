@@ -10,17 +10,13 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.dense import lu_factor, lu_solve
 from tribodyn.ehl.kernel.film_sum import film_plan, film_sum, influence
 from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility
-
-__all__ = ["coarse_tangent", "correct", "no_coarse"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @nb.njit(**BURIED)
@@ -34,14 +30,7 @@ def coarse_tangent(
     n: int, dx: float, k: int, ratio: int, lam: float, u: float, squeeze: float, imposed: bool,
     oil: Array, P: Array, H: Array,
 ) -> Any:  # fmt: skip
-    """Factor the tangent on the grid of ``n / ratio`` intervals about a state of the fine grid.
-
-    Returns
-    -------
-    tuple
-        Factors, row exchanges (and the last free node at the end), influence, its plan, room;
-        empty where the tangent is singular.
-    """
+    """Factor the tangent on the grid of ``n / ratio`` intervals about a state of the fine grid."""
     m, wide, last = n // ratio, ratio * dx, k // ratio
     rows = np.empty((7, m + 2))
     for i in range(m + 1):
@@ -80,15 +69,7 @@ def correct(
     n: int, dx: float, k: int, imposed: bool, cH: Array, cP: Array, scale: Array, target: float,
     coarse: Any, work: Array, z: Array, x: Array,
 ) -> float:  # fmt: skip
-    """Coarse correction ``x`` of the scaled rows ``z``, which keep what it leaves over.
-
-    The film of the correction is summed on the coarse grid and interpolated.
-
-    Returns
-    -------
-    float
-        Share of the load that the correction carries.
-    """
+    """Coarse correction ``x`` of the scaled rows ``z``, which keep what it leaves over."""
     a, pivot, K, plan, rows = coarse
     m = K.size - 1
     ratio, last = n // m, pivot[m + 1]

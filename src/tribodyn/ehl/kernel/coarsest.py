@@ -6,7 +6,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.dense import lu_factor, lu_solve
 from tribodyn.ehl.kernel.film_sum import film_sum
@@ -14,14 +13,7 @@ from tribodyn.ehl.kernel.newton import CONVERGED, GAP, SINGULAR
 from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import INNER
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility, residual
-
-__all__ = [
-    "BALANCE", "DLNETA", "DRHO", "EPS", "FLUX", "RHO", "balance", "coarsest_work", "evaluate",
-    "solve_coarsest",
-]  # fmt: skip
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array
 
 # Rows of the scratch array.
 LNETA, DLNETA, RHO, DRHO, EPS, FLUX, BALANCE, NOUGHT = 0, 1, 2, 3, 4, 5, 6, 7
@@ -36,25 +28,7 @@ def evaluate(
     n: int, dx: float, lam: float, oil: Array, offset: float, shape: Array, excess: Array,
     K: Array, plan: Array, rows: Array, room: Array, P: Array, H: Array,
 ) -> None:  # fmt: skip
-    """Film, oil, mobility, fluxes and residual of a pressure on one grid.
-
-    Parameters
-    ----------
-    n, dx, lam, oil
-        As for :mod:`tribodyn.ehl.kernel.reynolds`.
-    offset : float
-        Rigid offset of the film.
-    shape, excess : (n + 1,) arrays
-        Gap of the undeformed bodies, and what the film of the finer grid has beyond this one's.
-    K, plan : array
-        From :mod:`tribodyn.ehl.kernel.film_sum`.
-    rows : (8, ...) array
-        Receives oil, mobility, fluxes and residual; the last row holds zeros.
-    room : array
-        Room for the film sum.
-    P, H : (n + 1,) arrays
-        Pressure; receives the film.
-    """
+    """Film, oil, mobility, fluxes and residual of a pressure on one grid."""
     film_sum(n, K, plan, P, room, H)
     for i in range(n + 1):
         H[i] += offset + shape[i] + excess[i]
@@ -113,37 +87,7 @@ def solve_coarsest(
     right: Array, K: Array, plan: Array, rows: Array, room: Array, cH: Array, cP: Array,
     work: Any, P: Array, H: Array, state: Array,
 ) -> int:  # fmt: skip
-    """Newton's method for pressure and offset at fixed free nodes, factors kept while they serve.
-
-    Parameters
-    ----------
-    n, k : int
-        Intervals, and last free node.
-    dx, lam, oil
-        As for :func:`evaluate`, which has been called for ``P``.
-    load : float
-        Target of ``dx`` times the sum of P, the first node counted half.
-    shape, excess
-        As for :func:`evaluate`.
-    right : (n + 1,) array
-        Target of the residual.
-    K, plan, rows, room
-        As for :func:`evaluate`.
-    cH, cP : (n + 1, 4) arrays
-        Room.
-    work : tuple
-        From :func:`coarsest_work`; its last entry is the last free node of the factors, zero
-        for none, and the number of times that factors were made.
-    P, H : (n + 1,) arrays
-        Pressure, overwritten; film.
-    state : array
-        First entry the offset, overwritten.
-
-    Returns
-    -------
-    int
-        ``CONVERGED``, also after all steps; ``SINGULAR``; ``GAP`` where no step keeps it open.
-    """
+    """Newton's method for pressure and offset at fixed free nodes; factors kept while useful."""
     a, pivot, scale, delta, film, kept = work
     first, last = -1.0, -1.0
     for _ in range(_STEPS):

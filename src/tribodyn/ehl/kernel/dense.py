@@ -3,39 +3,14 @@
 from __future__ import annotations
 
 import numba as nb
-import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.options import INNER
-
-__all__ = ["lu_factor", "lu_solve"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 
 @nb.njit(**INNER)
 def lu_factor(n: int, a: Array, pivot: Index) -> bool:
-    """Factor a matrix in place with partial pivoting.
-
-    Parameters
-    ----------
-    n : int
-        Number of rows.
-    a : (n, n) array
-        Matrix; receives the factors.
-    pivot : (n,) array of int
-        Receives the row that was taken in each step.
-
-    Returns
-    -------
-    bool
-        False if the matrix is singular.
-
-    Notes
-    -----
-    Golub and Van Loan, Matrix Computations, outer-product Gaussian elimination.
-    """
+    """Factor a matrix in place with partial pivoting."""
     for k in range(n):
         best, largest = k, abs(a[k, k])
         for r in range(k + 1, n):

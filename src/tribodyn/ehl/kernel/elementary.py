@@ -15,8 +15,6 @@ from numba.extending import intrinsic
 
 from tribodyn.ehl.kernel.options import INNER
 
-__all__ = ["exp_", "log_"]
-
 #: Sums must keep their order: the rounding below would be optimised away. For the same reason
 #: the functions are inlined by the compiler's back end, which keeps these flags, never by Numba.
 STRICT = {**INNER, "fastmath": {"contract"}}
@@ -44,11 +42,7 @@ def _double(typing: Any, value: Any) -> Any:
 
 @nb.njit(**STRICT)
 def exp_(x: float) -> float:
-    """Exponential of a number, held between exp(-700) and exp(700).
-
-    ``exp(x) = 2^k exp(r)`` with ``|r| <= ln(2)/2``; Taylor polynomial of degree 13, relative
-    error 2e-16 plus rounding.
-    """
+    """Exponential of a number, held between exp(-700) and exp(700)."""
     x = min(max(x, -700.0), 700.0)
     # Adding and taking away 1.5 * 2^52 rounds to the nearest integer.
     shifted = x * 1.4426950408889634 + 6755399441055744.0
@@ -77,11 +71,7 @@ def exp_(x: float) -> float:
 
 @nb.njit(**STRICT)
 def log_(x: float) -> float:
-    """Natural logarithm of a positive normal number; nonsense for any other.
-
-    ``x = 2^k m`` with m between sqrt(1/2) and sqrt(2), ``ln m = 2 artanh((m - 1)/(m + 1))`` as
-    the minimax polynomial of the C library of FreeBSD (fdlibm), relative error below 1e-15.
-    """
+    """Natural logarithm of a positive normal number; nonsense for any other."""
     bits = _bits(x)
     # Exponent such that the mantissa lies between sqrt(1/2) and sqrt(2).
     k = (bits - 4604544271217802189) >> 52

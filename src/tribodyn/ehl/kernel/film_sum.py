@@ -10,14 +10,10 @@ import math
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.options import INNER
 from tribodyn.ehl.kernel.transform import transform, twiddles
-
-__all__ = ["DIRECT", "film_plan", "film_sum", "film_work_size", "influence"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Intervals up to which the direct sum is faster.
 DIRECT = 64
@@ -31,10 +27,7 @@ def _antiderivative(x: float) -> float:
 
 @nb.njit(**INNER)
 def influence(n: int, dx: float) -> Array:
-    """Deflection at a distance of 0..n intervals from one node under unit pressure.
-
-    ``K_m = -(1/pi) int ln|x| dx`` over the interval of width ``dx`` about ``m dx``.
-    """
+    """Deflection at a distance of 0..n intervals from one node under unit pressure."""
     kernel = np.empty(n + 1)
     for m in range(n + 1):
         difference = _antiderivative((m + 0.5) * dx) - _antiderivative((m - 0.5) * dx)
@@ -59,10 +52,7 @@ def film_work_size(n: int) -> int:
 
 @nb.njit(**INNER)
 def film_plan(n: int, kernel: Array) -> Array:
-    """Prepare :func:`film_sum` for one grid: rotations and the transform of the influence.
-
-    The result is empty where the sum is taken directly.
-    """
+    """Prepare :func:`film_sum` for one grid: rotations and the transform of the influence."""
     if n <= DIRECT:
         return np.empty(0)
     half = _half_size(n)
@@ -95,10 +85,7 @@ def film_plan(n: int, kernel: Array) -> Array:
 
 @nb.njit(**INNER)
 def _multiply(half: int, z: Array, turn: Array, spectrum: Array) -> None:
-    """Multiply the packed transform of real numbers with a real spectrum, and swap its parts.
-
-    The swap makes the next forward transform an inverse one.
-    """
+    """Multiply the packed transform of real numbers with a real spectrum, and swap its parts."""
     zero, last = spectrum[0] * (z[0, 0] + z[1, 0]), spectrum[half] * (z[0, 0] - z[1, 0])
     z[0, 0], z[1, 0] = 0.5 * (zero - last), 0.5 * (zero + last)
     for k in range(1, half // 2 + 1):
@@ -119,23 +106,7 @@ def _multiply(half: int, z: Array, turn: Array, spectrum: Array) -> None:
 
 @nb.njit(**INNER)
 def film_sum(n: int, kernel: Array, plan: Array, P: Array, work: Array, out: Array) -> None:
-    """Sum of the pressures with their influence at every node.
-
-    Parameters
-    ----------
-    n : int
-        Number of intervals.
-    kernel : (n + 1,) array
-        From :func:`influence`.
-    plan : array
-        From :func:`film_plan`.
-    P : (n + 1,) array
-        Pressure; the last node carries none.
-    work : array
-        Room of :func:`film_work_size` numbers.
-    out : (n + 1,) array
-        Receives the sums.
-    """
+    """Sum of the pressures with their influence at every node."""
     if plan.size == 0:
         for i in range(n + 1):
             total = 0.0

@@ -6,7 +6,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.coarse import no_coarse
 from tribodyn.ehl.kernel.film_sum import film_sum
@@ -15,10 +14,7 @@ from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility
 from tribodyn.ehl.kernel.transfer import central
-
-__all__ = ["film_tangent"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Tolerance of the linear solver: far below the discretisation error of the film.
 _TOLERANCE = 1e-8
@@ -29,30 +25,7 @@ def film_tangent(
     n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float, load: float,
     K: Array, plan: Array, work: Any, P: Array, H: Array,
 ) -> tuple[float, int]:  # fmt: skip
-    """Slope ``dH_c/d ln(w)`` of the central film over the load, the bodies and the oil held.
-
-    Parameters
-    ----------
-    n, start, dx : int, float, float
-        Grid.
-    lam, oil : float, array
-        Factor of the equation and oil.
-    k : int
-        Last free node.
-    tail, load : float
-        Derivatives, by the logarithm of the load, of the pressure at the first node and of the
-        target of ``dx`` times the sum of the pressures, the first node counted half.
-    K, plan, work
-        Influence, and room from :func:`~tribodyn.ehl.kernel.krylov.newton_work`.
-    P, H : (n + 1,) arrays
-        Converged pressure and film.
-
-    Returns
-    -------
-    (float, int)
-        Slope in the unit b^2/R of the film, and the products with the tangent that it took;
-        negative if the linear system could not be solved.
-    """
+    """Slope ``dH_c/d ln(w)`` of the central film over the load, the bodies and the oil held."""
     lneta, dlneta, rho, drho = np.empty((4, n + 1))
     eps, rhs, x = np.empty(n + 1), np.empty(n + 2), np.empty(n + 2)
     cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))

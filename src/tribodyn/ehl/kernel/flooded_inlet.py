@@ -7,8 +7,6 @@ import numpy as np
 
 from tribodyn.ehl.kernel.options import INNER
 
-__all__ = ["flooded_inlet"]
-
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
@@ -16,34 +14,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 def flooded_inlet(
     start: float, film: float, lam: float, curvature: float, s: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Pressure at the first node and load before it, with their slopes.
-
-    ``P_0 = int lambda D/(D + H_c)^3 dX`` and ``W = int lambda D/(D + H_c)^3 (|X| - |X_in|) dX``
-    from minus infinity to ``X_in``, with the dry gap D of a contact of half width ``s``:
-    ``D = (c/2) [|X| r - s^2 ln((|X| + r)/s)]``, ``r = sqrt(X^2 - s^2)``.
-
-    Parameters
-    ----------
-    start : float
-        Position of the first node, negative, outside of the dry contact.
-    film : float
-        Central film.
-    lam : float
-        ``12 eta0 u_e R^2/(b^3 p_h)`` of the reference scale, times the relative speed.
-    curvature : float
-        Reference radius over radius.
-    s : float
-        Half width of the dry contact over that of the reference; zero for an unloaded one.
-
-    Returns
-    -------
-    tuple of float
-        P_0, W, their derivatives by the film, and by the logarithm of the load.
-
-    Notes
-    -----
-    Gauss-Legendre rule in 1/|X|, in which the integrand is smooth down to zero.
-    """
+    """Pressure at the first node and load before it, with their slopes."""
     edge = 1.0 / abs(start)
     pressure = load = pressure_film = load_film = pressure_load = load_load = 0.0
     for q in range(_NODES.size):

@@ -10,7 +10,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.coarse import no_coarse
 from tribodyn.ehl.kernel.film_sum import film_sum
@@ -20,10 +19,7 @@ from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.outlet import extend
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility, residual
-
-__all__ = ["instant_work", "solve_instant"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 # Rows of the scratch array.
 _LNETA, _DLNETA, _RHO, _DRHO, _EPS, _F, _G, _RHS, _DELTA, _VECTOR, _RISE, _VISITS = range(12)
@@ -100,36 +96,7 @@ def solve_instant(
     tail: float, oil: Array, shape: Array, history: Array, K: Array, plan: Array, limits: Array,
     work: Any, P: Array, H: Array, cavity: Array, state: Array,
 ) -> int:  # fmt: skip
-    """Solve one instant from a state nearby.
-
-    Parameters
-    ----------
-    n, dx, lam, u, squeeze
-        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
-    load, imposed : float, bool
-        Imposed load, or where it is not imposed, the imposed offset.
-    tail, oil, shape, history, K, plan, limits
-        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`; the second limit is that of the
-        sum of all mass balances over the mean flux.
-    work : tuple
-        From :func:`instant_work`.
-    P, H : (n + 1,) arrays
-        Pressure to start from, and solution; receives the film.
-    cavity : (n + 1,) array
-        1 at the nodes of a cavity before the outlet, else 0; in and out.
-    state : (8,) array
-        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
-
-    Returns
-    -------
-    int
-        A status of :mod:`tribodyn.ehl.kernel.newton`.
-
-    Notes
-    -----
-    Active sets with the rows of a cavity replaced by ``P = 0``; the outlet moves as in the
-    steady solver. Without cavities both are the same method.
-    """
+    """Solve one instant from a state nearby."""
     krylov, rows = work
     cH, cP = krylov[1], krylov[2]
     rho, drho, eps, F, G = rows[_RHO], rows[_DRHO], rows[_EPS], rows[_F], rows[_G]

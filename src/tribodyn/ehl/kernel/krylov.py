@@ -13,16 +13,12 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.band import band_factor, band_solve
 from tribodyn.ehl.kernel.coarse import correct
 from tribodyn.ehl.kernel.film_sum import film_sum, film_work_size
 from tribodyn.ehl.kernel.options import BURIED
-
-__all__ = ["HALF_BAND", "linear_solve", "newton_work", "prepare"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Half bandwidth of the preconditioner.
 HALF_BAND = 7

@@ -7,7 +7,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
 from tribodyn.ehl.kernel.film_sum import film_plan, influence
@@ -16,10 +15,7 @@ from tribodyn.ehl.kernel.instant import instant_work
 from tribodyn.ehl.kernel.krylov import newton_work
 from tribodyn.ehl.kernel.options import JIT
 from tribodyn.ehl.kernel.squeeze import carry, march
-
-__all__ = ["march_contact", "tangent_of_film"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 _COMMON = (
     "options", "elementary", "transform", "film_sum", "oil", "reynolds", "band", "dense",
@@ -36,13 +32,7 @@ def _build_march(digest: str) -> Any:
         halvings: int, every: int, P: Array, H: Array, state: Array, records: Array,
         pressures: Array, films: Array,
     ) -> tuple[int, int]:  # fmt: skip
-        """March a contact over time, or carry a steady one to other inputs.
-
-        Both in one kernel, which halves the time to compile them. The arguments are those of
-        :func:`tribodyn.ehl.kernel.squeeze.march`, with ``reference`` for the distance, in b, at
-        which the deflection is zero. Without time, the steady state is carried from the first
-        to the last row of the table by factors of at most ``ratio``.
-        """
+        """March a contact over time, or carry a steady one to other inputs."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         K = influence(n, dx) + dx * np.log(reference) / np.pi
         plan, work = film_plan(n, K), instant_work(n)

@@ -12,7 +12,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
 from tribodyn.ehl.kernel.coarsest import (
@@ -35,11 +34,7 @@ from tribodyn.ehl.kernel.outlet import cut_negative, extend
 from tribodyn.ehl.kernel.relaxation import LEFT, RIGHT, near_influence, relax
 from tribodyn.ehl.kernel.reynolds import coefficients
 from tribodyn.ehl.kernel.transfer import central, refine
-
-__all__ = ["RECORD", "multigrid_solve"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
 _SOURCES = (
@@ -124,11 +119,7 @@ def _descend(
     g: int, m: int, k: int, dx: float, lam: float, oil: Array, grids: Any, rows: Array,
     room: Array, free: Index, numbers: Array,
 ) -> None:  # fmt: skip
-    """Pose the problem of the next coarser grid: there the state of this one is injected.
-
-    Its film is corrected to that of this grid, and its residual with this state plus the defect
-    of this grid becomes the target: full approximation scheme.
-    """
+    """Pose the problem of the next coarser grid: there the state of this one is injected."""
     offset, begin, field, plans = grids[0], grids[1], grids[2], grids[3]
     a, b, c = offset[g], offset[g + 1], offset[g + 2]
     P, H, right = field[_P, a:b], field[_H, a:b], field[_TARGET, a:b]
@@ -159,10 +150,7 @@ def _cycle(
     rows: Array, room: Array, cH: Array, cP: Array, band: Array, work: Any, free: Index,
     numbers: Array,
 ) -> int:  # fmt: skip
-    """One V cycle on and below the grid ``top``, whose film and residual are known.
-
-    ``numbers`` holds the offset, the streak of the outlet, and the load target of every grid.
-    """
+    """One V cycle on and below the grid ``top``, whose film and residual are known."""
     offset, begin, field, plans, near = grids
     last, least = offset.size - 2, _STIFF * (end - start) ** 2
     numbers[2 + top] = load
@@ -255,47 +243,7 @@ def _build(digest: str) -> Any:
         films: Array,
         record: Array,
     ) -> int:
-        """Solve a steady contact by full multigrid.
-
-        Parameters
-        ----------
-        n, count : int
-            Intervals of the finest grid, and number of grids, each with half as many.
-        first : int
-            Intervals of the grid to start on.
-        start, end : float
-            First and last position.
-        lam, oil : float, array
-            As for :mod:`tribodyn.ehl.kernel.reynolds`.
-        load, tail : float
-            Target of ``dx`` times the sum of P, the first node counted half; pressure there.
-        profile : (n + 1,) array
-            Heights added to the gap.
-        limits : (4,) array
-            Tolerance of pressure, of flux and of load, most cycles on the last grid.
-        film_tolerance : float
-            Relative error of the central film at which finer grids are left out; zero for none.
-        P, H, shape : (n + 1,) arrays
-            ``P`` holds the pressure on the first grid. Receive the solution and the undeformed
-            gap in their first nodes.
-        state : (8,) array
-            Offset and last free node, in and out. Receives the cycles on the last grid, change
-            of pressure and flux error there, the intervals of that grid, the number of grids
-            used, and that of recorded cycles.
-        films : (20,) array
-            Receives the central films of the grids used.
-        record : (lines, RECORD) array
-            Receives a line for every cycle, as long as there is room.
-
-        Returns
-        -------
-        int
-            A status of :mod:`tribodyn.ehl.kernel.newton`.
-
-        Notes
-        -----
-        On the coarsest grid there is no cycle: a start there is taken as its solution.
-        """
+        """Solve a steady contact by full multigrid."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         offset, begin, field, plans, near = _make_grids(n, count, start, end, profile)
         grids = (offset, begin, field, plans, near)

@@ -7,7 +7,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
 from tribodyn.ehl.kernel.coarse import coarse_tangent, no_coarse
@@ -17,10 +16,7 @@ from tribodyn.ehl.kernel.newton import CONVERGED, newton_level
 from tribodyn.ehl.kernel.options import BURIED, JIT
 from tribodyn.ehl.kernel.start import cold_start, free_nodes
 from tribodyn.ehl.kernel.transfer import central, refine
-
-__all__ = ["newton_solve"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Every file whose code ends up in the compiled kernel.
 _SOURCES = (
@@ -70,38 +66,7 @@ def _build(digest: str) -> Any:
         state: Array,
         films: Array,
     ) -> int:
-        """Solve a steady contact on all grids from ``first`` to ``n`` intervals.
-
-        Parameters
-        ----------
-        n, first : int
-            Intervals of the finest and of the first grid, their ratio a power of two.
-        warm : bool
-            Whether ``P`` and the state hold a start on the first grid.
-        start, end : float
-            First and last position.
-        lam, oil, load, tail, limits
-            As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
-        film : float
-            Estimate of the central film, for a cold start.
-        profile : (n + 1,) array
-            Heights added to the gap.
-        film_tolerance : float
-            Relative error of the central film at which finer grids are left out; zero for none.
-        P, H : (n + 1,) arrays
-            Receive the solution in their first nodes.
-        state : (12,) array
-            As for one grid; then the intervals of the last grid, those of the first grid after
-            all failed starts, and the number of grids.
-        films : (20,) array
-            Receives the central films of the grids.
-
-        Returns
-        -------
-        int
-            As for one grid. If the first grid fails from a cold start, the next finer one is
-            tried.
-        """
+        """Solve a steady contact on all grids from ``first`` to ``n`` intervals."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         # Typed, or each literal would make the compiler translate the callees anew.
         m: Any = np.int64(first)

@@ -6,21 +6,14 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.film_sum import film_sum
-from tribodyn.ehl.kernel.krylov import linear_solve, newton_work, prepare
+from tribodyn.ehl.kernel.krylov import linear_solve, prepare
 from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.outlet import cut_negative, extend
 from tribodyn.ehl.kernel.reynolds import coefficients, mobility, residual
-
-__all__ = [
-    "CONVERGED", "GAP", "NOT_FINITE", "ROUNDED", "SINGULAR", "STALLED", "flux_error",
-    "newton_level", "newton_work",
-]  # fmt: skip
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 CONVERGED, STALLED, GAP, SINGULAR, NOT_FINITE, ROUNDED = 0, 1, 2, 3, 4, 5
 
@@ -35,10 +28,7 @@ _ROUNDING = 1e-13
 
 @nb.njit(**BURIED)
 def flux_error(k: int, work: Any) -> float:
-    """Greatest deviation of the summed mass balance from its mean, over the mean flux.
-
-    In the steady state this is the deviation of the flux from its mean.
-    """
+    """Greatest deviation of the summed mass balance from its mean, over the mean flux."""
     F, G = work[0][_F], work[0][_G]
     total, mean, flux, highest = 0.0, 0.0, 0.0, 0.0
     for i in range(k + 1):
@@ -83,46 +73,7 @@ def newton_level(
     tail: float, oil: Array, shape: Array, history: Array, K: Array, plan: Array, limits: Array,
     coarse: Any, work: Any, P: Array, H: Array, state: Array,
 ) -> int:  # fmt: skip
-    """Solve one grid from a given pressure.
-
-    Parameters
-    ----------
-    n, dx : int, float
-        Grid.
-    lam, u, squeeze : float
-        Factors of the equation, see :mod:`tribodyn.ehl.kernel.reynolds`.
-    load, imposed : float, bool
-        Load, and whether it is imposed; else the offset ``state[0]`` is.
-    tail : float
-        Pressure at the first node.
-    oil, shape, history : array
-        Oil, undeformed gap and the part of earlier times.
-    K, plan : array
-        From :mod:`tribodyn.ehl.kernel.film_sum`.
-    limits : (6,) array
-        Tolerance of pressure and of flux, Newton steps, tolerance of the linear solver in the
-        first four of them, greatest change of pressure in a step; the last is not used here.
-    coarse : tuple
-        Coarse grid of the linear solver, see :mod:`tribodyn.ehl.kernel.coarse`.
-    work : tuple
-        From :func:`newton_work`.
-    P, H : (n + 1,) arrays
-        Pressure to start from, and solution; receives the film.
-    state : (8,) array
-        Offset and last free node, in and out; receives steps, relative change of the pressure,
-        flux error and load; counts products with the tangent and film sums on.
-
-    Returns
-    -------
-    int
-        ``CONVERGED``; ``STALLED`` after all steps; ``GAP`` where no step keeps the gap open;
-        ``SINGULAR``; ``NOT_FINITE``; ``ROUNDED`` where the pressure stands still and rounding
-        keeps the flux above its tolerance.
-
-    Notes
-    -----
-    Replaces, and is tested against, :mod:`tribodyn.ehl.plain_newton`.
-    """
+    """Solve one grid from a given pressure."""
     rows, cH, cP = work[0], work[1], work[2]
     F, G, rhs, delta = rows[_F], rows[_G], rows[_RHS], rows[_DELTA]
     vector, rise, visits = rows[_VECTOR], rows[_RISE], rows[_VISITS]

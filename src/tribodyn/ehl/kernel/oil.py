@@ -7,15 +7,10 @@
 from __future__ import annotations
 
 import numba as nb
-import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.elementary import exp_, log_
 from tribodyn.ehl.kernel.options import INNER
-
-__all__ = ["BARUS", "ISOVISCOUS", "LOWEST", "ROELANDS", "oil_state"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 ISOVISCOUS, BARUS, ROELANDS = 0.0, 1.0, 2.0
 #: Roelands' law ends where its base vanishes; an iterate below is taken as being there.
@@ -26,11 +21,7 @@ LOWEST = -0.3
 def oil_state(
     n: int, P: Array, oil: Array, lneta: Array, dlneta: Array, rho: Array, drho: Array
 ) -> None:
-    """Logarithm of the viscosity ratio, density ratio and their derivatives at the nodes 0..n.
-
-    Isoviscous: 0. Barus: ``a P``. Roelands: ``a [(1 + P/p_r)^z - 1]``. Density after Dowson and
-    Higginson: ``1 + d_1 P/(1 + d_2 P)``.
-    """
+    """Logarithm of the viscosity ratio, density ratio and their derivatives at the nodes 0..n."""
     a, reference, z, d1, d2 = oil[1], oil[2], oil[3], oil[4], oil[5]
     if oil[0] == ROELANDS:
         inverse, lowest = 1.0 / reference, LOWEST * reference

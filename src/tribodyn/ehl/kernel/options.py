@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["BURIED", "INNER", "JIT"]
-
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: dict[str, Any] = {
     "nogil": True,

@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.options import BURIED
-
-__all__ = ["cut_negative", "extend", "outlet_position"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @nb.njit(**BURIED)
 def cut_negative(n: int, k: int, change: float, P: Array) -> int:
-    """Last free node after all from the first negative pressure near the outlet are released.
-
-    While the pressure still changes much, the outlet retreats by at most n/64 nodes.
-    """
+    """Last free node after all from the first negative pressure near the outlet are released."""
     first = k + 1
     for i in range(max(2, k - n // 16), k + 1):
         if P[i] < 0.0:
@@ -40,10 +33,7 @@ def extend(n: int, k: int, streak: int) -> int:
 
 @nb.njit(**BURIED)
 def outlet_position(k: int, n: int, P: Array) -> float:
-    """Index, with fraction, at which the pressure ends.
-
-    It ends quadratically, so that its square root is continued linearly over the last two nodes.
-    """
+    """Index, with fraction, at which the pressure ends."""
     if k < 2 or not P[k] > 0.0 or not P[k - 1] > P[k]:
         return float(min(k + 1, n))
     near, far = np.sqrt(P[k]), np.sqrt(P[k - 1])

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.options import BURIED
-
-__all__ = ["add_profile"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @nb.njit(**BURIED)
@@ -18,28 +14,7 @@ def add_profile(
     n: int, start: float, dx: float, shift: float, factor: float, heights: Array, first: float,
     spacing: float, periodic: bool, shape: Array,
 ) -> None:  # fmt: skip
-    """Add the heights of a profile that has moved by ``shift`` to the gap.
-
-    Cubic through the four nearest samples. A profile that is not periodic is level beyond its
-    ends; whoever does not want that checks the range before.
-
-    Parameters
-    ----------
-    n, start, dx : int, float, float
-        Grid.
-    shift : float
-        Distance that the surface has travelled downstream.
-    factor : float
-        Factor of the heights.
-    heights : array
-        Heights added to the gap, equally spaced; may be empty.
-    first, spacing : float
-        Position of the first sample at ``shift = 0``, and the distance of the samples.
-    periodic : bool
-        Whether the profile repeats itself, the sample after the last being the first.
-    shape : (n + 1,) array
-        Receives the sum.
-    """
+    """Add the heights of a profile that has moved by ``shift`` to the gap."""
     size = heights.size
     if size < 4:
         return

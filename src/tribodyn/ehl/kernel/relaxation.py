@@ -8,15 +8,10 @@ film of such a dipole fades with the square of the distance.
 from __future__ import annotations
 
 import numba as nb
-import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.film_sum import influence
 from tribodyn.ehl.kernel.options import INNER
-
-__all__ = ["LEFT", "NEAR", "RIGHT", "assemble_band", "near_influence", "relax", "solve_band"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Intervals to which a change of the pressure bends the film within the sweep.
 NEAR = 5
@@ -27,19 +22,7 @@ _WIDTH = LEFT + RIGHT + 1
 
 @nb.njit(**INNER)
 def near_influence(dx: float, near: Array) -> None:
-    """Film of a single node and of a dipole, up to ``NEAR`` intervals away and zero beyond.
-
-    It is the film that is cut off, not the residual. The residuals of a column then still sum
-    to zero: no cut flux adds up along the line, to appear as an error where the oil thins.
-
-    Parameters
-    ----------
-    dx : float
-        Width of an interval.
-    near : (2, 4, LEFT + RIGHT + 1) array
-        Receives the film that column ``c``, the node ``i + c - LEFT``, makes at ``i - 2 + s``:
-        ``near[0]`` of a node, ``near[1]`` of a dipole.
-    """
+    """Film of a single node and of a dipole, up to ``NEAR`` intervals away and zero beyond."""
     K = influence(NEAR + 1, dx)
     for s in range(4):
         for c in range(_WIDTH):
@@ -50,21 +33,7 @@ def near_influence(dx: float, near: Array) -> None:
 
 @nb.njit(**INNER)
 def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band: Array) -> None:
-    """Band of the tangent in the unknowns of the sweep, row ``i - 1`` for node i.
-
-    Parameters
-    ----------
-    k : int
-        Last free node.
-    dipole : (k + 2,) array
-        One where the unknown is a dipole, else zero; zero at the nodes 0, 1, k and k + 1.
-    near : array
-        From :func:`near_influence`.
-    cH, cP : (n + 1, 4) arrays
-        From :func:`~tribodyn.ehl.kernel.reynolds.coefficients`.
-    band : (k, LEFT + RIGHT + 1) array
-        Receives the elements, column ``j - i + LEFT``.
-    """
+    """Band of the tangent in the unknowns of the sweep, row ``i - 1`` for node i."""
     inside = 0.0
     for j in range(1, min(RIGHT, k) + 1):
         inside += dipole[j]
@@ -99,17 +68,7 @@ def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band
 
 @nb.njit(**INNER)
 def solve_band(k: int, band: Array, x: Array) -> None:
-    """Gaussian elimination in the order of the nodes; ``x`` is the right side, then the solution.
-
-    Parameters
-    ----------
-    k : int
-        Number of rows.
-    band : (k, LEFT + RIGHT + 1) array
-        Matrix; overwritten. Elements outside of the matrix are not used.
-    x : (k,) array
-        Right side.
-    """
+    """Gaussian elimination in node order; ``x`` is the right side, then the solution."""
     for i in range(k):
         row = band[i]
         inverse, value = 1.0 / row[LEFT], x[i]
@@ -131,32 +90,7 @@ def relax(
     k: int, least: float, damping: float, cap: float, near: Array, cH: Array, cP: Array,
     eps: Array, G: Array, right: Array, dipole: Array, delta: Array, band: Array, P: Array,
 ) -> float:  # fmt: skip
-    """One sweep: pressures that meet the residual within the band.
-
-    Parameters
-    ----------
-    k : int
-        Last free node.
-    least : float
-        Mobility from which on a node is changed alone, not as a dipole.
-    damping, cap : float
-        Share of the correction that is taken, and greatest change of a pressure.
-    near, cH, cP
-        As for :func:`assemble_band`.
-    eps, G, right : (n + 1,) arrays
-        Mobility, residual and its target.
-    dipole, delta : (n + 2,) arrays
-        Room.
-    band : (n, LEFT + RIGHT + 1) array
-        Room.
-    P : (n + 1,) array
-        Pressure; overwritten.
-
-    Returns
-    -------
-    float
-        Greatest change of a pressure.
-    """
+    """One sweep: pressures that meet the residual within the band."""
     for j in range(k + 2):
         dipole[j] = 1.0 if 2 <= j < k and eps[j] < least else 0.0
     assemble_band(k, dipole, near, cH, cP, band)

@@ -7,15 +7,10 @@ backward formula enters as ``squeeze * rho H`` minus a history. Nodes 0..n.
 from __future__ import annotations
 
 import numba as nb
-import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.elementary import exp_
 from tribodyn.ehl.kernel.options import INNER
-
-__all__ = ["THINNEST", "coefficients", "mobility", "residual"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Least film in the mobility, so that an iterate with overlapping flanks stays computable.
 THINNEST = 1e-10
@@ -44,12 +39,7 @@ def residual(
     F: Array,
     G: Array,
 ) -> None:
-    """Flux ``F[i]`` through the face between nodes i and i+1, and residual ``G[1..n-1]``.
-
-    ``F = u C - (eps_i + eps_{i+1})/2 (P_{i+1} - P_i)/dx`` with
-    ``C_i = 1.5 (rho H)_i - 0.5 (rho H)_{i-1}``, at the first face the mean of its nodes;
-    ``G_i = F_i - F_{i-1} + squeeze (rho H)_i - history_i``.
-    """
+    """Flux ``F[i]`` through the face between nodes i and i+1, and residual ``G[1..n-1]``."""
     half = 0.5 / dx
     F[0] = 0.5 * u * (rho[0] * H[0] + rho[1] * H[1]) - half * (eps[0] + eps[1]) * (P[1] - P[0])
     for i in range(1, n):
@@ -76,18 +66,7 @@ def coefficients(
     cH: Array,
     cP: Array,
 ) -> None:
-    """Derivatives of ``G_i`` by film and, at fixed film, by pressure at the nodes i-2..i+1.
-
-    Everything about the tangent follows from these eight numbers a row: with the influence K,
-    ``J_ij = sum_s cH[i, s] K_|i-2+s-j| + direct cP``, and ``dG_i/dH0 = sum_s cH[i, s]``.
-
-    Parameters
-    ----------
-    n, dx, lam, u, squeeze, P, H, dlneta, rho, drho, eps
-        As for :func:`residual` and :func:`mobility`.
-    cH, cP : (n + 1, 4) arrays
-        Receive the derivatives in the rows 1..n-1, zeros in the rows 0 and n.
-    """
+    """Derivatives of ``G_i`` by film and, at fixed film, by pressure at the nodes i-2..i+1."""
     half = 0.5 / dx
     for s in range(4):
         cH[0, s] = cP[0, s] = cH[n, s] = cP[n, s] = 0.0

@@ -10,7 +10,6 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
 from tribodyn.ehl.kernel.instant import solve_instant
@@ -19,13 +18,7 @@ from tribodyn.ehl.kernel.oil import oil_state
 from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.profile import add_profile
 from tribodyn.ehl.kernel.transfer import central
-
-__all__ = [
-    "CURVATURE", "FIRST_SHIFT", "HEIGHT", "INPUTS", "LOAD", "OFFSET", "RECORD", "SECOND_SHIFT",
-    "SPEED", "carry", "march",
-]  # fmt: skip
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 # What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
 
@@ -81,10 +74,7 @@ def _solve(
     imposed: bool, flooded: bool, row: Array, film: float, load: float, squeeze: float,
     history: Array, shape: Array, work: Any, P: Array, H: Array, cavity: Array, state: Array,
 ) -> int:  # fmt: skip
-    """Solve one instant; ``state[5]`` receives the load with that of the inlet.
-
-    Film and, where it is not imposed, load are estimates that the inlet goes by.
-    """
+    """Solve one instant; ``state[5]`` receives the load with that of the inlet."""
     carried = row[LOAD] if imposed else load / _FULL
     tail, outside = _inlet(start, film, carried, lam, flooded, row)
     given = _FULL * row[LOAD] - outside if imposed else row[OFFSET]
@@ -104,10 +94,7 @@ def _settle(
     imposed: bool, flooded: bool, row: Array, rough: Any, shape: Array, history: Array, work: Any,
     P: Array, H: Array, cavity: Array, state: Array,
 ) -> int:  # fmt: skip
-    """Steady state under the inputs of one row, from a state nearby.
-
-    The pressure of the inlet follows from the central film and is found by iteration.
-    """
+    """Steady state under the inputs of one row, from a state nearby."""
     _gap(n, start, dx, row, rough, shape)
     film, status = central(n, start, dx, H), CONVERGED
     for _ in range(40):
@@ -127,11 +114,7 @@ def carry(
     imposed: bool, flooded: bool, ratio: float, table: Array, rough: Any, work: Any, P: Array,
     H: Array, state: Array,
 ) -> int:  # fmt: skip
-    """Carry a steady state, in place, from the inputs of the first row to those of the last.
-
-    Load, speed and curvature go by factors of at most ``ratio``, all others linearly in as many
-    steps; a step that fails is halved.
-    """
+    """Carry a steady state, in place, from the inputs of the first row to those of the last."""
     first, last, now = table[0], table[table.shape[0] - 1], np.empty(table.shape[1])
     shape, history, cavity = np.empty(n + 1), np.zeros(n + 1), np.zeros(n + 1)
     p, h, trial = np.empty(n + 1), np.empty(n + 1), np.empty(state.size)
@@ -195,43 +178,7 @@ def march(
     imposed: bool, flooded: bool, time: Array, table: Array, rough: Any, halvings: int, every: int,
     work: Any, P: Array, H: Array, state: Array, records: Array, pressures: Array, films: Array,
 ) -> tuple[int, int]:  # fmt: skip
-    """March a contact over time, from the state of the first instant.
-
-    Parameters
-    ----------
-    n, start, dx : int, float, float
-        Grid.
-    lam, oil, K, plan, limits
-        As for :func:`~tribodyn.ehl.kernel.newton.newton_level`.
-    imposed : bool
-        Whether the load is imposed, else the offset.
-    flooded : bool
-        Whether the first node carries the pressure of the inlet before it.
-    time : (m,) array
-        Time, in ``b/u`` of the reference.
-    table : (m, INPUTS) array
-        Inputs.
-    rough : (array, array, (2, 3) array)
-        Heights added to the gap by the two surfaces, and of each the first position, the spacing
-        and whether it is periodic (1) or not (0).
-    halvings : int
-        How often a step may be halved.
-    every : int
-        Steps from one kept pressure to the next; zero to keep none.
-    work : tuple
-        From :func:`~tribodyn.ehl.kernel.instant.instant_work`.
-    P, H, state
-        State at the first instant, in and out.
-    records : (m, RECORD) array
-        Receives the figures of every instant.
-    pressures, films : (kept, n + 1) arrays
-        Receive pressure and film.
-
-    Returns
-    -------
-    (int, int)
-        Status of the solver and the instant that it belongs to.
-    """
+    """March a contact over time, from the state of the first instant."""
     cavity, broken = np.zeros(n + 1), np.zeros(n + 1)
     shape, history = np.empty(n + 1), np.empty(n + 1)
     lneta, dlneta, rho, drho = np.empty((4, n + 1))

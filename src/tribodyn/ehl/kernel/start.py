@@ -6,16 +6,12 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.film_sum import film_sum
 from tribodyn.ehl.kernel.oil import BARUS, ROELANDS
 from tribodyn.ehl.kernel.options import BURIED
 from tribodyn.ehl.kernel.transfer import scale_to_load
-
-__all__ = ["cold_start", "dry_gap", "free_nodes", "piezoviscosity"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Film of Grubin: the reduced pressure reaches this part of its bound at the edge of the contact.
 _GRUBIN = 0.97

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.options import BURIED, INNER
 from tribodyn.ehl.kernel.outlet import outlet_position
-
-__all__ = ["central", "refine", "scale_to_load"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @nb.njit(**BURIED)
@@ -29,31 +25,7 @@ def scale_to_load(n: int, dx: float, k: int, load: float, tail: float, P: Array)
 
 @nb.njit(**BURIED)
 def refine(n: int, dx: float, P: Array, k: int, load: float, tail: float, fine: Array) -> int:
-    """Interpolate a pressure to the grid of half the interval.
-
-    Parameters
-    ----------
-    n, dx : int, float
-        Coarse grid.
-    P : (n + 1,) array
-        Pressure.
-    k : int
-        Last free node.
-    load, tail : float
-        Load and pressure at the first node.
-    fine : (2 n + 1,) array
-        Receives the pressure, scaled to the load.
-
-    Returns
-    -------
-    int
-        Last free node of the fine grid.
-
-    Notes
-    -----
-    Cubic inside, linear at the ends; behind the last free node the square root of the pressure
-    is continued linearly to the outlet.
-    """
+    """Interpolate a pressure to the grid of half the interval."""
     m = 2 * n
     out = 2.0 * outlet_position(k, n, P)
     last = min(max(int(np.ceil(out)) - 1, 2), m - 1)

@@ -11,13 +11,9 @@ import math
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.ehl.kernel.options import INNER
-
-__all__ = ["transform", "twiddles"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 @nb.njit(**INNER)
@@ -106,25 +102,7 @@ def _last_pass(stride: int, x: Array, y: Array) -> None:
 
 @nb.njit(**INNER)
 def transform(size: int, x: Array, y: Array, table: Array) -> bool:
-    """Forward transform of ``x[0] + i x[1]`` for a size of 4 or more.
-
-    Parameters
-    ----------
-    size : int
-        Power of two.
-    x : (2, size) array
-        Real and imaginary parts; overwritten.
-    y : (2, size) array
-        Room.
-    table : (2, size) array
-        From :func:`twiddles`.
-
-    Returns
-    -------
-    bool
-        True if the result is in ``x``, False if it is in ``y``. Exchanging the two parts before
-        and after gives the inverse transform times the size.
-    """
+    """Forward transform of ``x[0] + i x[1]`` for a size of 4 or more."""
     _first_pass(size, x, y, table)
     # Typed: a literal would make the compiler translate the pass anew.
     left, stride, in_x = size // 4, np.int64(4), False

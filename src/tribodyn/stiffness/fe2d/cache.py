@@ -10,24 +10,15 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["cache_folder", "load_arrays", "store_arrays"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Environment variable that names another folder.
 VARIABLE = "TRIBODYN_CACHE_DIR"
 
 
 def cache_folder() -> Path:
-    """Folder of the kept arrays, which need not exist.
-
-    Returns
-    -------
-    Path
-        ``TRIBODYN_CACHE_DIR`` if it is set, else the folder for such things of the platform.
-    """
+    """Folder of the kept arrays, which need not exist."""
     given = os.environ.get(VARIABLE)
     if given:
         return Path(given)
@@ -40,19 +31,8 @@ def cache_folder() -> Path:
     return (Path(shared) if shared else Path.home() / ".cache") / "tribodyn"
 
 
-def load_arrays(name: str) -> dict[str, FloatArray] | None:
-    """Read kept arrays.
-
-    Parameters
-    ----------
-    name : str
-        Name under which they were stored.
-
-    Returns
-    -------
-    dict of str to array, or None
-        None if there is no such file or it cannot be read.
-    """
+def load_arrays(name: str) -> dict[str, Array] | None:
+    """Read kept arrays."""
     try:
         with np.load(_path(name), allow_pickle=False) as file:
             return {key: np.asarray(file[key], dtype=float) for key in file.files}
@@ -60,21 +40,8 @@ def load_arrays(name: str) -> dict[str, FloatArray] | None:
         return None
 
 
-def store_arrays(name: str, arrays: Mapping[str, FloatArray]) -> bool:
-    """Keep arrays, at once or not at all: another process never sees half a file.
-
-    Parameters
-    ----------
-    name : str
-        Name of the file without suffix.
-    arrays : mapping of str to array
-        What to keep.
-
-    Returns
-    -------
-    bool
-        Whether it was possible.
-    """
+def store_arrays(name: str, arrays: Mapping[str, Array]) -> bool:
+    """Keep arrays, at once or not at all: another process never sees half a file."""
     path = _path(name)
     temporary = None
     try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.fe2d.element import plane_stress
@@ -16,10 +15,7 @@ from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
 from tribodyn.stiffness.sainsot import LARGEST_RATIO
 from tribodyn.stiffness.tooth_compliance import check_reference
 from tribodyn.stiffness.wind_up import wind_up_compliance
-
-__all__ = ["NODES", "UnitCompliances", "held_radius", "unit_compliances", "wind_up_to_take_off"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 #: Places along the flank.
 NODES = 25
@@ -32,64 +28,22 @@ _TIP_SHARE = 0.3
 
 
 class UnitCompliances(NamedTuple):
-    """Compliances for a Young's modulus of one.
+    """Compliances for a Young's modulus of one."""
 
-    Parameters
-    ----------
-    curvature_radius : array (K,) [m]
-        Nodes.
-    self_compliance : array (K,)
-        Displacement at the load without the local compression, times Young's modulus.
-    cross_compliance : array (N, K, K)
-        Displacement of the neighbours on the side of larger radii, times Young's modulus.
-    """
-
-    curvature_radius: FloatArray
-    self_compliance: FloatArray
-    cross_compliance: FloatArray
+    curvature_radius: Array  #: nodes [m]
+    self_compliance: Array
+    cross_compliance: Array
 
 
 def held_radius(gear: SpurGear) -> float:
-    """Radius of the circle where the body is held.
-
-    Parameters
-    ----------
-    gear : SpurGear
-        Gear.
-
-    Returns
-    -------
-    float [m]
-        Radius of the bore; of a solid gear a seventh of the root radius, where the foundation
-        formula of the analytic models ends too.
-    """
+    """Radius of the circle where the body is held."""
     if gear.bore_diameter > 0.0:
         return 0.5 * gear.bore_diameter
     return gear.root_radius / LARGEST_RATIO
 
 
 def wind_up_to_take_off(gear: SpurGear, material: Material, reference: str) -> float:
-    """Wind-up of the body per unit width that does not belong to the reference.
-
-    Parameters
-    ----------
-    gear : SpurGear
-        Gear.
-    material : Material
-        Its material.
-    reference : str
-        ``"bore"`` or ``"rim"``.
-
-    Returns
-    -------
-    float [m^2/N]
-        Zero for the bore.
-
-    Raises
-    ------
-    InputError
-        If the reference is unknown, or is the bore of a gear without bore.
-    """
+    """Wind-up of the body per unit width that does not belong to the reference."""
     check_reference(reference)
     held = 0.5 * gear.bore_diameter if reference == "bore" else held_radius(gear)
     wind_up = wind_up_compliance(gear.base_radius, gear.root_radius, held, 1.0, material)
@@ -103,33 +57,7 @@ def unit_compliances(
     size: MeshSize | None = None,
     held_at: float | None = None,
 ) -> UnitCompliances:
-    """Compliances of a gear whose body is held along a circle.
-
-    Parameters
-    ----------
-    gear : SpurGear
-        Gear.
-    poissons_ratio : float
-        Poisson's ratio.
-    neighbours : int
-        Number of neighbours on the side of larger radii of curvature.
-    size : MeshSize, optional
-        Sizes of the elements.
-    held_at : float, optional [m]
-        Radius of the circle, instead of the bore.
-
-    Returns
-    -------
-    UnitCompliances
-
-    Notes
-    -----
-    The point load of the half plane is taken out, so that no width of contact enters: the self
-    compliance is the limit of a narrow contact less ``2/pi [ln(2h/a) - nu/2]``. At the corner of
-    the tip this limit grows without bound, because there is no half plane; a contact there is as
-    wide as its distance from the corner. Over the last 0.07 modules the self compliance is
-    therefore the parabola through those at 0.07, 0.11 and 0.15 modules from the corner.
-    """
+    """Compliances of a gear whose body is held along a circle."""
     held = held_radius(gear) if held_at is None else held_at
     elasticity = plane_stress(1.0, poissons_ratio)
     mesh = tooth_mesh(gear, held, size)
@@ -147,7 +75,7 @@ def unit_compliances(
     return UnitCompliances(rho, own, seen[1:, : rho.size, : rho.size].copy())
 
 
-def _places(gear: SpurGear) -> tuple[FloatArray, FloatArray]:
+def _places(gear: SpurGear) -> tuple[Array, Array]:
     """Nodes from the form circle to the tip, denser at both ends, and supports near the tip [m]."""
     base, module = gear.base_radius, gear.normal_module
     tip = gear.roll_angle(gear.tip_radius) * base
@@ -161,9 +89,7 @@ def _places(gear: SpurGear) -> tuple[FloatArray, FloatArray]:
     return rho, np.sqrt(tip * tip - 2.0 * base * module * shrink * _TIP_SUPPORT)
 
 
-def _carried_to_tip(
-    rho: FloatArray, support: FloatArray, own: FloatArray, near: NDArray[np.bool_]
-) -> FloatArray:
+def _carried_to_tip(rho: Array, support: Array, own: Array, near: Mask) -> Array:
     """Self compliance at the nodes, beyond the supports as the parabola of the length."""
     tip = rho[-1]
     scale = tip * tip - support[-1] ** 2

@@ -5,13 +5,9 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError
-
-__all__ = ["element_stiffness", "plane_stress", "quadratic_shapes", "shape_gradients"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Points and weights of Gauss in one direction; exact for the constant-stress patch on any shape.
 _GAUSS = np.polynomial.legendre.leggauss(3)
@@ -19,19 +15,8 @@ _GAUSS = np.polynomial.legendre.leggauss(3)
 _BLOCK = 1024
 
 
-def quadratic_shapes(place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Quadratic Lagrange polynomials on the nodes -1, 0, 1 and their slopes.
-
-    Parameters
-    ----------
-    place : array
-        Local coordinates.
-
-    Returns
-    -------
-    tuple of array
-        Values and slopes, one more axis of three.
-    """
+def quadratic_shapes(place: Array) -> tuple[Array, Array]:
+    """Quadratic Lagrange polynomials on the nodes -1, 0, 1 and their slopes."""
     x = np.asarray(place, dtype=float)
     values = np.stack([0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)], axis=-1)
     slopes = np.stack([x - 0.5, -2.0 * x, x + 0.5], axis=-1)
@@ -39,76 +24,31 @@ def quadratic_shapes(place: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def shape_gradients() -> tuple[FloatArray, FloatArray]:
-    """Slopes of the nine shape functions at the nine Gauss points, and the weights.
-
-    Returns
-    -------
-    tuple of array
-        Slopes in the two local directions, shape (9, 2, 9), and weights, shape (9,).
-    """
+def shape_gradients() -> tuple[Array, Array]:
+    """Slopes of the nine shape functions at the nine Gauss points, and the weights."""
     values, slopes = quadratic_shapes(_GAUSS[0])
     first = np.einsum("pa,qb->pqab", slopes, values).reshape(9, 9)
     second = np.einsum("pa,qb->pqab", values, slopes).reshape(9, 9)
     return np.stack([first, second], axis=1), np.outer(_GAUSS[1], _GAUSS[1]).ravel()
 
 
-def plane_stress(youngs_modulus: float, poissons_ratio: float) -> FloatArray:
-    """Matrix from strains (xx, yy, engineering shear) to stresses in plane stress.
-
-    Parameters
-    ----------
-    youngs_modulus : float [Pa]
-        Young's modulus.
-    poissons_ratio : float
-        Poisson's ratio.
-
-    Returns
-    -------
-    array (3, 3) [Pa]
-
-    Notes
-    -----
-    Source: Timoshenko and Goodier, Theory of Elasticity, section on plane stress.
-    """
+def plane_stress(youngs_modulus: float, poissons_ratio: float) -> Array:
+    """Matrix from strains (xx, yy, engineering shear) to stresses in plane stress."""
     nu = poissons_ratio
     factor = youngs_modulus / (1.0 - nu * nu)
     return factor * np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - nu)]])
 
 
-def element_stiffness(corners: FloatArray, elasticity: FloatArray) -> FloatArray:
-    """Stiffness of isoparametric nine-node quadrilaterals.
-
-    Parameters
-    ----------
-    corners : array (elements, 9, 2)
-        Coordinates of the nodes, first local direction outermost.
-    elasticity : array (3, 3)
-        From strain to stress.
-
-    Returns
-    -------
-    array (elements, 18, 18)
-        Both displacements of each node in turn.
-
-    Raises
-    ------
-    ComputationError
-        If an element is turned inside out.
-
-    Notes
-    -----
-    Full integration with 3 x 3 points. Source: Zienkiewicz and Taylor, The Finite Element
-    Method, chapter on isoparametric elements.
-    """
-    factor: FloatArray = np.linalg.cholesky(elasticity).T.astype(float)
+def element_stiffness(corners: Array, elasticity: Array) -> Array:
+    """Stiffness of isoparametric nine-node quadrilaterals."""
+    factor: Array = np.linalg.cholesky(elasticity).T.astype(float)
     parts = [
         _block(corners[first : first + _BLOCK], factor) for first in range(0, len(corners), _BLOCK)
     ]
     return np.concatenate(parts)
 
 
-def _block(corners: FloatArray, factor: FloatArray) -> FloatArray:
+def _block(corners: Array, factor: Array) -> Array:
     local, weights = shape_gradients()
     jacobian = np.einsum("gdn,enx->egdx", local, corners)
     determinant = np.linalg.det(jacobian)
@@ -125,5 +65,5 @@ def _block(corners: FloatArray, factor: FloatArray) -> FloatArray:
     strain[..., 2, :, 0] = slopes[..., 1, :]
     strain[..., 2, :, 1] = slopes[..., 0, :]
     root = np.matmul(factor, strain.reshape(*slopes.shape[:2], 3, 18)).reshape(-1, 27, 18)
-    stiffness: FloatArray = np.matmul(root.transpose(0, 2, 1), root)
+    stiffness: Array = np.matmul(root.transpose(0, 2, 1), root)
     return stiffness

@@ -9,43 +9,18 @@ carry the whole displacement.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.stiffness.fe2d.element import element_stiffness, quadratic_shapes
 from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh, grid_elements
-
-__all__ = ["half_plane_displacement", "remainder_loads"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 _GAUSS = np.polynomial.legendre.leggauss(5)
 
 
 def half_plane_displacement(
-    away: FloatArray, direction: FloatArray, depth: FloatArray, poissons_ratio: float
-) -> FloatArray:
-    """Displacement of a half plane of Young's modulus one under a unit point load.
-
-    Parameters
-    ----------
-    away : array (..., 2)
-        Place, from the point of the load.
-    direction : array (..., 2)
-        Unit vector of the load, the inward normal of the edge.
-    depth : array (...)
-        Depth under the load where the displacement is zero.
-    poissons_ratio : float
-        Poisson's ratio; plane stress.
-
-    Returns
-    -------
-    array (..., 2)
-
-    Notes
-    -----
-    Source: Flamant; Timoshenko and Goodier, Theory of Elasticity, section on the concentrated
-    force at a point of a straight boundary.
-    """
+    away: Array, direction: Array, depth: Array, poissons_ratio: float
+) -> Array:
+    """Displacement of a half plane of Young's modulus one under a unit point load."""
     nu = poissons_ratio
     along = np.stack([-direction[..., 1], direction[..., 0]], axis=-1)
     x = np.einsum("...i,...i->...", away, direction)
@@ -55,47 +30,25 @@ def half_plane_displacement(
     radial = -2.0 * cosine * log - (1.0 - nu) * angle * sine
     around = 2.0 * nu * sine + 2.0 * sine * log + (1.0 - nu) * (sine - angle * cosine)
     inward, sideways = cosine * radial - sine * around, sine * radial + cosine * around
-    found: FloatArray = (inward[..., None] * direction + sideways[..., None] * along) / np.pi
+    found: Array = (inward[..., None] * direction + sideways[..., None] * along) / np.pi
     return found
 
 
 def remainder_loads(
     mesh: SectorMesh,
-    place: FloatArray,
-    direction: FloatArray,
-    depth: FloatArray,
-    elasticity: FloatArray,
-) -> FloatArray:
-    """Nodal forces for the remainder under unit loads on the flank.
-
-    Parameters
-    ----------
-    mesh : SectorMesh
-        Sector.
-    place : array (K, 2)
-        Where the loads act.
-    direction : array (K, 2)
-        Unit vectors of the loads.
-    depth : array (K,)
-        Depth under the load where the displacement of the half plane is zero.
-    elasticity : array (3, 3)
-        From strain to stress, Young's modulus of one, plane stress.
-
-    Returns
-    -------
-    array (2 nodes, K)
-        Forces in x and y. The solution is the remainder in the tooth, the whole displacement on
-        its foot and below.
-    """
+    place: Array,
+    direction: Array,
+    depth: Array,
+    elasticity: Array,
+) -> Array:
+    """Nodal forces for the remainder under unit loads on the flank."""
     forces = np.zeros((len(mesh.nodes), 2, len(place)))
     _add_missed_tractions(forces, mesh, place, direction)
     _add_jump(forces, mesh, place, direction, depth, elasticity)
     return forces.reshape(-1, len(place))
 
 
-def _add_missed_tractions(
-    forces: FloatArray, mesh: SectorMesh, place: FloatArray, direction: FloatArray
-) -> None:
+def _add_missed_tractions(forces: Array, mesh: SectorMesh, place: Array, direction: Array) -> None:
     """Take the tractions of the half plane off the whole boundary of the tooth."""
     grid = mesh.tooth
     # clockwise, so that the outward normal is to the left of the way
@@ -116,12 +69,12 @@ def _add_missed_tractions(
 
 
 def _add_jump(
-    forces: FloatArray,
+    forces: Array,
     mesh: SectorMesh,
-    place: FloatArray,
-    direction: FloatArray,
-    depth: FloatArray,
-    elasticity: FloatArray,
+    place: Array,
+    direction: Array,
+    depth: Array,
+    elasticity: Array,
 ) -> None:
     """Give the elements above the foot the displacement of the half plane there."""
     nu = float(elasticity[0, 1] / elasticity[0, 0])

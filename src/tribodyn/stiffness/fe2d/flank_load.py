@@ -5,43 +5,27 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.element import quadratic_shapes
 from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh
 from tribodyn.stiffness.load_point import load_point
-
-__all__ = ["FlankLoads", "flank_loads", "nodal_weights"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Points of the quadrature over a patch.
 _POINTS = 512
 
 
 class FlankLoads(NamedTuple):
-    """Unit loads on the flank of a meshed tooth, lengths in modules.
+    """Unit loads on the flank of a meshed tooth, lengths in modules."""
 
-    Parameters
-    ----------
-    place : array (K, 2)
-        Points of the flank.
-    direction : array (K, 2)
-        Unit vectors of the loads: inward normals of the flank.
-    depth : array (K,)
-        Distance from the flank to the tooth axis along the load.
-    forces : array (2 nodes, K)
-        Nodal forces in x and y; also the weights that give the displacement along the load.
-    """
-
-    place: FloatArray
-    direction: FloatArray
-    depth: FloatArray
-    forces: FloatArray
+    place: Array  #: points of the flank
+    direction: Array  #: unit vectors of the loads: inward normals of the flank
+    depth: Array  #: distance from the flank to the tooth axis along the load
+    forces: Array  #: nodal forces in x and y
 
 
-def nodal_weights(mesh: SectorMesh, length: FloatArray, half_width: FloatArray) -> FloatArray:
+def nodal_weights(mesh: SectorMesh, length: Array, half_width: Array) -> Array:
     """Weights of the nodes for a Hertzian pressure on the flank.
 
     Parameters
@@ -80,30 +64,12 @@ def nodal_weights(mesh: SectorMesh, length: FloatArray, half_width: FloatArray) 
 def flank_loads(
     gear: SpurGear,
     mesh: SectorMesh,
-    curvature_radius: FloatArray,
+    curvature_radius: Array,
     half_width: float = 0.0,
     *,
     inside: bool = False,
 ) -> FlankLoads:
-    """Unit loads along the inward normal of the flank.
-
-    Parameters
-    ----------
-    gear : SpurGear
-        Gear of the mesh.
-    mesh : SectorMesh
-        Its sector.
-    curvature_radius : array (K,) [m]
-        Radii of curvature of the involute where the loads act.
-    half_width : float
-        Half width of the patch in modules; zero for points.
-    inside : bool
-        Where a patch would pass the tip: whether it is shifted down, rather than narrowed.
-
-    Returns
-    -------
-    FlankLoads
-    """
+    """Unit loads along the inward normal of the flank."""
     module = gear.normal_module
     point = load_point(gear, curvature_radius)
     tip = mesh.flank_length[0] - (half_width if inside else 0.0)

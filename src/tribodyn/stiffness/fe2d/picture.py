@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import Material, SpurGear
@@ -15,10 +14,7 @@ from tribodyn.stiffness.fe2d.element import plane_stress
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
 from tribodyn.stiffness.fe2d.ring import Ring
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
-
-__all__ = ["deformed_gear"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Half width of the loads [modules]: wide, so that the dent does not hide the bending.
 _HALF_WIDTH = 0.2
@@ -34,7 +30,7 @@ def deformed_gear(
     loads: Sequence[tuple[int, float, float]],
     *,
     reference: str = "bore",
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[Array, Array]:
     """Outline of the loaded teeth and one more on each side, with their displacements.
 
     Parameters
@@ -101,7 +97,7 @@ def deformed_gear(
 
 def _split(
     gear: SpurGear, loads: Sequence[tuple[int, float, float]]
-) -> tuple[list[int], FloatArray, FloatArray]:
+) -> tuple[list[int], Array, Array]:
     if not loads:
         raise InputError(
             Problem(

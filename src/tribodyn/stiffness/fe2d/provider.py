@@ -22,8 +22,6 @@ from tribodyn.stiffness.fe2d.compliances import (
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize
 from tribodyn.stiffness.influence import GearInfluence
 
-__all__ = ["fe2d_influence"]
-
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
     (".", "compliances element flamant flank_load ring sector_mesh tooth_mesh tooth_side"),

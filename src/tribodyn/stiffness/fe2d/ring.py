@@ -13,34 +13,17 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.stiffness.fe2d.element import element_stiffness, plane_stress
 from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh
-
-__all__ = ["Ring", "RingSolution", "sector_stiffness"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 #: Right-hand sides solved together: more would be handed to a threaded library in bits too small.
 _TOGETHER = 4
 
 
-def sector_stiffness(mesh: SectorMesh, elasticity: FloatArray) -> Any:
-    """Stiffness matrix of a sector, nothing held, cuts in polar directions.
-
-    Parameters
-    ----------
-    mesh : SectorMesh
-        Sector.
-    elasticity : array (3, 3)
-        From strain to stress.
-
-    Returns
-    -------
-    scipy.sparse.csc_array
-        Both displacements of each node in turn: x and y, on the cuts outward and anticlockwise.
-    """
+def sector_stiffness(mesh: SectorMesh, elasticity: Array) -> Any:
+    """Stiffness matrix of a sector, nothing held, cuts in polar directions."""
     from scipy.sparse import coo_array
 
     matrices = element_stiffness(mesh.nodes[mesh.elements], elasticity)
@@ -69,11 +52,11 @@ def _polar_on_cuts(mesh: SectorMesh) -> Any:
     return coo_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsc()
 
 
-def _freedoms(nodes: NDArray[np.int64]) -> NDArray[np.int64]:
+def _freedoms(nodes: Index) -> Index:
     return (2 * nodes[:, None] + np.arange(2)).ravel()
 
 
-def _summed(first: FloatArray, sparse: FloatArray) -> FloatArray:
+def _summed(first: Array, sparse: Array) -> Array:
     """Product ``first.T @ sparse`` over the few rows where the second has entries."""
     rows = np.flatnonzero(np.any(sparse, axis=1))
     return np.asarray(first[rows].T @ sparse[rows])
@@ -81,32 +64,16 @@ def _summed(first: FloatArray, sparse: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class RingSolution:
-    """Displacements of the ring under load cases that all act on the sector 0.
+    """Displacements of the ring under load cases that all act on the sector 0."""
 
-    Parameters
-    ----------
-    inside : array (freedoms, cases)
-        Displacement of the inside of the sector 0 with the cuts held.
-    cuts : array (sectors, cut freedoms, cases)
-        Displacement of the right cut of each sector, polar.
-    """
-
-    inside: FloatArray
-    cuts: FloatArray
+    inside: Array  #: displacement of the inside of the sector 0 with the cuts held
+    cuts: Array  #: displacement of the right cut of each sector, polar
 
 
 class Ring:
-    """Ring of equal sectors that is held along its inner circle.
+    """Ring of equal sectors that is held along its inner circle."""
 
-    Parameters
-    ----------
-    mesh : SectorMesh
-        One sector.
-    elasticity : array (3, 3), optional
-        From strain to stress; Young's modulus of one and Poisson's ratio of 0.3 by default.
-    """
-
-    def __init__(self, mesh: SectorMesh, elasticity: FloatArray | None = None) -> None:
+    def __init__(self, mesh: SectorMesh, elasticity: Array | None = None) -> None:
         self.mesh = mesh
         self._turn = _polar_on_cuts(mesh)
         matrix = sector_stiffness(
@@ -131,11 +98,11 @@ class Ring:
         )
 
     @cached_property
-    def _inside_per_cut(self) -> FloatArray:
+    def _inside_per_cut(self) -> Array:
         """Displacement of the inside per displacement of the cuts."""
         return self._solved(-self._coupling)
 
-    def _solved(self, loads: FloatArray) -> FloatArray:
+    def _solved(self, loads: Array) -> Array:
         """Displacement of the inside with the cuts held."""
         factors = self._factors
         parts = [
@@ -144,25 +111,14 @@ class Ring:
         ]
         return np.concatenate(parts, axis=1)
 
-    def solve(self, loads: FloatArray) -> RingSolution:
-        """Displacements under loads on the sector 0.
-
-        Parameters
-        ----------
-        loads : array (2 nodes, cases)
-            Forces in x and y on the nodes of the sector; those on the right cut add to those on the
-            left cut of the next one.
-
-        Returns
-        -------
-        RingSolution
-        """
+    def solve(self, loads: Array) -> RingSolution:
+        """Displacements under loads on the sector 0."""
         inner = loads[self._inner]
         inside = self._solved(inner)
         force = _summed(self._inside_per_cut, inner) + (self._turn.T @ loads)[self._boundary]
         return RingSolution(inside, self._around(force))
 
-    def _around(self, force: FloatArray) -> FloatArray:
+    def _around(self, force: Array) -> Array:
         """Displacement of the right cut of each sector under forces on both cuts of sector 0."""
         condensed = self._edge + _summed(self._inside_per_cut, self._coupling)
         condensed = 0.5 * (condensed + condensed.T)
@@ -176,24 +132,8 @@ class Ring:
         waves = np.linalg.solve(systems, force[right] + force[left] * np.conj(turn))
         return np.fft.irfft(waves, count, axis=0)
 
-    def seen(
-        self, solution: RingSolution, weights: FloatArray, sectors: Sequence[int]
-    ) -> FloatArray:
-        """Weighted displacements of some sectors.
-
-        Parameters
-        ----------
-        solution : RingSolution
-            Of :meth:`solve`.
-        weights : array (2 nodes, views)
-            Weights of the displacements in x and y, in the frame of the sector that is seen.
-        sectors : sequence of int
-            Numbers of the sectors, counted anticlockwise from the loaded one.
-
-        Returns
-        -------
-        array (sectors, cases, views)
-        """
+    def seen(self, solution: RingSolution, weights: Array, sectors: Sequence[int]) -> Array:
+        """Weighted displacements of some sectors."""
         inner = weights[self._inner]
         on_cuts = (self._turn.T @ weights)[self._boundary]
         per_cut = _summed(self._inside_per_cut, inner) + on_cuts
@@ -203,20 +143,8 @@ class Ring:
                 found[place] = found[place] + _summed(solution.inside, inner)
         return np.stack(found)
 
-    def displacement(self, solution: RingSolution, sector: int) -> FloatArray:
-        """Displacements of all nodes of a sector in x and y of its own frame.
-
-        Parameters
-        ----------
-        solution : RingSolution
-            Of :meth:`solve`.
-        sector : int
-            Number of the sector, counted anticlockwise from the loaded one.
-
-        Returns
-        -------
-        array (2 nodes, cases)
-        """
+    def displacement(self, solution: RingSolution, sector: int) -> Array:
+        """Displacements of all nodes of a sector in x and y of its own frame."""
         cuts = self._both_cuts(solution, sector)
         whole = np.zeros((2 * len(self.mesh.nodes), cuts.shape[1]))
         whole[self._boundary] = cuts
@@ -225,6 +153,6 @@ class Ring:
             whole[self._inner] += solution.inside
         return np.asarray(self._turn @ whole)
 
-    def _both_cuts(self, solution: RingSolution, sector: int) -> FloatArray:
+    def _both_cuts(self, solution: RingSolution, sector: int) -> Array:
         count = self.mesh.count
         return np.concatenate([solution.cuts[sector % count], solution.cuts[(sector + 1) % count]])

@@ -6,16 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear.tooth_form import ToothForm
 from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh, grid_elements
 from tribodyn.stiffness.fe2d.tooth_side import ToothSide
-
-__all__ = ["MeshSize", "tooth_mesh"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Least thickness of the rim under the root circle [modules].
 _THINNEST_RIM = 0.1
@@ -66,7 +62,7 @@ class MeshSize:
         )
 
 
-def _graded(length: float, first: float, largest: float, growth: float) -> FloatArray:
+def _graded(length: float, first: float, largest: float, growth: float) -> Array:
     """Edges from 0 to ``length`` of elements that grow from ``first`` up to ``largest``."""
     edges, step = [0.0], first
     while edges[-1] < length:
@@ -77,11 +73,11 @@ def _graded(length: float, first: float, largest: float, growth: float) -> Float
     return np.array(edges) * (length / edges[-1])
 
 
-def _even(length: float, size: float, least: int = 1) -> FloatArray:
+def _even(length: float, size: float, least: int = 1) -> Array:
     return np.linspace(0.0, length, max(least, math.ceil(length / size)) + 1)
 
 
-def _with_middles(edges: FloatArray) -> FloatArray:
+def _with_middles(edges: Array) -> Array:
     full = np.empty(2 * edges.size - 1)
     full[::2] = edges
     full[1::2] = 0.5 * (edges[1:] + edges[:-1])
@@ -89,34 +85,7 @@ def _with_middles(edges: FloatArray) -> FloatArray:
 
 
 def tooth_mesh(form: ToothForm, bore_radius: float, size: MeshSize | None = None) -> SectorMesh:
-    """Mesh of the sector of one tooth.
-
-    Parameters
-    ----------
-    form : ToothForm
-        Tooth.
-    bore_radius : float [m]
-        Radius of the circle where the body is held.
-    size : MeshSize, optional
-        Sizes of the elements.
-
-    Returns
-    -------
-    SectorMesh
-        Lengths in modules.
-
-    Raises
-    ------
-    InputError
-        If the bore leaves hardly any rim.
-
-    Notes
-    -----
-    Two grids of nine-node quadrilaterals: the tooth, from flank to flank by transfinite
-    interpolation, down to where the fillet has turned halfway, and the body under it, whose
-    columns run from the foot of the tooth and from the root to the bore in polar coordinates.
-    All nodes of the outline lie on the exact curves.
-    """
+    """Mesh of the sector of one tooth."""
     size = size or MeshSize()
     side = ToothSide(form)
     bore = bore_radius / form.normal_module
@@ -145,14 +114,14 @@ def _check_rim(form: ToothForm, bore_radius: float) -> None:
         )
 
 
-def _across(side: ToothSide, size: MeshSize) -> FloatArray:
+def _across(side: ToothSide, size: MeshSize) -> Array:
     """Shares of the thickness, from the loaded flank (0) to the other (1)."""
     middle = side.flank_points(np.array(0.5 * (side.tip_length + side.form_length)))
     thickness = 2.0 * float(middle[0])
     return _graded(thickness, size.flank, size.largest, size.growth) / thickness
 
 
-def _flank_edges(side: ToothSide, size: MeshSize) -> FloatArray:
+def _flank_edges(side: ToothSide, size: MeshSize) -> Array:
     """Lengths along the flank from the tip to the foot, falling."""
     flank = side.tip_length - _even(side.tip_length - side.form_length, size.flank, 8)
     fillet = _graded(side.foot_length, size.flank, size.largest, size.growth)
@@ -164,7 +133,7 @@ def _root_share(side: ToothSide, size: MeshSize) -> float:
     return size.largest / float(np.hypot(*np.diff(points, axis=0).T).sum())
 
 
-def _tooth_points(side: ToothSide, lengths: FloatArray, across: FloatArray) -> FloatArray:
+def _tooth_points(side: ToothSide, lengths: Array, across: Array) -> Array:
     """Transfinite interpolation between both flanks, tip arc and foot arc, shape (a, b, 2)."""
     right = side.flank_points(lengths)
     left = right * [-1.0, 1.0]
@@ -176,13 +145,13 @@ def _tooth_points(side: ToothSide, lengths: FloatArray, across: FloatArray) -> F
     return np.asarray(straight + (1.0 - v) * tip + v * foot - corners)
 
 
-def _arc(begin: FloatArray, share: FloatArray) -> FloatArray:
+def _arc(begin: Array, share: Array) -> Array:
     """Arc around the centre from a point to its mirror image."""
     angle = math.atan2(begin[0], begin[1]) * (1.0 - 2.0 * share)
     return np.asarray(np.hypot(*begin) * np.stack([np.sin(angle), np.cos(angle)], axis=-1))
 
 
-def _body_levels(side: ToothSide, bore: float, size: MeshSize) -> FloatArray:
+def _body_levels(side: ToothSide, bore: float, size: MeshSize) -> Array:
     """Shares of the depth from the root (0) to the bore (1)."""
     radii = [side.root_radius]
     while radii[-1] > bore:
@@ -197,7 +166,7 @@ def _body_levels(side: ToothSide, bore: float, size: MeshSize) -> FloatArray:
     return np.asarray(depths / depths[-1])
 
 
-def _body_points(top: FloatArray, levels: FloatArray, bore: float) -> FloatArray:
+def _body_points(top: Array, levels: Array, bore: float) -> Array:
     """Columns from the top edge to the bore in polar coordinates, shape (columns, levels, 2)."""
     radius, angle = np.hypot(*top.T)[:, None], np.arctan2(*top.T)[:, None]
     radii = radius + (bore - radius) * levels
@@ -205,7 +174,7 @@ def _body_points(top: FloatArray, levels: FloatArray, bore: float) -> FloatArray
 
 
 def _numbered(
-    count: int, tooth: FloatArray, body: FloatArray, side_columns: int, lengths: FloatArray
+    count: int, tooth: Array, body: Array, side_columns: int, lengths: Array
 ) -> SectorMesh:
     """Join the two grids: the lowest row of the tooth is a part of the top row of the body."""
     under = np.arange(body.shape[0] * body.shape[1]).reshape(body.shape[:2])

@@ -6,13 +6,9 @@ import math
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear.tooth_form import ToothForm
-
-__all__ = ["ToothSide"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: Points of the table from length to parameter of the fillet.
 _TABLE = 2001
@@ -20,21 +16,12 @@ _TABLE = 2001
 _FOOT_STEEPNESS = math.radians(45.0)
 
 
-def _cartesian(radius: FloatArray, angle: FloatArray) -> FloatArray:
+def _cartesian(radius: Array, angle: Array) -> Array:
     return np.stack([radius * np.sin(angle), radius * np.cos(angle)], axis=-1)
 
 
 class ToothSide:
-    """Half of the outline of a tooth with its axis on +y, all lengths in modules.
-
-    The flank is measured by the length of the involute from its origin on the base circle; below
-    the form circle the length goes on down the fillet.
-
-    Parameters
-    ----------
-    form : ToothForm
-        Tooth.
-    """
+    """Half of the outline of a tooth with its axis on +y, all lengths in modules."""
 
     def __init__(self, form: ToothForm) -> None:
         self.form = form
@@ -52,7 +39,7 @@ class ToothSide:
         return 0.5 * self.base_radius * roll * roll
 
     @cached_property
-    def _fillet(self) -> tuple[FloatArray, FloatArray, int]:
+    def _fillet(self) -> tuple[Array, Array, int]:
         """Parameter and length of the fillet from the form circle down, and index of the foot."""
         angle = np.linspace(self.form.form_normal_angle, 0.5 * math.pi, _TABLE)
         places = self._fillet_at(angle)
@@ -68,7 +55,7 @@ class ToothSide:
         foot = min(int(steep[-1]) + 1 if steep.size else 0, int(0.9 * _TABLE))
         return angle, length, foot
 
-    def _fillet_at(self, angle: FloatArray) -> FloatArray:
+    def _fillet_at(self, angle: Array) -> Array:
         curve = self.form.trochoid
         radius = curve.radius(angle) / self.form.normal_module
         return _cartesian(radius, curve.half_tooth_angle(angle))
@@ -79,19 +66,8 @@ class ToothSide:
         _, length, foot = self._fillet
         return float(length[foot])
 
-    def flank_points(self, length: FloatArray) -> FloatArray:
-        """Points from the tip to the foot.
-
-        Parameters
-        ----------
-        length : array
-            Length of the involute from the base circle; less than that of the form circle is on
-            the fillet.
-
-        Returns
-        -------
-        array (..., 2)
-        """
+    def flank_points(self, length: Array) -> Array:
+        """Points from the tip to the foot."""
         angle, fillet_length, _ = self._fillet
         on_fillet = length < self.form_length
         roll = np.sqrt(2.0 * np.where(on_fillet, self.form_length, length) / self.base_radius)
@@ -100,18 +76,8 @@ class ToothSide:
         below = np.interp(self.form_length - length, fillet_length, angle)
         return np.where(on_fillet[..., None], self._fillet_at(below), flank)
 
-    def root_points(self, share: FloatArray) -> FloatArray:
-        """Points of the lower fillet and the root land.
-
-        Parameters
-        ----------
-        share : array
-            Share of the length from the middle of the space (0) to the foot (1).
-
-        Returns
-        -------
-        array (..., 2)
-        """
+    def root_points(self, share: Array) -> Array:
+        """Points of the lower fillet and the root land."""
         angle, length, foot = self._fillet
         begin = float(self.form.trochoid.half_tooth_angle(0.5 * math.pi))
         land = max(self.root_radius * (self.pitch_angle - begin), 0.0)

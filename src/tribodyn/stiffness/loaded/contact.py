@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_positive
 from tribodyn.gear import Material, SpurPair
@@ -15,10 +15,7 @@ from tribodyn.stiffness.loaded.prepare import NO_OPTIONS, contact_problem, phase
 from tribodyn.stiffness.loaded.problem import ContactProblem, Equilibrium
 from tribodyn.stiffness.loaded.result import LoadedContact
 from tribodyn.stiffness.model import MODELS
-
-__all__ = ["loaded_contact"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
 def loaded_contact(
@@ -26,7 +23,7 @@ def loaded_contact(
     torque: ArrayLike,
     *,
     provider: str = "fe2d",
-    phases: int | FloatArray = 64,
+    phases: int | Array = 64,
     extended_contact: bool = True,
     reference: str | None = None,
     material: Material | None = None,
@@ -129,11 +126,11 @@ def loaded_contact(
 
 
 def _solved(
-    pair: SpurPair, totals: FloatArray, film_stiffness: ArrayLike | None, given: dict[str, Any]
+    pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, given: dict[str, Any]
 ) -> tuple[ContactProblem, Equilibrium]:
     """One problem for all loads, or one for each where the stiffness itself depends on the load."""
 
-    def solve(some: FloatArray) -> tuple[ContactProblem, Equilibrium]:
+    def solve(some: Array) -> tuple[ContactProblem, Equilibrium]:
         problem = contact_problem(pair, total_force=float(some[0]), **given)
         if film_stiffness is not None:
             shape = problem.compliance.local.shape

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
 
     from tribodyn.stiffness.loaded.result import LoadedContact
 
-__all__ = ["to_xarray"]
 
 #: Array -> its last dimensions and its quantity in the nomenclature.
 _ARRAYS: dict[str, tuple[tuple[str, ...], str]] = {
@@ -33,18 +32,7 @@ _PLACES: dict[str, str] = {
 
 
 def to_xarray(result: LoadedContact) -> xarray.Dataset:
-    """Convert a loaded tooth contact to a labelled data set with units.
-
-    Parameters
-    ----------
-    result : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` found.
-
-    Returns
-    -------
-    xarray.Dataset
-        Dimensions ``phase``, ``pair``, ``slice`` and, for several torques, ``torque``.
-    """
+    """Convert a loaded tooth contact to a labelled data set with units."""
     import xarray
 
     before = ("torque",) * result.torque.ndim

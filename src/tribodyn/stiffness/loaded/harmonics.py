@@ -3,47 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
-
-__all__ = ["harmonic_amplitudes"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
-def harmonic_amplitudes(
-    phase: FloatArray, values: FloatArray, mesh_cycles: int, count: int
-) -> FloatArray:
-    """Peak amplitudes of the orders 1, 2, ... of the mesh frequency.
-
-    Parameters
-    ----------
-    phase : array (p,)
-        Evenly spaced mesh phases over ``mesh_cycles`` cycles.
-    values : array (..., p)
-        What is analysed, in any unit.
-    mesh_cycles : int
-        Mesh cycles of one period.
-    count : int
-        Number of harmonics.
-
-    Returns
-    -------
-    array (..., count)
-        In the unit of the values.
-
-    Raises
-    ------
-    InputError
-        If there are too few phases, or they are not evenly spaced.
-
-    Examples
-    --------
-    >>> phase = np.arange(16) / 16
-    >>> harmonic_amplitudes(phase, 3.0 + 2.0 * np.cos(4.0 * np.pi * phase), 1, 3).round(12)
-    array([0., 2., 0.])
-    """
+def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: int) -> Array:
+    """Peak amplitudes of the orders 1, 2, ... of the mesh frequency."""
     even = np.arange(phase.size) * (mesh_cycles / phase.size) + phase[0]
     if not np.allclose(phase, even, rtol=0.0, atol=1e-9):
         raise InputError(

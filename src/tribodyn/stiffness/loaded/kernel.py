@@ -16,13 +16,9 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.compiled import source_digest
-
-__all__ = ["pickups", "solve_deflections", "solve_loads"]
-
-Array = NDArray[np.float64]
+from tribodyn.types import Array
 
 #: NaN stays detectable: neither "nnan" nor "ninf".
 _JIT: dict[str, Any] = {
@@ -242,11 +238,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         force: Array,
         tangent: Array,
     ) -> Any:
-        """Solve every phase at every total load, in the order of the loads.
-
-        ``C`` (P, n, n), ``A`` (P, n), ``gaps`` (P, S, n), ``width`` (S,) [m], ``totals`` (T,)
-        [N]; receives ``delta`` (T, P), ``force`` (T, P, S, n) and ``tangent`` (T, P) [N/m].
-        """
+        """Solve every phase at every total load, in the order of the loads."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, slices = A.shape[1], width.size
         a, b, place, sums = np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2)

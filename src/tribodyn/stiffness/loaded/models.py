@@ -10,16 +10,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.loaded.prepare import mesh_problem
 from tribodyn.stiffness.model import MODELS, StiffnessModel
-
-__all__ = ["OPTIONS"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Mask
 
 #: Options of every model that knows the structure of the gears.
 OPTIONS = {"reference": "bore", "extended_contact": True}
@@ -43,16 +39,16 @@ def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluen
     return weber_influence(gear, material, reference=reference)
 
 
-def _pair_stiffness(name: str) -> Callable[..., FloatArray]:
+def _pair_stiffness(name: str) -> Callable[..., Array]:
     def function(
         pair: SpurPair,
         material: Material,
-        path: FloatArray,
-        in_contact: NDArray[np.bool_],
-        phase: FloatArray,
+        path: Array,
+        in_contact: Mask,
+        phase: Array,
         normal_force: float,
         **options: Any,
-    ) -> FloatArray:
+    ) -> Array:
         problem = mesh_problem(
             pair,
             provider=name,

@@ -9,36 +9,14 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["plain_approach", "plain_loads"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array, Index
 
 
 def plain_loads(
-    structure: FloatArray, local: FloatArray, logarithm: float, gaps: FloatArray, approach: float
-) -> FloatArray:
-    """Loads of one slice at an approach.
-
-    Parameters
-    ----------
-    structure : array (n, n) [m^2/N]
-        Compliance without the local compression.
-    local : array (n,) [m^2/N]
-        Coefficient ``A``.
-    logarithm : float [m^2/N]
-        Coefficient ``B``.
-    gaps : array (n,) [m]
-        Separation of each pair without load.
-    approach : float [m]
-        Approach of the two gears along the line of action.
-
-    Returns
-    -------
-    array (n,) [N/m]
-        Loads per face width, none negative; where a pair carries none, its flanks are apart.
-    """
+    structure: Array, local: Array, logarithm: float, gaps: Array, approach: float
+) -> Array:
+    """Loads of one slice at an approach."""
     from scipy.optimize import root
 
     scale = max(approach - gaps.min(), 0.0) / np.mean(np.diag(structure) + local)
@@ -48,7 +26,7 @@ def plain_loads(
         for chosen in combinations(range(gaps.size), count):
             place = np.array(chosen)
 
-            def excess(loads: FloatArray, place: NDArray[np.int64] = place) -> FloatArray:
+            def excess(loads: Array, place: Index = place) -> Array:
                 f = np.abs(loads) * scale
                 compressed = f * (local[place] - logarithm * np.log(f + 1e-300))
                 inner = structure[np.ix_(place, place)] @ f
@@ -66,30 +44,14 @@ def plain_loads(
 
 
 def plain_approach(
-    structure: FloatArray,
-    local: FloatArray,
+    structure: Array,
+    local: Array,
     logarithm: float,
-    gaps: FloatArray,
-    widths: FloatArray,
+    gaps: Array,
+    widths: Array,
     total: float,
 ) -> float:
-    """Approach at which all slices together carry a force.
-
-    Parameters
-    ----------
-    structure, local, logarithm : as in :func:`plain_loads`
-        Compliances.
-    gaps : array (s, n) [m]
-        Separation of each pair in each slice.
-    widths : array (s,) [m]
-        Face widths of the slices.
-    total : float [N]
-        Normal force.
-
-    Returns
-    -------
-    float [m]
-    """
+    """Approach at which all slices together carry a force."""
     from scipy.optimize import brentq
 
     def missing(approach: float) -> float:

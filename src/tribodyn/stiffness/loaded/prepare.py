@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, Problem
@@ -27,10 +26,8 @@ from tribodyn.stiffness.loaded.structure import (
     independent_compliance,
 )
 from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
+from tribodyn.types import Array, Mask
 
-__all__ = ["compliance_of", "contact_problem", "mesh_problem", "phases_of"]
-
-FloatArray = NDArray[np.float64]
 NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -42,34 +39,7 @@ def compliance_of(
     model: StiffnessModel,
     options: Mapping[str, Any] = NO_OPTIONS,
 ) -> Compliance:
-    """Compliance of the teeth at given places by a named model.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
-    places : ContactPlaces
-        Where the pairs may touch.
-    total_force : float [N]
-        Normal force of all pairs, which some models of the literature ask for.
-    model : StiffnessModel
-        What gives the compliance.
-    options : mapping
-        Options of the model.
-
-    Returns
-    -------
-    Compliance
-
-    Raises
-    ------
-    InputError
-        If an option is out of range.
-    ComputationError
-        If a pair between A and E has no stiffness.
-    """
+    """Compliance of the teeth at given places by a named model."""
     if model.influence is not None:
         reference = {**model.options, **options}["reference"]
         pinion, wheel = (
@@ -90,7 +60,7 @@ def contact_problem(
     pair: SpurPair,
     *,
     provider: str = "fe2d",
-    phase: FloatArray,
+    phase: Array,
     total_force: float,
     extended_contact: bool = True,
     material: Material,
@@ -149,7 +119,7 @@ def mesh_problem(
     pair: SpurPair,
     *,
     provider: str,
-    places: tuple[FloatArray, FloatArray, NDArray[np.bool_]],
+    places: tuple[Array, Array, Mask],
     total_force: float,
     extended_contact: bool,
     material: Material,
@@ -209,30 +179,8 @@ def mesh_problem(
     return ContactProblem(where, compliance, gaps, widths)
 
 
-def phases_of(phases: int | FloatArray, mesh_cycles: int) -> FloatArray:
-    """Mesh phases over all cycles, from a number for each cycle or as they are given.
-
-    Parameters
-    ----------
-    phases : int or array
-        Phases of a mesh cycle.
-    mesh_cycles : int
-        Mesh cycles after which everything repeats.
-
-    Returns
-    -------
-    array (p,)
-
-    Raises
-    ------
-    InputError
-        If there are fewer than 8 phases in a cycle.
-
-    Examples
-    --------
-    >>> phases_of(8, 1)[:3].tolist()
-    [0.0, 0.125, 0.25]
-    """
+def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
+    """Mesh phases over all cycles, from a number for each cycle or as they are given."""
     if not isinstance(phases, int | np.integer):
         return np.atleast_1d(np.asarray(phases, dtype=float))
     if phases < 8:

@@ -6,15 +6,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.stiffness.loaded.places import FAR, ContactPlaces
 from tribodyn.stiffness.loaded.structure import Compliance
-
-__all__ = ["ContactProblem", "Equilibrium"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 _STATUS = {
     1: ("the loads of the tooth pairs do not settle", "Check the load and the deviations"),
@@ -38,9 +34,9 @@ class Equilibrium(NamedTuple):
         Slope of the force over the approach.
     """
 
-    approach: FloatArray
-    load: FloatArray
-    tangent: FloatArray
+    approach: Array
+    load: Array
+    tangent: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +57,10 @@ class ContactProblem:
 
     places: ContactPlaces
     compliance: Compliance
-    gaps: FloatArray
-    widths: FloatArray
+    gaps: Array
+    widths: Array
 
-    def with_film(self, film_stiffness: FloatArray) -> ContactProblem:
+    def with_film(self, film_stiffness: Array) -> ContactProblem:
         """Put an oil film in series with each pair.
 
         Parameters
@@ -82,11 +78,11 @@ class ContactProblem:
         return replace(self, compliance=replace(self.compliance, structure=structure))
 
     @property
-    def least_gap(self) -> FloatArray:
+    def least_gap(self) -> Array:
         """Approach at which the first pair touches (p,) [m]."""
         return np.asarray(self.gaps.min(axis=(1, 2)))
 
-    def at_loads(self, totals: FloatArray) -> Equilibrium:
+    def at_loads(self, totals: Array) -> Equilibrium:
         """Solve for total normal forces.
 
         Parameters
@@ -114,7 +110,7 @@ class ContactProblem:
         _told(solve_loads(*self._arguments, self.widths, np.asarray(totals, dtype=float), *found))
         return found
 
-    def at_approach(self, approach: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def at_approach(self, approach: Array) -> tuple[Array, Array]:
         """Force and tangent stiffness at given approaches.
 
         Parameters
@@ -139,7 +135,7 @@ class ContactProblem:
         _told(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
         return total, tangent
 
-    def tangent_at(self, load_per_width: FloatArray) -> FloatArray:
+    def tangent_at(self, load_per_width: Array) -> Array:
         """Tangent stiffness of a single slice under given loads of its pairs.
 
         Parameters
@@ -161,7 +157,7 @@ class ContactProblem:
         rates = np.linalg.solve(slope, carries[..., None].astype(float))[..., 0]
         return np.asarray(self.widths.sum() * (rates * carries).sum(axis=1))
 
-    def pickups(self, most: FloatArray) -> FloatArray:
+    def pickups(self, most: Array) -> Array:
         """Approach at which each pair begins to carry.
 
         Parameters
@@ -186,7 +182,7 @@ class ContactProblem:
         return found
 
     @property
-    def _arguments(self) -> tuple[FloatArray, FloatArray, float, FloatArray]:
+    def _arguments(self) -> tuple[Array, Array, float, Array]:
         parts = self.compliance
         return parts.structure, parts.local, parts.logarithm, np.minimum(self.gaps, FAR)
 

@@ -6,17 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import SpurPair
 from tribodyn.stiffness.loaded.root_loads import RootLoads, root_loads
+from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["LoadedContact"]
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,46 +57,46 @@ class LoadedContact:
     gear_pair: SpurPair
     provider: str
     reference: str
-    torque: FloatArray
-    phase: FloatArray
-    number: NDArray[np.int64]
-    path: FloatArray
-    pinion_curvature_radius: FloatArray
-    wheel_curvature_radius: FloatArray
-    gap: FloatArray
-    transmission_error: FloatArray
-    normal_force: FloatArray
-    load_per_width: FloatArray
-    mesh_stiffness_tangent: FloatArray
+    torque: Array
+    phase: Array
+    number: Index
+    path: Array
+    pinion_curvature_radius: Array
+    wheel_curvature_radius: Array
+    gap: Array
+    transmission_error: Array
+    normal_force: Array
+    load_per_width: Array
+    mesh_stiffness_tangent: Array
 
     @property
-    def total_normal_force(self) -> FloatArray:
+    def total_normal_force(self) -> Array:
         """Normal force of all pairs together (...) [N]."""
         return np.asarray(self.torque / self.gear_pair.pinion.base_radius)
 
     @property
-    def load_share(self) -> FloatArray:
+    def load_share(self) -> Array:
         """Part of the normal force on each pair (..., p, n)."""
         return np.asarray(self.normal_force / self.total_normal_force[..., None, None])
 
     @property
-    def unloaded_transmission_error(self) -> FloatArray:
+    def unloaded_transmission_error(self) -> Array:
         """Transmission error of the rigid mesh (p,) [m]: that of the deviations alone."""
         return np.asarray(self.gap.min(axis=-1))
 
     @property
-    def deflection(self) -> FloatArray:
+    def deflection(self) -> Array:
         """Approach that the load alone causes (..., p) [m]."""
         return self.transmission_error - self.unloaded_transmission_error
 
     @property
-    def pair_deflection(self) -> FloatArray:
+    def pair_deflection(self) -> Array:
         """Deflection of each loaded pair (..., p, n) [m]: approach less gap, zero where apart."""
         left = self.transmission_error[..., None] - self.gap
         return np.where(self.normal_force > 0.0, left, 0.0)
 
     @property
-    def mesh_stiffness_secant(self) -> FloatArray:
+    def mesh_stiffness_secant(self) -> Array:
         """Total force over the deflection that it causes (..., p) [N/m]."""
         return np.asarray(self.total_normal_force[..., None] / self.deflection)
 
@@ -110,16 +106,16 @@ class LoadedContact:
         return round(float(self.phase[-1] + self.phase[1] - self.phase[0]))
 
     @property
-    def mean_transmission_error(self) -> FloatArray:
+    def mean_transmission_error(self) -> Array:
         """Mean over the phases (...) [m]."""
         return np.asarray(self.transmission_error.mean(axis=-1))
 
     @property
-    def peak_to_peak_transmission_error(self) -> FloatArray:
+    def peak_to_peak_transmission_error(self) -> Array:
         """Largest less least transmission error (...) [m]."""
         return np.asarray(np.ptp(self.transmission_error, axis=-1))
 
-    def transmission_error_harmonics(self, count: int = 5) -> FloatArray:
+    def transmission_error_harmonics(self, count: int = 5) -> Array:
         """Amplitudes of the mesh harmonics of the transmission error.
 
         Parameters

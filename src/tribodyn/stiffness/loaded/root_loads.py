@@ -5,17 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.gear import SpurGear, half_tooth
 from tribodyn.stiffness.load_point import load_point
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.stiffness.loaded.result import LoadedContact
-
-__all__ = ["RootLoads", "root_loads"]
-
-FloatArray = NDArray[np.float64]
 
 
 class RootLoads(NamedTuple):
@@ -31,12 +27,12 @@ class RootLoads(NamedTuple):
         Along the axis of the tooth, towards the gear centre.
     """
 
-    pinion_bending_moment: FloatArray
-    wheel_bending_moment: FloatArray
-    pinion_shear_force: FloatArray
-    wheel_shear_force: FloatArray
-    pinion_compressive_force: FloatArray
-    wheel_compressive_force: FloatArray
+    pinion_bending_moment: Array
+    wheel_bending_moment: Array
+    pinion_shear_force: Array
+    wheel_shear_force: Array
+    pinion_compressive_force: Array
+    wheel_compressive_force: Array
 
 
 def root_loads(result: LoadedContact) -> RootLoads:
@@ -69,9 +65,7 @@ def root_loads(result: LoadedContact) -> RootLoads:
     return RootLoads(*(part for both in zip(*found, strict=True) for part in both))
 
 
-def _foot(
-    gear: SpurGear, curvature_radius: FloatArray, force: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _foot(gear: SpurGear, curvature_radius: Array, force: Array) -> tuple[Array, Array, Array]:
     load = load_point(gear, curvature_radius)
     lever = load.axis_height - half_tooth(gear)[0][0]
     across = force * np.cos(load.load_angle)

@@ -5,40 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.loaded.places import ContactPlaces
-
-__all__ = ["Compliance", "coupled_compliance", "independent_compliance"]
-
-FloatArray = NDArray[np.float64]
+from tribodyn.types import Array
 
 
-def coupled_compliance(
-    pinion: GearInfluence, wheel: GearInfluence, places: ContactPlaces
-) -> FloatArray:
-    """Structural compliance of all pairs that may touch, coupled through both gear bodies.
-
-    Parameters
-    ----------
-    pinion, wheel : GearInfluence
-        Structure of each gear.
-    places : ContactPlaces
-        Where the pairs touch.
-
-    Returns
-    -------
-    array (p, n, n) [m^2/N]
-        Approach at the first pair per load per face width on the second; symmetric.
-
-    Notes
-    -----
-    Places are those of contacts, on the involute; what rounding takes them beyond its ends is
-    brought back. A contact that is a base pitch further along the path has larger radii of
-    curvature on the pinion and smaller ones on the wheel, so that it is on the other side of the
-    wheel's tooth.
-    """
+def coupled_compliance(pinion: GearInfluence, wheel: GearInfluence, places: ContactPlaces) -> Array:
+    """Structural compliance of all pairs that may touch, coupled through both gear bodies."""
     radii = [
         np.clip(radius, *gear.curvature_radius[[0, -1]])
         for gear, radius in (
@@ -58,26 +32,8 @@ def coupled_compliance(
     return total
 
 
-def independent_compliance(stiffness: FloatArray, face_width: float) -> FloatArray:
-    """Compliance of pairs that know nothing of each other.
-
-    Parameters
-    ----------
-    stiffness : array (p, n) [N/m]
-        Stiffness of each pair; zero where it is not in contact.
-    face_width : float [m]
-        Common face width.
-
-    Returns
-    -------
-    array (p, n, n) [m^2/N]
-        Diagonal; one where there is no contact, which then has no influence.
-
-    Examples
-    --------
-    >>> independent_compliance(np.array([[2e8, 0.0]]), 0.02)[0].diagonal().tolist()
-    [1e-10, 1.0]
-    """
+def independent_compliance(stiffness: Array, face_width: float) -> Array:
+    """Compliance of pairs that know nothing of each other."""
     touching = stiffness > 0.0
     diagonal = np.where(touching, face_width / np.where(touching, stiffness, 1.0), 1.0)
     return np.asarray(diagonal[..., None] * np.eye(stiffness.shape[1]))
@@ -85,18 +41,8 @@ def independent_compliance(stiffness: FloatArray, face_width: float) -> FloatArr
 
 @dataclass(frozen=True, eq=False)
 class Compliance:
-    """Everything that the solver needs of the teeth at some phases.
+    """Everything that the solver needs of the teeth at some phases."""
 
-    Parameters
-    ----------
-    structure : array (p, n, n) [m^2/N]
-        Compliance without the local compression.
-    local : array (p, n) [m^2/N]
-        Coefficient ``A`` of the local compression ``f (A - B ln f)``.
-    logarithm : float [m^2/N]
-        Coefficient ``B``; zero where the compression is in proportion to the load.
-    """
-
-    structure: FloatArray
-    local: FloatArray
-    logarithm: float
+    structure: Array  #: compliance without the local compression [m^2/N]
+    local: Array  #: coefficient ``A`` of the local compression ``f (A - B ln f)`` [m^2/N]
+    logarithm: float  #: coefficient ``B`` [m^2/N]
