@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
 
 from tribodyn.cases.catalogue import case_files
+from tribodyn.errors import InputError
 from tribodyn.study.case import Case
+from tribodyn.study.checks import DEFAULT_MARK
 from tribodyn.study.provenance import changed_keys
 from tribodyn.study.read import read_case, read_text
 from tribodyn.study.stated import same
@@ -19,7 +22,11 @@ def with_known_reasons(case: Case) -> Case:
     lines = case.source.lines
     if "based_on" in lines:
         return case
-    plain = {k: why for k, why in case.assumed.items() if f"assumed.{k}.value" not in lines}
+    plain = {
+        key: why
+        for key, why in case.assumed.items()
+        if why != DEFAULT_MARK and f"assumed.{key}.value" not in lines
+    }
     models = _models(case.origin, plain)
     stale = {key for key in plain if _of_another_value(case, key, models)}
     data = {**case.given.data, "assumed": _without(case.given.data["assumed"], stale)}
@@ -33,14 +40,24 @@ def with_known_reasons(case: Case) -> Case:
 
 def _models(origin: str | None, plain: Mapping[str, str]) -> list[Case]:
     """Built-in cases with the origin, or with one of the reasons, of a case."""
-    models = []
-    for path in case_files().values():
-        text = read_text(path)
-        data = tomllib.loads(text)
-        given = data.get("assumed", {}).items()
-        if (origin and data.get("origin") == origin) or set(plain.items()) & set(given):
-            models.append(read_case(text, path.name))
-    return models
+    if not (origin or plain):
+        return []
+    models = [_model(path) for path in case_files().values()]
+    return [
+        model
+        for model in models
+        if model is not None
+        and ((origin and model.origin == origin) or plain.items() & model.assumed.items())
+    ]
+
+
+@lru_cache(maxsize=64)
+def _model(path: Path) -> Case | None:
+    """A named case, or None where another package brings one that is faulty."""
+    try:
+        return read_case(read_text(path), path.name)
+    except InputError:
+        return None
 
 
 def _of_another_value(case: Case, key: str, models: list[Case]) -> bool:

@@ -118,14 +118,15 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 def settled(
     case: Case, values: Mapping[str, Any], given: Given, stated: Stated
 ) -> tuple[Stated, set[str]]:
-    """What holds of the values in force [SI], and the keys whose reason was that of another value."""
+    """What holds of values in force [SI], and the keys whose reason was that of another value."""
     # A reason without a recorded value belongs to the value that it came with.
     marks = {key: stated.marks.get(key, values.get(key)) for key in case.assumed}
     stale = {key for key, value in marks.items() if not same(value, values.get(key))}
     said = {key: value for key, value in marks.items() if case.assumed[key] != DEFAULT_MARK}
     kept = {key: value for key, value in marks.items() if key not in stale}
     if stated.base and case.origin in (None, stated.base.get("origin")):
-        return Stated(kept, said | stated.base), stale
+        recorded = {key: value for key, value in said.items() if key in stated.marks}
+        return Stated(kept, stated.base | recorded | stated.base), stale
     base = {
         key: values[key]
         for key in given.keys("")

@@ -84,7 +84,7 @@ def case_toml(case: Case) -> str:
         lines += ["", "# [lubricant] is not given: nothing in this case needs an oil"]
     marks = {key: case.assumed.get(key, DEFAULT_MARK) for key, origin in origins.items()
              if origin != "given" and values[key] is not None}  # fmt: skip
-    return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case, marks)]) + "\n"
+    return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case)]) + "\n"
 
 
 def _assumed_lines(case: Case, marks: dict[str, str]) -> list[str]:
@@ -105,7 +105,7 @@ def _assumed_lines(case: Case, marks: dict[str, str]) -> list[str]:
     ]
 
 
-def _base_lines(case: Case, marks: dict[str, str]) -> list[str]:
+def _base_lines(case: Case) -> list[str]:
     """Values of the document that the case began with; without a document there are none."""
     base = case.stated.base
     if base.get("origin") is None:
@@ -113,7 +113,7 @@ def _base_lines(case: Case, marks: dict[str, str]) -> list[str]:
     lines = [
         f"{_quoted(key)} = {_recorded(case, key, value)}"
         for key, value in base.items()
-        if value is not None and key != "title" and key not in marks
+        if value is not None and key != "title"
     ]
     return [
         "",
