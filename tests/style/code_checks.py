@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import sys
+from pathlib import Path
 
 from source_tree import Module, listed_names
 
@@ -19,7 +20,7 @@ __all__ = [
     "top_level_imports",
 ]
 
-LONGEST_FILE = 400
+LONGEST_FILE = 500
 LONGEST_FUNCTION = 60
 
 #: Third-party package -> parts of tribodyn whose files may import it at their top.
@@ -101,17 +102,10 @@ def prints(module: Module) -> list[str]:
 
 
 def exports(module: Module) -> list[str]:
-    """`__all__` is there, names what exists, and holds every public function and class."""
-    listed = listed_names(module.tree)
-    if listed is None:
-        return [f"{module.path}: no __all__"]
-    defined = ast.FunctionDef | ast.ClassDef
-    missing = [
-        node.name
-        for node in module.tree.body
-        if isinstance(node, defined) and not node.name.startswith("_") and node.name not in listed
-    ]
-    return [f"{module.path}: {name} is public but not in __all__" for name in missing]
+    """Public names stand on the pages of the packages; a module has no list of its own."""
+    page = module.path.endswith("__init__.py") or len(Path(module.path).parts) == 3
+    listed = listed_names(module.tree) is not None
+    return [f"{module.path}: __all__ outside of a page"] if listed and not page else []
 
 
 def top_level_imports(module: Module) -> list[str]:

@@ -77,15 +77,15 @@ def parameters_differ(module: Module) -> list[str]:
             continue
         # fields of a base class are documented with the others, wherever they stand
         own = [name for name in documented if name in wanted] if node.bases else documented
-        if own != wanted and (documented or module.package in PHYSICS):
+        if own != wanted and (documented or node.name in module.surface):
             found.append(f"{module.path}:{node.lineno}: {node.name}: {documented} != {wanted}")
     return found
 
 
 def _is_contract(module: Module, function: Function) -> bool:
-    """Whether the docstring must be complete: physics, and names on a part's page of names."""
+    """Whether the docstring must be complete: that of a name on a page of public names."""
     surface = function.owner.name if function.owner else function.node.name
-    return not function.compiled and (module.package in PHYSICS or surface in module.surface)
+    return not function.compiled and surface in module.surface
 
 
 def _constructor(node: ast.ClassDef) -> list[str] | None:
@@ -136,7 +136,8 @@ def missing_raises(module: Module) -> list[str]:
         told = re.search(r"^Raises\n-+$", function.docstring, re.MULTILINE)
         dunder = function.node.name.startswith("__")
         on_screen = module.package == "cli"  # there the docstring is the help text
-        if function.public and raises and not (told or dunder or on_screen):
+        excused = told or dunder or on_screen or not _is_contract(module, function)
+        if function.public and raises and not excused:
             found.append(_place(module, function))
     return found
 

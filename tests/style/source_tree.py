@@ -102,7 +102,7 @@ class Module:
     path: str
     text: str
     tree: ast.Module
-    surface: frozenset[str] = frozenset()  #: names on the page of public names of its part
+    surface: frozenset[str] = frozenset()  #: its names that are on a page of public names
 
     @property
     def package(self) -> str:
@@ -151,14 +151,26 @@ def listed_names(tree: ast.Module) -> list[str] | None:
     return None
 
 
+def _surfaces() -> dict[str, set[str]]:
+    """Names that the pages of public names take from each module."""
+    names: dict[str, set[str]] = {}
+    for page in PACKAGE.rglob("__init__.py"):
+        for node in ast.walk(ast.parse(page.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                names.setdefault(node.module, set()).update(alias.name for alias in node.names)
+    return names
+
+
 @lru_cache(maxsize=4)
 def modules(folder: Path = PACKAGE) -> tuple[Module, ...]:
     """All modules under a folder."""
+    surfaces = _surfaces()
     found = []
     for path in sorted(folder.rglob("*.py")):
-        page = path.parent / "__init__.py"
-        page_text = page.read_text("utf-8") if page.exists() else ""
-        found.append(read(path.read_text("utf-8"), path.relative_to(ROOT).as_posix(), page_text))
+        text, place = path.read_text("utf-8"), path.relative_to(ROOT)
+        dotted = ".".join(place.with_suffix("").parts[1:])
+        surface = frozenset(surfaces.get(dotted, ()))
+        found.append(Module(place.as_posix(), text, ast.parse(text), surface))
     return tuple(found)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tribodyn.analysis.attractors import Motions
-from tribodyn.analysis.poincare import repeat_period
+from tribodyn.analysis.poincare_march import repeat_period
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array, Index
 

@@ -66,7 +66,7 @@ class Stretches(Motions):
         return after
 
     def take(self, count: int) -> list[int]:
-        """Take motions out of the queue, and then halves of what is left of the longest stretches."""
+        """Take motions out of the queue, then halves of what is left of the longest stretches."""
         taken = super().take(count)
         with self._lock:
             while len(taken) < count and not self.joining:

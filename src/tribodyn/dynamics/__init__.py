@@ -6,6 +6,7 @@ from tribodyn.dynamics.continuation import continuation
 from tribodyn.dynamics.dormand_prince_solution import AdaptiveSolution, solve_adaptive
 from tribodyn.dynamics.energy import EnergyAudit, energy_audit
 from tribodyn.dynamics.ensemble import Ensemble, LaneStatistics, simulate_ensemble
+from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.follow_load import follow_load
 from tribodyn.dynamics.force_law import MeshForce, law_contacts
 from tribodyn.dynamics.forced_response import ForcedResponse, forced_response
@@ -24,7 +25,7 @@ from tribodyn.dynamics.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.spur6 import SPUR6_NAMES, spur6
 from tribodyn.dynamics.steady_state import steady_state
 from tribodyn.dynamics.step_limit import recommended_steps
-from tribodyn.dynamics.system import Contact, Entry, System
+from tribodyn.dynamics.system import Contact, System
 from tribodyn.dynamics.torsional import TORSIONAL_NAMES, torsional
 
 __all__ = [

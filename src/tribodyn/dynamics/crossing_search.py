@@ -109,7 +109,7 @@ def _propose(room: Array, contacts: int, start: float, sides: int, w: Array) -> 
 
 @nb.njit(**INNER)
 def begin_search(room: Array, contacts: int, start: float, end: float, sides: int, w: Array) -> Any:
-    """First place to try between ``start`` and ``end``, the last try; -1 if all keep their sides."""
+    """First place to try between ``start`` and ``end``; -1 if all keep their sides."""
     search = WIDTH * contacts
     some = False
     for j in range(contacts):

@@ -56,7 +56,7 @@ def step_plain(
 
 
 def _middle(start: Array, end: Array, first: Array, last: Array, h: float) -> Array:
-    """Quintic polynomial through position, velocity and acceleration at both ends, at its middle."""
+    """Middle of the quintic through position, velocity and acceleration at both ends."""
     n = start.size // 2
     q0, q1, v0, v1, a0, a1 = start[:n], end[:n], first[:n], last[:n], first[n:], last[n:]
     position = 0.5 * (q0 + q1) + 5.0 / 32.0 * h * (v0 - v1) + h**2 / 64.0 * (a0 + a1)

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
+from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.gear_pair import gear_contact
-from tribodyn.dynamics.system import Contact, Entry
+from tribodyn.dynamics.system import Contact
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

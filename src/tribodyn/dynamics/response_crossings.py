@@ -165,7 +165,7 @@ def _with_neighbours(crossed: Mask, after_event: Mask) -> tuple[Index, Mask]:
 
 
 def _crossing(points: _Points, step: Index, state: Array, before: Array, after: Array) -> Array:
-    """Fraction of each step at which its contacts leave their sides; 0 where that is not one place."""
+    """Fraction of each step at which its contacts leave their sides; 0 if not one place."""
     size = state.shape[1] // 2
     end = points.advance(step, np.ones(step.size), state, before)
     h = (points.compiled.grid.width[step % points.compiled.grid.steps] / points.frequency)[:, None]

@@ -17,10 +17,10 @@ class Groups(NamedTuple):
     Parameters
     ----------
     speed : array
-        ``U = eta0 u_e / (E' R)`` with the mean entrainment speed.
-    material : array
+        ``U = eta0 u_e / (E' R)`` with the mean entrainment speed, a pure number.
+    material : array [1]
         ``G = alpha E'``.
-    load : array
+    load : array [1]
         ``W = w / (E' R)``.
     equivalent_radius : array [m]
         Film thickness over dimensionless film ``H = h/R``.

@@ -53,7 +53,7 @@ def newtonian_shear_stress(
 def log_rate(
     log_viscosity: Array, film_thickness: Array, pressure_gradient: Array, eyring_stress: float
 ) -> Array:
-    """Logarithm of the stress per sliding speed, see :class:`tribodyn.ehl.shear_models.ShearModel`."""
+    """Logarithm of the stress per sliding speed, see ``ShearModel``."""
     return np.asarray(log_viscosity - np.log(film_thickness))
 
 

@@ -141,7 +141,7 @@ class PlainContact:
         squeeze: float = 0.0,
         history: float | Array = 0.0,
     ) -> Array:
-        """What the inner nodes 1 to n - 1 lose: outflow less inflow, plus the growth of the film."""
+        """What the inner nodes lose: outflow less inflow, plus the growth of the film."""
         mass = self.oil.density(P)[0] * H
         return np.asarray(np.diff(self.flux(P, H, speed)) + squeeze * mass[1:-1] - history)
 
@@ -151,7 +151,7 @@ class PlainContact:
         return np.asarray(rho * np.maximum(H, _LEAST_GAP) ** 3 * viscous / self.speed_parameter)
 
     def jacobian(self, P: Array, H: Array) -> tuple[Array, Array]:
-        """Derivatives of the steady residual: by the pressures, a full matrix, and by the offset."""
+        """Derivatives of the steady residual by the pressures (full matrix) and the offset."""
         rho, rho_slope = self.oil.density(P)
         mobility = self._mobility(P, H)
         by_gap = np.where(_LEAST_GAP < H, 3.0 * mobility / H, 0.0)

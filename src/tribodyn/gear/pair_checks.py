@@ -127,7 +127,7 @@ def _contact_ratio(mesh: MeshGeometry) -> list[Problem]:
 
 
 def fitting_center_distance(mesh: MeshGeometry) -> float | None:
-    """Least centre distance for the tooth thicknesses of a mesh, where the given one is too small."""
+    """Least centre distance for the tooth thicknesses where the given one is too small."""
     pinion, wheel, module = mesh.pinion, mesh.wheel, mesh.pinion.normal_module
     with suppress(InputError):
         if mesh.geometric_backlash >= -ROUNDING_TOLERANCE * module:

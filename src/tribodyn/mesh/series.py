@@ -82,7 +82,7 @@ def _settle_together(
     share: Array,
     where: Callable[[int, int], str],
 ) -> Carried:
-    """The same for pairs that are solved together; a share that swings to and fro is slowed down."""
+    """The same for pairs solved together; a share that swings to and fro is slowed down."""
     least = teeth.least_share * total_load
     pace, before = np.ones(share.shape), np.zeros(share.shape)
     for _ in range(_STEPS):

@@ -38,7 +38,7 @@ class Touching:
         )
 
     def scales(self, load_per_width: Array) -> dict[str, Array]:
-        """Estimates of the films that are right in every regime, but for a factor that is smooth."""
+        """Estimates of the films, right in every regime but for a factor that is smooth."""
         arguments = (
             load_per_width, self.equivalent_radius, self.entrainment_speed,
             self.lubricant.dynamic_viscosity, self.lubricant.pressure_viscosity_coefficient,

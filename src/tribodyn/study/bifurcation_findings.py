@@ -39,7 +39,7 @@ class Findings:
         return f"{len(self.axis.values)} values of {self.axis.key} {ends}"
 
     def sentences(self) -> list[str]:
-        """Tell verdicts, runaways, step limit, periods, jumps and where two motions are possible."""
+        """Tell verdicts, run-aways, step limit, periods, jumps, and where two motions exist."""
         return [
             *self._counts(), *self._lost(), *self._limit(), *self._periods(), *self._jumps(),
             *self._two(),

@@ -35,7 +35,7 @@ def model_options(section: str, name: str) -> Mapping[str, Any]:
 
 
 def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, str]) -> set[str]:
-    """Find the options of an earlier choice that a new choice of model, law or method cannot take."""
+    """Options of an earlier choice that a new model, law or method cannot take."""
     return {
         key
         for selector, name in choices.items()

@@ -58,7 +58,7 @@ def compression(samples: FineSamples) -> Array:
 
 
 def first_touch(system: System, samples: FineSamples) -> Array:
-    """Compression at which the driving flanks begin to touch; its negative is that of the others."""
+    """Compression at which the driving flanks touch; its negative is that of the others."""
     gap = system.contacts[0].gap
     values = gap(one_sided_phase(samples)) if callable(gap) else gap
     return np.broadcast_to(np.asarray(values, dtype=float), samples.phase.shape)

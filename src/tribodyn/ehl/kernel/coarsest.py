@@ -87,7 +87,7 @@ def solve_coarsest(
     right: Array, K: Array, plan: Array, rows: Array, room: Array, cH: Array, cP: Array,
     work: Any, P: Array, H: Array, state: Array,
 ) -> int:  # fmt: skip
-    """Newton's method for pressure and offset at fixed free nodes, factors kept while they serve."""
+    """Newton's method for pressure and offset at fixed free nodes; factors kept while useful."""
     a, pivot, scale, delta, film, kept = work
     first, last = -1.0, -1.0
     for _ in range(_STEPS):

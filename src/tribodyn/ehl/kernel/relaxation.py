@@ -68,7 +68,7 @@ def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band
 
 @nb.njit(**INNER)
 def solve_band(k: int, band: Array, x: Array) -> None:
-    """Gaussian elimination in the order of the nodes; ``x`` is the right side, then the solution."""
+    """Gaussian elimination in node order; ``x`` is the right side, then the solution."""
     for i in range(k):
         row = band[i]
         inverse, value = 1.0 / row[LEFT], x[i]

@@ -56,7 +56,7 @@ def contact_places(
 
 
 def extended_places(contact: PathOfContact, phase: Array, path: Array) -> ContactPlaces:
-    """Places of given pairs and of one more on each side, all of which may touch at a tip corner."""
+    """Places of given pairs and one more on each side, which may touch at a tip corner."""
     step = contact.direction * contact.pair.base_pitch
     path = np.concatenate([path[:, :1] - step, path, path[:, -1:] + step], axis=1)
     beyond = extended_contact(contact.pair, path)
