@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear.modification import FlankModification
 from tribodyn.gear.modification_checks import modification_gear_problems
 from tribodyn.gear.rack import BasicRack
@@ -15,7 +15,7 @@ from tribodyn.gear.value_checks import body_value_problems
 
 #: Stands in for a tip diameter that is not known yet; any positive value will do.
 _UNKNOWN_TIP = 1.0
-_SHARED = ("argument normal_module", "argument normal_pressure_angle")
+_SHARED = ("normal_module", "normal_pressure_angle")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,8 +68,8 @@ class GearDrawing:
     def named(self, problems: Iterable[Problem]) -> list[Problem]:
         """Name the gear in the arguments of problems."""
         return [
-            replace(problem, where=problem.where.replace("argument ", f"argument {self.name}_", 1))
-            if problem.where not in _SHARED
+            replace(problem, where=replace(place, gear=self.name))
+            if isinstance(place := problem.where, Argument) and place.name not in _SHARED
             else problem
             for problem in problems
         ]

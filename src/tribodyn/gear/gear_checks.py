@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tribodyn.errors import Problem
+from tribodyn.errors import Argument, Problem
 from tribodyn.gear.tooth_form import ToothForm
 
 #: Tip thickness over the module below which a tip counts as thin (usual limit of hardened gears).
@@ -18,7 +18,7 @@ def _tip_problem(form: ToothForm) -> Problem | None:
     if tip <= base:
         return Problem(
             what=f"tip diameter {2e3 * tip:.6g} mm",
-            where="argument tip_diameter",
+            where=Argument("tip_diameter"),
             why=f"It lies below the base circle of {2e3 * base:.6g} mm, where there is no involute",
             remedy="Increase the tip diameter or the profile shift",
         )
@@ -26,14 +26,14 @@ def _tip_problem(form: ToothForm) -> Problem | None:
         return Problem(
             what=f"the tooth is pointed: tip thickness {form.tip_thickness * 1e3:.6g} mm "
             f"at the tip diameter {2e3 * tip:.6g} mm",
-            where="argument tip_diameter",
+            where=Argument("tip_diameter"),
             why="The two flanks meet below the tip circle",
             remedy="Reduce the tip diameter or the profile shift",
         )
     if tip <= form.form_radius:
         return Problem(
             what=f"tip diameter {2e3 * tip:.6g} mm",
-            where="argument tip_diameter",
+            where=Argument("tip_diameter"),
             why=f"The fillet reaches up to {2e3 * form.form_radius:.6g} mm "
             "and leaves no involute flank",
             remedy="Increase the tip diameter, the profile shift or the number of teeth",
@@ -49,7 +49,7 @@ def _waist_problem(form: ToothForm) -> Problem | None:
         return None
     return Problem(
         what=f"profile_shift_coefficient = {form.profile_shift_coefficient:.6g}",
-        where="argument profile_shift_coefficient",
+        where=Argument("profile_shift_coefficient"),
         why=f"The undercut of a gear of {form.teeth} teeth meets in the middle of the tooth",
         remedy="Shift the gear outwards or use more teeth",
     )
@@ -63,7 +63,7 @@ def shape_problems(form: ToothForm, bore_diameter: float) -> list[Problem]:
         problems.append(
             Problem(
                 what=f"bore diameter {bore_diameter * 1e3:.6g} mm",
-                where="argument bore_diameter",
+                where=Argument("bore_diameter"),
                 why=f"The root circle has {2e3 * form.root_radius:.6g} mm",
                 remedy="Reduce the bore below the root diameter",
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from tribodyn.errors import Problem
+from tribodyn.errors import Argument, Problem
 
 if TYPE_CHECKING:
     from tribodyn.gear.flank_range import FlankRange
@@ -41,7 +41,7 @@ def _amount(name: str, value: object, low: float, high: float) -> list[Problem]:
         shown = f"{item * 1e6:.6g} um" if number else repr(item)
         limits = f"from {low * 1e6:g} to {high * 1e6:g} um"
         why = f"{name} must be finite and {limits}"
-        return [Problem(f"{name} = {shown}", f"argument {name}", why, "Check value and unit")]
+        return [Problem(f"{name} = {shown}", Argument(name), why, "Check value and unit")]
     return []
 
 
@@ -50,11 +50,11 @@ def _relief_problems(given: FlankModification) -> list[Problem]:
     for name in ("tip_relief", "root_relief"):
         length, shape = getattr(given, f"{name}_length"), getattr(given, f"{name}_shape")
         if length is not None and not (math.isfinite(length) and length > 0.0):
-            what, where = f"{name}_length = {length * 1e3:.6g} mm", f"argument {name}_length"
+            what, where = f"{name}_length = {length * 1e3:.6g} mm", Argument(f"{name}_length")
             why = "A length is finite and greater than zero"
             problems.append(Problem(what, where, why, f"Set {name} to zero for no relief"))
         if shape not in SHAPES:
-            what, where = f'{name}_shape = "{shape}"', f"argument {name}_shape"
+            what, where = f'{name}_shape = "{shape}"', Argument(f"{name}_shape")
             why = f"Allowed: {', '.join(SHAPES)}"
             problems.append(Problem(what, where, why, "Choose one of these"))
     return problems
@@ -65,13 +65,13 @@ def _pitch_problems(given: FlankModification) -> list[Problem]:
     if single and cumulative:
         what = "single_pitch_deviation and cumulative_pitch_deviation are both given"
         why = "They are two ways of saying the same thing"
-        return [Problem(what, "argument single_pitch_deviation", why, "Keep one of them")]
+        return [Problem(what, Argument("single_pitch_deviation"), why, "Keep one of them")]
     if abs(sum(single)) <= _CLOSURE:
         return []
     return [
         Problem(
             what=f"the single pitch deviations sum to {sum(single) * 1e6:.6g} um",
-            where="argument single_pitch_deviation",
+            where=Argument("single_pitch_deviation"),
             why="Round the gear all pitches together make one turn, so that they sum to zero",
             remedy="Subtract their mean, or give cumulative_pitch_deviation",
         )
@@ -88,7 +88,7 @@ def modification_value_problems(given: FlankModification) -> list[Problem]:
     problems += _amount("run_out", given.run_out, 0.0, LARGEST_RUN_OUT)
     if not math.isfinite(given.run_out_phase):
         what, why = f"run_out_phase = {given.run_out_phase}", "An angle is finite"
-        problems.append(Problem(what, "argument run_out_phase", why, "Give it in radians"))
+        problems.append(Problem(what, Argument("run_out_phase"), why, "Give it in radians"))
     problems += _relief_problems(given)
     return problems or _pitch_problems(given)
 
@@ -98,7 +98,7 @@ def modification_gear_problems(given: FlankModification, teeth: int) -> list[Pro
     return [
         Problem(
             what=f"{name} has {len(getattr(given, name))} entries",
-            where=f"argument modification.{name}",
+            where=Argument(f"modification.{name}"),
             why=f"The gear has {teeth} teeth, and each tooth has its own",
             remedy=f"Give {teeth} values",
         )
@@ -116,7 +116,7 @@ def _length_problems(name: str, given: FlankModification, flank: FlankRange) -> 
         problems.append(
             Problem(
                 what=f"{end}_length = {length * 1e3:.6g} mm of the {name}",
-                where=f"argument {name}_modification.{end}_length",
+                where=Argument(f"modification.{end}_length", name),
                 why=f"The relief is longer than the used flank of {flank.length * 1e3:.6g} mm roll "
                 "length, which is the length of the path of contact",
                 remedy="Reduce it; without it the relief ends where the number of tooth pairs "
@@ -129,7 +129,7 @@ def _length_problems(name: str, given: FlankModification, flank: FlankRange) -> 
 def _map_problems(
     name: str, chart: ProfileMap, gear: SpurGear, flank: FlankRange, face_width: float
 ) -> list[Problem]:
-    problems, where = [], f"argument {name}_modification.profile_map"
+    problems, where = [], Argument("modification.profile_map", name)
     low, high = chart.limits(gear.base_radius)
     slack = _SLACK * flank.length
     if low > flank.lowest + slack or high < flank.highest - slack:

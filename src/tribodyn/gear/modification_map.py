@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.types import Array
 
 #: What the profile of a map may be measured over.
@@ -150,7 +150,7 @@ def _floats(values: Sequence[float]) -> tuple[float, ...]:
 
 
 def _problem(what: str, why: str, remedy: str = "Correct the map") -> Problem:
-    return Problem(what, "argument profile_map", why, remedy)
+    return Problem(what, Argument("profile_map"), why, remedy)
 
 
 def _name_problems(chart: ProfileMap) -> list[Problem]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear.mesh_geometry import MeshGeometry
 from tribodyn.gear.pair_geometry import zero_backlash_center_distance
 from tribodyn.gear.tooth_form import ToothForm
@@ -24,7 +24,7 @@ def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Pro
         problems.append(
             Problem(
                 what=f"the pinion has {pinion.teeth} teeth, the wheel {wheel.teeth}",
-                where="argument pinion_teeth",
+                where=Argument("teeth", "pinion"),
                 why="The pinion is the gear with fewer teeth, whichever drives",
                 remedy='Exchange the two gears and set driver to "wheel" if the larger one drives',
             )
@@ -39,7 +39,7 @@ def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Pro
                 Problem(
                     what=f"{name} = {values[0] * factor:.6g} {unit} on the pinion and "
                     f"{values[1] * factor:.6g} {unit} on the wheel",
-                    where=f"argument {name}",
+                    where=Argument(name),
                     why="Gears in mesh have the same base pitch",
                     remedy="Give both gears the same value",
                 )
@@ -48,7 +48,7 @@ def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Pro
         problems.append(
             Problem(
                 what=f'driver = "{driver}"',
-                where="argument driver",
+                where=Argument("driver"),
                 why='One of the two gears drives: "pinion" or "wheel"',
                 remedy='Write "pinion" or "wheel"',
             )
@@ -84,7 +84,7 @@ def _interference(mesh: MeshGeometry) -> list[Problem]:
             Problem(
                 what=f"interference: the tip diameter of the {mate_name} is "
                 f"{mate.tip_diameter * 1e3:.6g} mm",
-                where=f"argument {mate_name}_tip_diameter",
+                where=Argument("tip_diameter", mate_name),
                 why=why,
                 remedy=f"Reduce it to {largest:.6g} mm or less, or shift the {name} outwards",
             )
@@ -103,7 +103,7 @@ def _clearance(mesh: MeshGeometry) -> list[Problem]:
             problems.append(
                 Problem(
                     what=f"the bottom clearance at the {name}'s tip is {clearance * 1e3:.6g} mm",
-                    where=f"argument {name}_tip_diameter",
+                    where=Argument("tip_diameter", name),
                     why=f"Tip diameter {gear.tip_diameter * 1e3:.6g} mm and the {mate_name}'s root "
                     f"diameter {2e3 * mate.root_radius:.6g} mm overlap at the centre distance "
                     f"{mesh.center_distance * 1e3:.6g} mm",
@@ -147,7 +147,7 @@ def too_close(mesh: MeshGeometry, fitting: float) -> Problem:
     return Problem(
         what=f"the centre distance must be at least {fitting * 1e3:.6g} mm for these tooth "
         f"thicknesses; {mesh.center_distance * 1e3:.6g} mm is given and the flanks interfere",
-        where="argument center_distance",
+        where=Argument("center_distance"),
         why=f"Both flanks touch at {fitting * 1e3:.6g} mm already",
         remedy="Increase the centre distance or reduce a profile shift",
     )

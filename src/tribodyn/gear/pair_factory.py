@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
 from tribodyn.gear.drawing import GearDrawing
 from tribodyn.gear.gear_checks import shape_problems
 from tribodyn.gear.mesh_geometry import MeshGeometry
@@ -42,7 +42,7 @@ def _play_problems(
         Problem(
             what=f"backlash = {backlash * 1e3:.6g} mm and {drawing.name}_tooth_thinning = "
             f"{drawing.tooth_thinning * 1e3:.6g} mm",
-            where="argument backlash",
+            where=Argument("backlash"),
             why="Both set the play between the flanks",
             remedy="Give one of them",
         )
@@ -73,7 +73,7 @@ def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
         raise InputError(
             Problem(
                 what=f"backlash = {backlash * 1e3:.6g} mm",
-                where="argument backlash",
+                where=Argument("backlash"),
                 why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
                 f"mm leave {play * 1e3:.6g} mm already",
                 remedy="Leave the backlash out, or reduce the centre distance",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_positive
 from tribodyn.gear.involute import inverse_involute, involute
 
 
@@ -50,7 +50,7 @@ def operating_pressure_angle(
         raise InputError(
             Problem(
                 what=f"center_distance = {center_distance * 1e3:.6g} mm",
-                where="argument center_distance",
+                where=Argument("center_distance"),
                 why="It must exceed the sum of the base radii, "
                 f"{cosine * center_distance * 1e3:.6g} mm",
                 remedy=f"The reference centre distance is {reference * 1e3:.6g} mm",
@@ -101,7 +101,7 @@ def zero_backlash_center_distance(
         raise InputError(
             Problem(
                 what=f"sum of the profile shift coefficients = {shift_sum:.6g}",
-                where="argument profile_shift_coefficient",
+                where=Argument("profile_shift_coefficient"),
                 why=f"No centre distance without play exists below a sum of {least:.6g}",
                 remedy="Increase a shift, or give the centre distance",
             )

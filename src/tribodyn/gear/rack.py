@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class BasicRack:
         problems = [
             Problem(
                 what=f"{name} = {value:.6g}",
-                where=f"argument {name}",
+                where=Argument(name),
                 why="It must be finite and " + ("not negative" if zero else "greater than zero"),
                 remedy="ISO 53 profile A has 1.0, 1.25 and 0.38",
             )

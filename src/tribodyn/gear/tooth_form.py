@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear.form_circle import form_point
 from tribodyn.gear.involute import involute
 from tribodyn.gear.rack import BasicRack
@@ -163,7 +163,7 @@ class ToothForm:
             raise InputError(
                 Problem(
                     what=f"radius = {radius * 1e3:.6g} mm",
-                    where="argument radius",
+                    where=Argument("radius"),
                     why=f"The involute begins at the base radius {base * 1e3:.6g} mm",
                     remedy="Use half_tooth for points of the fillet",
                 )

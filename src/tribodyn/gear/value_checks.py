@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from tribodyn.errors import Problem
+from tribodyn.errors import Argument, Problem
 
 if TYPE_CHECKING:
     from tribodyn.gear.tooth_form import ToothForm
@@ -28,7 +28,7 @@ def _out_of_range(
     return [
         Problem(
             what=f"{name} = {shown}",
-            where=f"argument {name}",
+            where=Argument(name),
             why=f"{name} must be finite, {bound} {unit}".rstrip(),
             remedy="Check the value and its unit",
         )
@@ -45,7 +45,7 @@ def _teeth(teeth: int) -> list[Problem]:
         problems = [
             Problem(
                 what=f"teeth = {teeth:g}",
-                where="argument teeth",
+                where=Argument("teeth"),
                 why="A gear has a whole number of teeth",
                 remedy=f"Use {math.floor(teeth + 0.5)}",
             )
@@ -62,7 +62,7 @@ def _rack(form: ToothForm) -> list[Problem]:
         return [
             Problem(
                 what=f"dedendum_coefficient = {rack.dedendum_coefficient:.6g}",
-                where="argument rack",
+                where=Argument("rack"),
                 why=f"The flanks of the rack meet at a depth of {limit:.6g} modules",
                 remedy="Reduce the dedendum or the pressure angle",
             )
@@ -72,7 +72,7 @@ def _rack(form: ToothForm) -> list[Problem]:
         return [
             Problem(
                 what=f"tip_radius_coefficient = {rack.tip_radius_coefficient:.6g}",
-                where="argument rack",
+                where=Argument("rack"),
                 why=f"The tip round is {depth:.6g} modules high, more than the dedendum "
                 f"of {rack.dedendum_coefficient:.6g} modules",
                 remedy="Reduce the tip radius",
@@ -87,7 +87,7 @@ def _root(form: ToothForm) -> list[Problem]:
     return [
         Problem(
             what=f"profile_shift_coefficient = {form.profile_shift_coefficient:.6g}",
-            where="argument profile_shift_coefficient",
+            where=Argument("profile_shift_coefficient"),
             why=f"The rack would cut through the axis: root radius {form.root_radius * 1e3:.6g} mm",
             remedy="Increase the shift or the number of teeth",
         )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, ModelOption, Problem, require_between
 from tribodyn.gear import Material, SpurGear, half_tooth
 from tribodyn.stiffness.analytic_beam import beam_to_axis
 from tribodyn.stiffness.analytic_nodes import flank_nodes
@@ -152,7 +152,7 @@ def _check_foundation(foundation: str) -> None:
         raise InputError(
             Problem(
                 what=f'foundation = "{foundation}"',
-                where="stiffness option foundation",
+                where=ModelOption("stiffness", name="foundation"),
                 why="A tooth stands on the ring, or on the formula that was fitted to rings",
                 remedy='Write "ring" or "sainsot"',
             )

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.types import Array, Mask
@@ -60,7 +60,7 @@ def fourier_mesh_stiffness(
         raise InputError(
             Problem(
                 what="a coefficient of the Fourier series is not a finite number",
-                where="fourier stiffness: cosine, sine",
+                where=ModelOption("stiffness", "fourier", "cosine, sine"),
                 remedy="Give every coefficient in N/m",
             )
         )
@@ -71,7 +71,7 @@ def fourier_mesh_stiffness(
             Problem(
                 what=f"the mesh stiffness is {least.min():.4g} N/m at phase "
                 f"{scan[least.argmin()]:.3f}",
-                where="fourier stiffness",
+                where=ModelOption("stiffness", "fourier"),
                 why="A mesh in contact has a positive stiffness over the whole cycle",
                 remedy=f"Raise mean_stiffness = {mean_stiffness:g} N/m or lower the coefficients",
             )
@@ -100,7 +100,7 @@ def _model(
         raise InputError(
             Problem(
                 what="mean_stiffness not given",
-                where="fourier stiffness",
+                where=ModelOption("stiffness", "fourier"),
                 why="The series needs its mean",
                 remedy='Give for example mean_stiffness = "2.5e8 N/m"',
             )

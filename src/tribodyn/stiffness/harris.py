@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded import loaded_contact
 from tribodyn.stiffness.loaded.gaps import mesh_period, slice_widths
@@ -144,7 +144,7 @@ def increasing_torques(torque: ArrayLike) -> Array:
         raise InputError(
             Problem(
                 what=f"torque has the shape {torques.shape}",
-                where="argument torque",
+                where=Argument("torque"),
                 why="It is one value or a list of values",
                 remedy="Give a list of torques in N*m",
             )
@@ -260,7 +260,7 @@ def _orders(harmonics: int | None, phases: int) -> int:
         raise InputError(
             Problem(
                 what=f"harmonics = {harmonics}",
-                where="argument harmonics",
+                where=Argument("harmonics"),
                 why=f"{phases} phases of a mesh cycle show 1 to {most} harmonics",
                 remedy="Give more phases, for example phases=64",
             )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ class GearInfluence:
             raise InputError(
                 Problem(
                     what="neighbour = 0",
-                    where="argument neighbour",
+                    where=Argument("neighbour"),
                     why="The displacement of the loaded tooth has a local part",
                     remedy="Use the self compliance, and add the compression of the contact",
                 )
@@ -168,7 +168,7 @@ class GearInfluence:
                 Problem(
                     what=f"radius of curvature {places.min() * 1e3:.6g} to "
                     f"{places.max() * 1e3:.6g} mm",
-                    where="argument curvature_radius",
+                    where=Argument("curvature_radius"),
                     why=f"The compliance is known from {low * 1e3:.6g} to {high * 1e3:.6g} mm, "
                     "from the end of the fillet to the tip",
                     remedy="Load the tooth on its involute",

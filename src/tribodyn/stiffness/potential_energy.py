@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
-from tribodyn.errors import ComputationError, Problem, require_positive
+from tribodyn.errors import ComputationError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.analytic_nodes import flank_nodes
 from tribodyn.stiffness.influence import GearInfluence
@@ -230,7 +230,7 @@ def potential_energy_stiffness(
     raise ComputationError(
         Problem(
             what=f"the load share still changes by {change:.2g} after {_PASSES} passes",
-            where="potential-energy stiffness",
+            where=ModelOption("stiffness", "potential-energy"),
             why=f"It must settle to {_TOLERANCE:g}",
             remedy="Check the load; the local compression formula may be outside its range",
         )

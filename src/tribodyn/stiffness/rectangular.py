@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.types import Array, Mask
@@ -91,7 +91,7 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
         raise InputError(
             Problem(
                 what=f"pair_stiffness = {pair_stiffness:g} N/m and {listing} are both given",
-                where="rectangular stiffness",
+                where=ModelOption("stiffness", "rectangular"),
                 why="They are two ways of saying the same thing",
                 remedy="Keep pair_stiffness, or the two mesh values, not both",
             )
@@ -101,7 +101,7 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
         raise InputError(
             Problem(
                 what=f"{missing} not given" + (f" although {listing} is" if given else ""),
-                where="rectangular stiffness",
+                where=ModelOption("stiffness", "rectangular"),
                 why="The model needs pair_stiffness, or both mesh values",
                 remedy='Give for example pair_stiffness = "2e8 N/m"',
             )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.stiffness.monotone import monotone_cubic
@@ -70,7 +70,7 @@ def tabulated_stiffness(
         raise InputError(
             Problem(
                 what=f"the table covers {name} {x[0]:.6g} to {x[-1]:.6g} {unit}".rstrip(),
-                where=f"table stiffness: {name}",
+                where=ModelOption("stiffness", "table", name),
                 why=f"The mesh needs {low:.6g} to {high:.6g} {unit}".rstrip(),
                 remedy="Extend the table to the whole contact; nothing is extrapolated",
             )
@@ -84,7 +84,7 @@ def _shape_problems(x: Array, y: Array, name: str) -> list[Problem]:
     return [
         Problem(
             what=f"{name} has shape {x.shape}, the stiffness has shape {y.shape}",
-            where="table stiffness",
+            where=ModelOption("stiffness", "table"),
             why="A table is two lists of equal length with at least two values",
             remedy="Give one stiffness for every entry of the abscissa",
         )
@@ -97,7 +97,7 @@ def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
         return [
             Problem(
                 what=f"entry {bad[0] + 1} of {name} is {x[bad[0]]}",
-                where=f"table stiffness: {name}",
+                where=ModelOption("stiffness", "table", name),
                 why="Every entry must be a finite number",
                 remedy="Remove or correct the row",
             )
@@ -109,7 +109,7 @@ def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
         return [
             Problem(
                 what=f"{text} at entry {first + 2} of {name}",
-                where=f"table stiffness: {name}",
+                where=ModelOption("stiffness", "table", name),
                 why=f"{name} must increase strictly",
                 remedy="Sort the table and remove repeated rows",
             )
@@ -139,7 +139,7 @@ def _model(
     raise InputError(
         Problem(
             what=f"given: {', '.join(sorted(given)) or 'nothing'}",
-            where="table stiffness",
+            where=ModelOption("stiffness", "table"),
             why="A table is phase with mesh_stiffness, or roll_angle (of the driving gear) with "
             "pair_stiffness",
             remedy="Give one of the two forms, complete and alone",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import SpurPair, default_relief_length, flank_ranges
 from tribodyn.gear.modification_checks import LARGEST_AMOUNT
 from tribodyn.stiffness.harris import increasing_torques
@@ -29,7 +29,7 @@ def check_choices(grid: tuple[int, int], **chosen: str) -> None:
     problems = [
         Problem(
             what=f'{name} = "{value}"',
-            where=f"argument {name}",
+            where=Argument(name),
             why=f"Allowed: {', '.join(_CHOICES[name])}",
             remedy="Choose one of these",
         )
@@ -39,7 +39,7 @@ def check_choices(grid: tuple[int, int], **chosen: str) -> None:
     if len(grid) != 2 or min(grid) < 2:
         why = "The map has at least two amounts and two lengths"
         problems.append(
-            Problem(f"grid = {grid}", "argument grid", why, "Give for example (17, 11)")
+            Problem(f"grid = {grid}", Argument("grid"), why, "Give for example (17, 11)")
         )
     if problems:
         raise InputError(problems)
@@ -60,7 +60,7 @@ def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Ar
         raise InputError(
             Problem(
                 what=f"weight = {weights.tolist()}",
-                where="argument weight",
+                where=Argument("weight"),
                 why="There is one weight for each torque, none negative and not all zero",
                 remedy=f"Give {given.size} weights for {given.size} different torques",
             )
@@ -87,12 +87,12 @@ def relief_axes(
     if not 0.0 <= amount[0] < amount[1] <= LARGEST_AMOUNT:
         shown = " to ".join(f"{value * 1e6:.6g}" for value in amount)
         why = f"Amounts increase, from zero or more to at most {LARGEST_AMOUNT * 1e6:g} um"
-        where = "argument amount"
+        where = Argument("amount")
         problems.append(Problem(f"amount = {shown} um", where, why, "Check values and unit"))
     if not 0.0 < length[0] < length[1] <= flank * (1.0 + 1e-9):
         shown = " to ".join(f"{value * 1e3:.6g}" for value in length)
         why = f"Lengths increase, above zero and up to the used flank of {flank * 1e3:.6g} mm"
-        where = "argument length"
+        where = Argument("length")
         problems.append(Problem(f"length = {shown} mm", where, why, "Search shorter reliefs"))
     if problems:
         raise InputError(problems)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_positive
 from tribodyn.gear import Material
 from tribodyn.stiffness.monotone import monotone_cubic
 from tribodyn.types import Array
@@ -136,7 +136,7 @@ def _checked(
         raise InputError(
             Problem(
                 what="the height of the tooth outline does not increase",
-                where="argument outline",
+                where=Argument("outline"),
                 why="The beam runs from the foot to the tip",
                 remedy="Give the outline from the foot upwards without repeated points",
             )
@@ -146,7 +146,7 @@ def _checked(
         raise InputError(
             Problem(
                 what=f"load at heights {np.min(height) * 1e3:.6g} to {np.max(height) * 1e3:.6g} mm",
-                where="argument height",
+                where=Argument("height"),
                 why=f"The tooth reaches from {knots[0] * 1e3:.6g} to {knots[-1] * 1e3:.6g} mm",
                 remedy="Load the tooth on its flank",
             )

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurGear, half_tooth
 from tribodyn.stiffness.load_point import LoadPoint
 from tribodyn.stiffness.sainsot import LARGEST_RATIO, sainsot_compliance
@@ -51,7 +51,7 @@ def check_reference(reference: str) -> None:
         raise InputError(
             Problem(
                 what=f'reference = "{reference}"',
-                where="stiffness option reference",
+                where=ModelOption("stiffness", name="reference"),
                 why="The body of each gear is held at its bore or under its rim",
                 remedy='Write "bore" or "rim"',
             )

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from tribodyn.compiled import source_digest
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.fe2d.cache import load_arrays, store_arrays
 from tribodyn.stiffness.fe2d.compliances import (
@@ -91,7 +91,7 @@ def fe2d_influence(
         raise InputError(
             Problem(
                 what=f"neighbours = {neighbours}",
-                where="argument neighbours",
+                where=Argument("neighbours"),
                 why="Teeth in contact at the same time move one another",
                 remedy="Give 1 or more",
             )

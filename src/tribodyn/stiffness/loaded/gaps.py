@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import SpurPair, flank_gap, hunting_period, pitch_gap, run_out_gap
 from tribodyn.stiffness.loaded.places import FAR, ContactPlaces
 from tribodyn.types import Array
@@ -28,7 +28,7 @@ def slice_widths(pair: SpurPair, slices: int | None) -> Array:
         raise InputError(
             Problem(
                 what=f"slices = {count}",
-                where="argument slices",
+                where=Argument("slices"),
                 why=f"The face width is cut into 1 to {_MOST_SLICES} slices",
                 remedy="Leave it out: 21 are taken where flanks vary over the face width",
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.types import Array
 
 
@@ -15,7 +15,7 @@ def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: in
         raise InputError(
             Problem(
                 what="mesh phases that are not evenly spaced",
-                where="argument phases",
+                where=Argument("phases"),
                 why="Harmonics need evenly spaced phases over whole mesh cycles",
                 remedy="Give the number of phases of a mesh cycle instead",
             )
@@ -24,7 +24,7 @@ def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: in
         raise InputError(
             Problem(
                 what=f"count = {count}",
-                where="argument count",
+                where=Argument("count"),
                 why=f"{phase.size // mesh_cycles} phases of a mesh cycle have less than half as "
                 "many harmonics",
                 remedy="Give more phases, for example phases=64",

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded.gaps import slice_gaps, slice_widths
 from tribodyn.stiffness.loaded.local import local_coefficients
@@ -187,7 +187,7 @@ def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
         raise InputError(
             Problem(
                 what=f"phases = {phases}",
-                where="argument phases",
+                where=Argument("phases"),
                 why="A mesh cycle needs at least 8 phases",
                 remedy="Give for example phases=64",
             )
