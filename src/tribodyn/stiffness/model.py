@@ -16,7 +16,7 @@ import numpy as np
 from tribodyn.errors import ComputationError, InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.registry import Registry
-from tribodyn.stiffness.influence import GearInfluence
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 

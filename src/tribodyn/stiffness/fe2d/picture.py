@@ -9,10 +9,9 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Material, SpurGear
-from tribodyn.stiffness.fe2d.compliances import held_radius, wind_up_to_take_off
-from tribodyn.stiffness.fe2d.element import plane_stress
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
-from tribodyn.stiffness.fe2d.ring import Ring
+from tribodyn.stiffness.fe2d.provider import held_radius, wind_up_to_take_off
+from tribodyn.stiffness.fe2d.ring import Ring, plane_stress
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
 from tribodyn.types import Array
 

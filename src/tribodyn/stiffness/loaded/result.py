@@ -3,16 +3,146 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.gear import SpurPair
-from tribodyn.stiffness.loaded.root_loads import RootLoads, root_loads
+from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.gear import SpurGear, SpurPair, half_tooth
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.stiffness.teeth.load_point import load_point
 from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     import xarray
+
+
+class RootLoads(NamedTuple):
+    """Loads at the feet of the teeth of both gears, (..., p, n) each.
+
+    Parameters
+    ----------
+    pinion_bending_moment, wheel_bending_moment : array [N*m]
+        About the middle of the foot, positive where the loaded flank is in tension.
+    pinion_shear_force, wheel_shear_force : array [N]
+        Across the axis of the tooth.
+    pinion_compressive_force, wheel_compressive_force : array [N]
+        Along the axis of the tooth, towards the gear centre.
+    """
+
+    pinion_bending_moment: Array
+    wheel_bending_moment: Array
+    pinion_shear_force: Array
+    wheel_shear_force: Array
+    pinion_compressive_force: Array
+    wheel_compressive_force: Array
+
+
+def root_loads(result: LoadedContact) -> RootLoads:
+    """Carry the normal force of every pair to the feet of its two teeth.
+
+    Parameters
+    ----------
+    result : LoadedContact
+        Loaded tooth contact.
+
+    Returns
+    -------
+    RootLoads
+
+    Notes
+    -----
+    The foot is the height at which the fillet meets the root circle, the lowest section of the
+    tooth; the force crosses the axis of the tooth at the height ``h``:
+    ``M = F cos(a) (h - h_foot)``, ``Q = F cos(a)``, ``N = F sin(a)``. Without friction. Source:
+    statics; the lever of ISO 6336-3 is that of the 30 degree tangent, a little higher.
+    """
+    pair = result.gear_pair
+    found = [
+        _foot(gear, radius, result.normal_force)
+        for gear, radius in (
+            (pair.pinion, result.pinion_curvature_radius),
+            (pair.wheel, result.wheel_curvature_radius),
+        )
+    ]
+    return RootLoads(*(part for both in zip(*found, strict=True) for part in both))
+
+
+def _foot(gear: SpurGear, curvature_radius: Array, force: Array) -> tuple[Array, Array, Array]:
+    load = load_point(gear, curvature_radius)
+    lever = load.axis_height - half_tooth(gear)[0][0]
+    across = force * np.cos(load.load_angle)
+    return across * lever, across, force * np.sin(load.load_angle)
+
+
+def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: int) -> Array:
+    """Peak amplitudes of the orders 1, 2, ... of the mesh frequency."""
+    even = np.arange(phase.size) * (mesh_cycles / phase.size) + phase[0]
+    if not np.allclose(phase, even, rtol=0.0, atol=1e-9):
+        raise InputError(
+            Problem(
+                what="mesh phases that are not evenly spaced",
+                where=Argument("phases"),
+                why="Harmonics need evenly spaced phases over whole mesh cycles",
+                remedy="Give the number of phases of a mesh cycle instead",
+            )
+        )
+    if not 1 <= count < phase.size / (2 * mesh_cycles):
+        raise InputError(
+            Problem(
+                what=f"count = {count}",
+                where=Argument("count"),
+                why=f"{phase.size // mesh_cycles} phases of a mesh cycle have less than half as "
+                "many harmonics",
+                remedy="Give more phases, for example phases=64",
+            )
+        )
+    spectrum = 2.0 * np.abs(np.fft.rfft(values, axis=-1)) / phase.size
+    return np.asarray(spectrum[..., mesh_cycles * np.arange(1, count + 1)])
+
+
+#: Array -> its last dimensions and its quantity in the nomenclature.
+_ARRAYS: dict[str, tuple[tuple[str, ...], str]] = {
+    "transmission_error": (("phase",), "static_transmission_error"),
+    "deflection": (("phase",), "static_transmission_error"),
+    "mesh_stiffness_secant": (("phase",), "mesh_stiffness_secant"),
+    "mesh_stiffness_tangent": (("phase",), "mesh_stiffness_tangent"),
+    "normal_force": (("phase", "pair"), "normal_force"),
+    "load_share": (("phase", "pair"), "load_share"),
+    "pair_deflection": (("phase", "pair"), "static_transmission_error"),
+    "load_per_width": (("phase", "slice", "pair"), "load_per_width"),
+}
+_PLACES: dict[str, str] = {
+    "path": "path",
+    "gap": "static_transmission_error",
+    "pinion_curvature_radius": "curvature_radius",
+    "wheel_curvature_radius": "curvature_radius",
+}
+
+
+def to_xarray(result: LoadedContact) -> xarray.Dataset:
+    """Convert a loaded tooth contact to a labelled data set with units."""
+    import xarray
+
+    before = ("torque",) * result.torque.ndim
+    variables: dict[str, Any] = {
+        name: ((*before, *dimensions), getattr(result, name), _describe(quantity))
+        for name, (dimensions, quantity) in _ARRAYS.items()
+    }
+    for name, quantity in _PLACES.items():
+        variables[name] = (("phase", "pair"), getattr(result, name), _describe(quantity))
+    coordinates: dict[str, Any] = {
+        "phase": ("phase", result.phase, _describe("mesh_phase")),
+        "pair": ("pair", result.number),
+        "torque": (before, result.torque, _describe("torque")),
+    }
+    made = {"provider": result.provider, "reference": result.reference}
+    return xarray.Dataset(variables, coordinates, made)
+
+
+def _describe(quantity: str) -> dict[str, str]:
+    found = QUANTITIES[quantity]
+    return {"units": found.unit or "1", "long_name": found.meaning}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -133,8 +263,6 @@ class LoadedContact:
         InputError
             If there are too few phases, or they are not evenly spaced.
         """
-        from tribodyn.stiffness.loaded.harmonics import harmonic_amplitudes
-
         return harmonic_amplitudes(self.phase, self.transmission_error, self.mesh_cycles, count)
 
     @property
@@ -149,8 +277,6 @@ class LoadedContact:
         -------
         xarray.Dataset
         """
-        from tribodyn.stiffness.loaded.dataset import to_xarray
-
         return to_xarray(self)
 
     def plot(self) -> Any:

@@ -2,24 +2,226 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.loaded.gaps import mesh_period, slice_widths
-from tribodyn.stiffness.loaded.prepare import NO_OPTIONS, phases_of
-from tribodyn.stiffness.model import MODELS
-from tribodyn.stiffness.tip_relief_bounds import (
-    check_choices,
-    relief_axes,
-    torques_and_weights,
+from tribodyn.errors import Argument, InputError, ModelWarning, Problem
+from tribodyn.gear import (
+    FlankModification,
+    Material,
+    SpurGear,
+    SpurPair,
+    default_relief_length,
+    flank_ranges,
+    profile_gap,
 )
-from tribodyn.stiffness.tip_relief_mesh import relief_mesh, with_tip_relief
-from tribodyn.stiffness.tip_relief_result import TipReliefOptimum
+from tribodyn.gear.modification_checks import LARGEST_AMOUNT
+from tribodyn.stiffness.loaded.contact import NO_OPTIONS, contact_problem, phases_of
+from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
+from tribodyn.stiffness.loaded.problem import ContactProblem
+from tribodyn.stiffness.model import MODELS
+from tribodyn.stiffness.tip_relief.harris import increasing_torques
+from tribodyn.stiffness.tip_relief.result import TipReliefOptimum
 from tribodyn.types import Array
+
+#: Torques of a range that is given by its ends.
+_TORQUES = 5
+#: Lengths searched by default, over that where the number of pairs changes.
+_LENGTHS = (0.2, 2.0)
+#: Amounts searched by default, over the mean deflection under the greatest torque.
+_AMOUNT = 2.0
+_CHOICES = {
+    "gears": ("both", "pinion", "wheel"),
+    "shape": ("linear", "parabolic"),
+    "objective": ("largest", "mean"),
+}
+
+
+def check_choices(grid: tuple[int, int], **chosen: str) -> None:
+    """Refuse words that are not known, and a map without points."""
+    problems = [
+        Problem(
+            what=f'{name} = "{value}"',
+            where=Argument(name),
+            why=f"Allowed: {', '.join(_CHOICES[name])}",
+            remedy="Choose one of these",
+        )
+        for name, value in chosen.items()
+        if value not in _CHOICES[name]
+    ]
+    if len(grid) != 2 or min(grid) < 2:
+        why = "The map has at least two amounts and two lengths"
+        problems.append(
+            Problem(f"grid = {grid}", Argument("grid"), why, "Give for example (17, 11)")
+        )
+    if problems:
+        raise InputError(problems)
+
+
+def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Array, Array]:
+    """Torques of a range and their weights."""
+    given = np.atleast_1d(np.asarray(torque, dtype=float))
+    ordered = increasing_torques(given)
+    torques = ordered
+    if ordered.size == 2:
+        torques = np.linspace(ordered[0], ordered[1], _TORQUES)
+    if weight is None:
+        return torques, np.full(torques.size, 1.0 / torques.size)
+    weights = np.atleast_1d(np.asarray(weight, dtype=float))
+    fits = weights.shape == given.shape == ordered.shape and np.all(weights >= 0.0)
+    if not (fits and 0.0 < weights.sum() < np.inf):
+        raise InputError(
+            Problem(
+                what=f"weight = {weights.tolist()}",
+                where=Argument("weight"),
+                why="There is one weight for each torque, none negative and not all zero",
+                remedy=f"Give {given.size} weights for {given.size} different torques",
+            )
+        )
+    spread = np.interp(torques, ordered, weights[np.argsort(given)])
+    return torques, spread / spread.sum()
+
+
+def relief_axes(
+    pair: SpurPair,
+    amount: tuple[float, float] | None,
+    length: tuple[float, float] | None,
+    deflection: float,
+    grid: tuple[int, int],
+) -> list[Array]:
+    """Amounts and lengths of the map, from the least to the greatest that are searched."""
+    flank = flank_ranges(pair)[0].length
+    if amount is None:
+        amount = (0.0, min(_AMOUNT * deflection, LARGEST_AMOUNT))
+    if length is None:
+        usual = default_relief_length(pair)
+        length = (_LENGTHS[0] * usual, min(_LENGTHS[1] * usual, flank))
+    problems = []
+    if not 0.0 <= amount[0] < amount[1] <= LARGEST_AMOUNT:
+        shown = " to ".join(f"{value * 1e6:.6g}" for value in amount)
+        why = f"Amounts increase, from zero or more to at most {LARGEST_AMOUNT * 1e6:g} um"
+        where = Argument("amount")
+        problems.append(Problem(f"amount = {shown} um", where, why, "Check values and unit"))
+    if not 0.0 < length[0] < length[1] <= flank * (1.0 + 1e-9):
+        shown = " to ".join(f"{value * 1e3:.6g}" for value in length)
+        why = f"Lengths increase, above zero and up to the used flank of {flank * 1e3:.6g} mm"
+        where = Argument("length")
+        problems.append(Problem(f"length = {shown} mm", where, why, "Search shorter reliefs"))
+    if problems:
+        raise InputError(problems)
+    return [np.linspace(*ends, count) for ends, count in zip((amount, length), grid, strict=True)]
+
+
+def with_tip_relief(
+    pair: SpurPair, amount: float, length: float, *, gears: str = "both", shape: str = "linear"
+) -> SpurPair:
+    """Give a pair a tip relief; everything else that its flanks have stays.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position.
+    amount : float [m]
+        Material taken away at the tip; zero for no relief.
+    length : float [m]
+        Roll length of the relief.
+    gears : str
+        ``"both"``, ``"pinion"`` or ``"wheel"``.
+    shape : str
+        ``"linear"`` or ``"parabolic"``.
+
+    Returns
+    -------
+    SpurPair
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the relief longer than the flank.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
+    >>> with_tip_relief(pair, 10e-6, 2e-3, gears="wheel").wheel.modification
+    FlankModification(tip_relief 10 um, tip_relief_length 2 mm)
+    """
+    changed: dict[str, Any] = {}
+    for name in _named(gears):
+        gear = getattr(pair, name)
+        relief = replace(
+            gear.modification,
+            tip_relief=amount,
+            tip_relief_length=length if amount > 0.0 else None,
+            tip_relief_shape=shape if amount > 0.0 else "linear",
+        )
+        changed[name] = _shaped(gear, relief)
+    with warnings.catch_warnings():
+        # What is to be said of the teeth was said when the pair was made.
+        warnings.simplefilter("ignore", ModelWarning)
+        return replace(pair, **changed)
+
+
+def _named(gears: str) -> tuple[str, ...]:
+    return ("pinion", "wheel") if gears == "both" else (gears,)
+
+
+def _shaped(gear: SpurGear, modification: FlankModification) -> SpurGear:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        return replace(gear, modification=modification)
+
+
+@dataclass(frozen=True, eq=False)
+class ReliefMesh:
+    """The loaded tooth contact of a pair without the relief that is searched."""
+
+    pair: SpurPair  #: the pair
+    gears: str
+    shape: str
+    problems: list[ContactProblem]
+    totals: list[Array]  #: normal forces of each problem, increasing [N]
+
+    def error(self, amount: float, length: float) -> Array:
+        """Transmission error with a relief."""
+        gap = self._gap(amount, length) if amount > 0.0 else 0.0
+        rows = [
+            replace(problem, gaps=problem.gaps + gap).at_loads(totals).approach
+            for problem, totals in zip(self.problems, self.totals, strict=True)
+        ]
+        return np.concatenate(rows)
+
+    def _gap(self, amount: float, length: float) -> Array:
+        """What the relief adds to the gaps (p, 1, n) [m]."""
+        places = self.problems[0].places
+        gap = np.zeros(places.path.shape)
+        alone = FlankModification(
+            tip_relief=amount, tip_relief_length=length, tip_relief_shape=self.shape
+        )
+        for name, flank in zip(("pinion", "wheel"), flank_ranges(self.pair), strict=True):
+            if name in _named(self.gears):
+                gear = _shaped(getattr(self.pair, name), alone)
+                radius = getattr(places, f"{name}_curvature_radius")
+                gap = gap + profile_gap(gear, radius, flank, length)
+        return gap[:, None, :]
+
+
+def relief_mesh(
+    pair: SpurPair, gears: str, shape: str, torque: Array, settings: dict[str, Any]
+) -> ReliefMesh:
+    """Prepare a mesh to be asked for many tip reliefs."""
+    total = torque / pair.pinion.base_radius
+    one = MODELS[settings["provider"]].influence is not None
+    totals = [total] if one else [total[k : k + 1] for k in range(total.size)]
+    problems = [contact_problem(pair, total_force=float(part[0]), **settings) for part in totals]
+    return ReliefMesh(pair, gears, shape, problems, totals)
+
 
 #: Phases of a mesh cycle where nothing multiplies the work, and where something does.
 _MOST, _LEAST = 512, 64

@@ -18,7 +18,6 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-
 #: Distance beyond the end nodes, over their span, that is rounding and not a place off the flank.
 _ROUNDING = 1e-9
 

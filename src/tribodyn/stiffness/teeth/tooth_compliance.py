@@ -8,10 +8,9 @@ import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurGear, half_tooth
-from tribodyn.stiffness.load_point import LoadPoint
-from tribodyn.stiffness.sainsot import LARGEST_RATIO, sainsot_compliance
-from tribodyn.stiffness.tooth_bending import tooth_bending_compliance
-from tribodyn.stiffness.wind_up import wind_up_compliance
+from tribodyn.stiffness.teeth.load_point import LoadPoint
+from tribodyn.stiffness.teeth.sainsot import LARGEST_RATIO, sainsot_compliance, wind_up_compliance
+from tribodyn.stiffness.teeth.tooth_bending import tooth_bending_compliance
 from tribodyn.types import Array
 
 #: Where the gear body is held: at the bore, or rigidly under the teeth.

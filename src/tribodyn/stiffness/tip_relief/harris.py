@@ -12,14 +12,13 @@ from numpy.typing import ArrayLike
 from tribodyn.errors import Argument, InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded import loaded_contact
-from tribodyn.stiffness.loaded.gaps import mesh_period, slice_widths
-from tribodyn.stiffness.loaded.harmonics import harmonic_amplitudes
-from tribodyn.stiffness.loaded.prepare import NO_OPTIONS
+from tribodyn.stiffness.loaded.contact import NO_OPTIONS
+from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
+from tribodyn.stiffness.loaded.result import harmonic_amplitudes
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
 
 #: Loads of single pairs in single slices that are held in memory at the same time.
 _AT_ONCE = 4_000_000

@@ -14,12 +14,11 @@ import numpy as np
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ComputationError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.analytic_nodes import flank_nodes
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.load_point import load_point
 from tribodyn.stiffness.model import MODELS, StiffnessModel
-from tribodyn.stiffness.tooth_compliance import tooth_compliance
-from tribodyn.stiffness.weber_banaschek import weber_banaschek_compression
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
+from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
+from tribodyn.stiffness.teeth.weber import weber_banaschek_compression
 from tribodyn.types import Array, Mask
 
 #: The load share settles to this relative change; each pass gains more than one digit.

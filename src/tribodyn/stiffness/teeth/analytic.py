@@ -9,15 +9,17 @@ import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, Problem, require_between
 from tribodyn.gear import Material, SpurGear, half_tooth
-from tribodyn.stiffness.analytic_beam import beam_to_axis
-from tribodyn.stiffness.analytic_nodes import flank_nodes
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.load_point import LoadPoint, load_point
-from tribodyn.stiffness.ring_fourier import RingCompliance, ring_compliance
-from tribodyn.stiffness.ring_fourier_feet import foot_compliance, foot_stresses
-from tribodyn.stiffness.sainsot import LARGEST_RATIO
-from tribodyn.stiffness.tooth_compliance import check_reference, tooth_compliance
-from tribodyn.stiffness.wind_up import wind_up_compliance
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.load_point import LoadPoint, flank_nodes, load_point
+from tribodyn.stiffness.teeth.ring_fourier import (
+    RingCompliance,
+    foot_compliance,
+    foot_stresses,
+    ring_compliance,
+)
+from tribodyn.stiffness.teeth.sainsot import LARGEST_RATIO, wind_up_compliance
+from tribodyn.stiffness.teeth.tooth_bending import beam_to_axis
+from tribodyn.stiffness.teeth.tooth_compliance import check_reference, tooth_compliance
 from tribodyn.types import Array
 
 #: What the loaded tooth stands on: the elastic ring itself, or the formula fitted to rings.

@@ -1,4 +1,4 @@
-"""Where the normal force meets a tooth, seen from the tooth: height, angle and depth."""
+"""Where the normal force meets a tooth, and the places along a flank that are tabulated."""
 
 from __future__ import annotations
 
@@ -89,3 +89,19 @@ def load_point(gear: SpurGear, curvature_radius: Array | float) -> LoadPoint:
         axis_height=base / np.cos(load_angle),
         depth=half_thickness / np.cos(load_angle),
     )
+
+
+#: A flank from the base circle itself begins at this part of its largest radius of curvature.
+_LEAST_PART = 1e-3
+
+
+def flank_nodes(gear: SpurGear, count: int = 30) -> Array:
+    """Radii of curvature from the end of the fillet to the tip, closer together at both ends."""
+    low, high = (
+        gear.base_radius * gear.roll_angle(radius) for radius in (gear.form_radius, gear.tip_radius)
+    )
+    low = max(low, _LEAST_PART * high)
+    part = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, count)))
+    nodes = low + (high - low) * part
+    nodes[-1] = high
+    return nodes
