@@ -8,7 +8,7 @@ import pytest
 
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.gear import BasicRack, SpurPair, operating_pressure_angle, spur_pair
-from tribodyn.gear.involute import involute
+from tribodyn.gear.curves import involute
 
 Maker = Callable[..., SpurPair]
 SMALL_RACK = BasicRack(1.0, 1.0, 0.2)

@@ -110,7 +110,7 @@ def _carried_to_tip(rho: Array, support: Array, own: Array, near: Mask) -> Array
 _SOURCES = (
     (".", "flank_load provider ring tooth_mesh"),
     ("../teeth", "load_point sainsot"),
-    ("../../gear", "form_circle involute rack tooth_form trochoid"),
+    ("../../gear", "curves rack tooth_form"),
 )
 
 

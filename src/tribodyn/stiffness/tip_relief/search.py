@@ -20,7 +20,7 @@ from tribodyn.gear import (
     flank_ranges,
     profile_gap,
 )
-from tribodyn.gear.modification_checks import LARGEST_AMOUNT
+from tribodyn.gear.profile_map import LARGEST_AMOUNT
 from tribodyn.stiffness.loaded.contact import NO_OPTIONS, contact_problem, phases_of
 from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.problem import ContactProblem

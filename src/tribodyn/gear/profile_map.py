@@ -16,8 +16,8 @@ from tribodyn.types import Array
 COORDINATES = ("roll_length", "diameter")
 #: How a map may be read between its points, and the degree of the splines.
 INTERPOLATIONS = {"linear": 1, "cubic": 3}
-#: Deviation beyond which a unit is wrong [m].
-_LARGEST = 0.5e-3
+#: Amount of a modification or deviation beyond which a unit is wrong [m].
+LARGEST_AMOUNT = 0.5e-3
 
 
 @dataclass(frozen=True)
@@ -187,10 +187,10 @@ def _value_problems(chart: ProfileMap) -> list[Problem]:
             what = f"{name} of profile_map is not finite and increasing"
             problems.append(_problem(what, "Every place comes once, in order", "Sort the places"))
     values = np.asarray(chart.deviation)
-    bad = ~np.isfinite(values) | (np.abs(values) > _LARGEST)
+    bad = ~np.isfinite(values) | (np.abs(values) > LARGEST_AMOUNT)
     if np.any(bad):
         worst = float(values[bad][0])
         what = f"a deviation of profile_map is {worst * 1e6:.6g} um"
-        why = f"It must be finite and within {_LARGEST * 1e6:g} um"
+        why = f"It must be finite and within {LARGEST_AMOUNT * 1e6:g} um"
         problems.append(_problem(what, why, "Check the unit; measure what is missing"))
     return problems
