@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import SpurGear, SpurPair, half_tooth
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.record import Parts, Record, fact, record
 from tribodyn.stiffness.teeth.load_point import load_point
 from tribodyn.types import Array, Index
-
-if TYPE_CHECKING:
-    import xarray
 
 
 class RootLoads(NamedTuple):
@@ -38,34 +36,19 @@ class RootLoads(NamedTuple):
     wheel_compressive_force: Array
 
 
-def root_loads(result: LoadedContact) -> RootLoads:
+def root_loads(pair: SpurPair, curvature_radii: tuple[Array, Array], force: Array) -> RootLoads:
     """Carry the normal force of every pair to the feet of its two teeth.
 
-    Parameters
-    ----------
-    result : LoadedContact
-        Loaded tooth contact.
-
-    Returns
-    -------
-    RootLoads
-
-    Notes
-    -----
     The foot is the height at which the fillet meets the root circle, the lowest section of the
     tooth; the force crosses the axis of the tooth at the height ``h``:
     ``M = F cos(a) (h - h_foot)``, ``Q = F cos(a)``, ``N = F sin(a)``. Without friction. Source:
     statics; the lever of ISO 6336-3 is that of the 30 degree tangent, a little higher.
     """
-    pair = result.gear_pair
-    found = [
-        _foot(gear, radius, result.normal_force)
-        for gear, radius in (
-            (pair.pinion, result.pinion_curvature_radius),
-            (pair.wheel, result.wheel_curvature_radius),
-        )
+    feet = [
+        _foot(gear, radius, force)
+        for gear, radius in zip((pair.pinion, pair.wheel), curvature_radii, strict=True)
     ]
-    return RootLoads(*(part for both in zip(*found, strict=True) for part in both))
+    return RootLoads(*(load for both in zip(*feet, strict=True) for load in both))
 
 
 def _foot(gear: SpurGear, curvature_radius: Array, force: Array) -> tuple[Array, Array, Array]:
@@ -120,33 +103,13 @@ _PLACES: dict[str, str] = {
 }
 
 
-def to_xarray(result: LoadedContact) -> xarray.Dataset:
-    """Convert a loaded tooth contact to a labelled data set with units."""
-    import xarray
-
-    before = ("torque",) * result.torque.ndim
-    variables: dict[str, Any] = {
-        name: ((*before, *dimensions), getattr(result, name), _describe(quantity))
-        for name, (dimensions, quantity) in _ARRAYS.items()
-    }
-    for name, quantity in _PLACES.items():
-        variables[name] = (("phase", "pair"), getattr(result, name), _describe(quantity))
-    coordinates: dict[str, Any] = {
-        "phase": ("phase", result.phase, _describe("mesh_phase")),
-        "pair": ("pair", result.number),
-        "torque": (before, result.torque, _describe("torque")),
-    }
-    made = {"provider": result.provider, "reference": result.reference}
-    return xarray.Dataset(variables, coordinates, made)
+def _told(quantity: str) -> dict[str, str]:
+    known = QUANTITIES[quantity]
+    return {"units": known.unit or "1", "long_name": known.meaning}
 
 
-def _describe(quantity: str) -> dict[str, str]:
-    found = QUANTITIES[quantity]
-    return {"units": found.unit or "1", "long_name": found.meaning}
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LoadedContact:
+@record
+class LoadedContact(Record):
     """Quasi-static mesh under load; made by :func:`tribodyn.stiffness.loaded_contact`.
 
     Shapes: ``...`` is nothing for one torque and (torques,) for several; p phases, n tooth pairs
@@ -185,8 +148,8 @@ class LoadedContact:
     """
 
     gear_pair: SpurPair
-    provider: str
-    reference: str
+    provider: str = fact()
+    reference: str = fact()
     torque: Array
     phase: Array
     number: Index
@@ -268,25 +231,33 @@ class LoadedContact:
     @property
     def root_loads(self) -> RootLoads:
         """Bending moment, shear and normal force at the foot of every loaded tooth."""
-        return root_loads(self)
+        radii = self.pinion_curvature_radius, self.wheel_curvature_radius
+        return root_loads(self.gear_pair, radii, self.normal_force)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set with units.
+    def _parts(self) -> Parts:
+        parts, several = super()._parts(), ("torque",) * self.torque.ndim
+        for name, (dims, quantity) in _ARRAYS.items():
+            parts.variables[name] = ((*several, *dims), getattr(self, name), _told(quantity))
+        for name, quantity in _PLACES.items():
+            parts.variables[name] = (("phase", "pair"), getattr(self, name), _told(quantity))
+        parts.coordinates["phase"] = ("phase", self.phase, _told("mesh_phase"))
+        parts.coordinates["pair"] = ("pair", self.number)
+        parts.coordinates["torque"] = (several, self.torque, _told("torque"))
+        return parts
 
-        Returns
-        -------
-        xarray.Dataset
-        """
-        return to_xarray(self)
-
-    def plot(self) -> Any:
+    def plot(self, **options: Any) -> Any:
         """Draw transmission error, stiffness and load sharing over the roll angle.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("loaded_contact")
+        return draw(self, "loaded_contact", **options)
 
     def plot_load_sharing(self) -> Any:
         """Draw the force on a tooth pair over its way through the mesh.
@@ -295,7 +266,7 @@ class LoadedContact:
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("loaded_sharing")
+        return draw(self, "loaded_sharing")
 
     def plot_deformation(self) -> Any:
         """Draw the teeth in mesh with their deformation enlarged and the forces on them.
@@ -305,13 +276,7 @@ class LoadedContact:
         plotly.graph_objects.Figure
             With a slider over the mesh phase; bodies are those of ``fe2d`` whatever the provider.
         """
-        return self._figure("mesh_deformation")
-
-    def _figure(self, name: str) -> Any:
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES[name](self)
+        return draw(self, "mesh_deformation")
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

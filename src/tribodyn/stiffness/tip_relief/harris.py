@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.stiffness.loaded import loaded_contact
 from tribodyn.stiffness.loaded.contact import NO_OPTIONS
 from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.result import harmonic_amplitudes
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    import xarray
 
 #: Loads of single pairs in single slices that are held in memory at the same time.
 _AT_ONCE = 4_000_000
@@ -29,8 +27,8 @@ _HARMONICS = 10
 _PAIRS = 4
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class HarrisMap:
+@record
+class HarrisMap(Record):
     """Static transmission error of a mesh over phase and torque.
 
     Parameters
@@ -58,16 +56,16 @@ class HarrisMap:
     """
 
     gear_pair: SpurPair
-    provider: str
-    reference: str
-    torque: Array
-    phase: Array
+    provider: str = fact()
+    reference: str = fact()
+    torque: Array = quantity("torque", unit="N*m", axis=True)
+    phase: Array = quantity("phase", unit="1", axis=True)
     mesh_cycles: int
-    transmission_error: Array
-    unloaded_transmission_error: Array
-    harmonics: Array
-    mean_mesh_stiffness_secant: Array
-    mean_mesh_stiffness_tangent: Array
+    transmission_error: Array = quantity("torque", "phase", unit="m")
+    unloaded_transmission_error: Array = quantity("phase", unit="m")
+    harmonics: Array = quantity("torque", "order", unit="m")
+    mean_mesh_stiffness_secant: Array = quantity("torque", unit="N/m")
+    mean_mesh_stiffness_tangent: Array = quantity("torque", unit="N/m")
 
     @property
     def mean_transmission_error(self) -> Array:
@@ -84,46 +82,26 @@ class HarrisMap:
         """Torque of the least peak-to-peak transmission error [N*m]."""
         return float(self.torque[np.argmin(self.peak_to_peak_transmission_error)])
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set with units.
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        for name in ("mean_transmission_error", "peak_to_peak_transmission_error"):
+            parts.variables[name] = ("torque", getattr(self, name), {"units": "m"})
+        parts.coordinates["order"] = ("order", np.arange(1, self.harmonics.shape[1] + 1))
+        return parts
 
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``torque``, ``phase`` and ``order``.
-        """
-        import xarray
-
-        length, stiffness = {"units": "m"}, {"units": "N/m"}
-        peak = self.peak_to_peak_transmission_error
-        variables: dict[str, Any] = {
-            "transmission_error": (("torque", "phase"), self.transmission_error, length),
-            "unloaded_transmission_error": ("phase", self.unloaded_transmission_error, length),
-            "mean_transmission_error": ("torque", self.mean_transmission_error, length),
-            "peak_to_peak_transmission_error": ("torque", peak, length),
-            "harmonics": (("torque", "order"), self.harmonics, length),
-        }
-        for name in ("mean_mesh_stiffness_secant", "mean_mesh_stiffness_tangent"):
-            variables[name] = ("torque", getattr(self, name), stiffness)
-        coordinates: dict[str, Any] = {
-            "torque": ("torque", self.torque, {"units": "N*m"}),
-            "phase": ("phase", self.phase, {"units": "1"}),
-            "order": ("order", np.arange(1, self.harmonics.shape[1] + 1)),
-        }
-        made = {"provider": self.provider, "reference": self.reference}
-        return xarray.Dataset(variables, coordinates, made)
-
-    def plot(self) -> Any:
+    def plot(self, **options: Any) -> Any:
         """Draw the transmission error over phase and torque.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["harris_map"](self)
+        return draw(self, "harris_map", **options)
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

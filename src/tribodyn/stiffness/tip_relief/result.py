@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.gear import SpurPair
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
 
-if TYPE_CHECKING:
-    import xarray
 
-
-@dataclass(frozen=True, eq=False, repr=False)
-class TipReliefOptimum:
+@record
+class TipReliefOptimum(Record):
     """Best tip relief over torques; made by :func:`tribodyn.stiffness.optimize_tip_relief`.
 
     Parameters
@@ -48,21 +46,21 @@ class TipReliefOptimum:
 
     gear_pair: SpurPair
     modified_pair: SpurPair
-    gears: str
-    shape: str
-    amount: float
-    length: float
-    torque: Array
+    gears: str = fact()
+    shape: str = fact()
+    amount: float = fact("best_amount")
+    length: float = fact("best_length")
+    torque: Array = quantity("torque", unit="N*m", axis=True)
     weight: Array
-    objective_kind: str
-    objective: float
-    objective_before: float
-    phase: Array
-    transmission_error_before: Array
-    transmission_error_after: Array
-    map_amount: Array
-    map_length: Array
-    map_objective: Array
+    objective_kind: str = fact()
+    objective: float = fact("best_objective")
+    objective_before: float = fact()
+    phase: Array = quantity("phase", unit="1", axis=True)
+    transmission_error_before: Array = quantity("torque", "phase", unit="m")
+    transmission_error_after: Array = quantity("torque", "phase", unit="m")
+    map_amount: Array = quantity("amount", unit="m", axis=True, name="amount")
+    map_length: Array = quantity("length", unit="m", axis=True, name="length")
+    map_objective: Array = quantity("amount", "length", unit="m", name="objective")
 
     @property
     def peak_to_peak_before(self) -> Array:
@@ -84,49 +82,25 @@ class TipReliefOptimum:
         ]
         return any(edges)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set with units.
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        for name in ("peak_to_peak_before", "peak_to_peak_after"):
+            parts.variables[name] = ("torque", getattr(self, name), {"units": "m"})
+        return parts
 
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``torque``, ``phase``, ``amount`` and ``length``.
-        """
-        import xarray
-
-        unit = {"units": "m"}
-        variables: dict[str, Any] = {
-            "objective": (("amount", "length"), self.map_objective, unit),
-        }
-        for state in ("before", "after"):
-            error = getattr(self, f"transmission_error_{state}")
-            peak = getattr(self, f"peak_to_peak_{state}")
-            variables[f"transmission_error_{state}"] = (("torque", "phase"), error, unit)
-            variables[f"peak_to_peak_{state}"] = ("torque", peak, unit)
-        coordinates: dict[str, Any] = {
-            "torque": ("torque", self.torque, {"units": "N*m"}),
-            "phase": ("phase", self.phase, {"units": "1"}),
-            "amount": ("amount", self.map_amount, unit),
-            "length": ("length", self.map_length, unit),
-        }
-        made = {
-            "gears": self.gears, "shape": self.shape, "objective_kind": self.objective_kind,
-            "best_amount": self.amount, "best_length": self.length,
-            "best_objective": self.objective, "objective_before": self.objective_before,
-        }  # fmt: skip
-        return xarray.Dataset(variables, coordinates, made)
-
-    def plot(self) -> Any:
+    def plot(self, **options: Any) -> Any:
         """Draw the objective over amount and length, and the errors before and after.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["tip_relief_map"](self)
+        return draw(self, "tip_relief_map", **options)
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""
