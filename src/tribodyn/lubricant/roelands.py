@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
-from tribodyn.lubricant.growth import exponential_growth
+from tribodyn.lubricant.barus import exponential_growth
 from tribodyn.types import Array
 
 #: Reference pressure of the law [Pa].
