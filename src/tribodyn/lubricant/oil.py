@@ -11,8 +11,11 @@ from tribodyn.errors import InputError, Problem, require_between, require_positi
 from tribodyn.lubricant.agma_925 import agma_925_coefficient
 from tribodyn.lubricant.astm_d341 import TemperaturePoint, walther_slope, walther_viscosity
 from tribodyn.lubricant.barus import barus_viscosity
-from tribodyn.lubricant.dowson_higginson import dowson_higginson_density
-from tribodyn.lubricant.iso_15144 import DENSITY_FALL, density_at_temperature
+from tribodyn.lubricant.density import (
+    DENSITY_FALL,
+    density_at_temperature,
+    dowson_higginson_density,
+)
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
 from tribodyn.registry import Registry
 from tribodyn.types import Array

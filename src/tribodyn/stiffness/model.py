@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.registry import Registry
-from tribodyn.stiffness.influence import GearInfluence
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 
@@ -100,7 +100,7 @@ class StiffnessModel:
         known = ", ".join(self.options)
         return Problem(
             what=f'the stiffness model "{self.name}" has no option "{name}"',
-            where=f"stiffness option {name}",
+            where=ModelOption("stiffness", name=name),
             why=f"Its options are: {known}",
             remedy=f'Did you mean "{near[0]}"?' if near else "",
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic import ValidationError
 
-from tribodyn.errors import InputError, ModelWarning, Problem
+from tribodyn.errors import Argument, InputError, ModelWarning, Problem
 from tribodyn.study.collect import collected
 from tribodyn.study.gears import Gear, Gears
 from tribodyn.study.given import Given
@@ -73,9 +72,10 @@ def _modifications(gears: Gears) -> _Modified:
                 chart = read_profile_map(data.profile_map, data.profile_map_interpolation)
             return flank_modification(data, chart)
         except InputError as error:
-            places = f"argument {name}_modification."
             problems.extend(
-                replace(problem, where=problem.where.replace("argument ", places, 1))
+                replace(problem, where=Argument(f"modification.{place.name}", name))
+                if isinstance(place := problem.where, Argument)
+                else problem
                 for problem in error.problems
             )
             return None
@@ -158,13 +158,12 @@ def unused_lubricant() -> Lubricant:
 
 def _key(problem: Problem, section: str) -> str:
     """Key of the case file for the argument that a problem names."""
-    named = re.search(r"argument (?:(pinion|wheel)[_ .])?([a-z_]+(?:\.[a-z_]+)?)", problem.where)
-    if named is None:
+    if not isinstance(problem.where, Argument):
         return section
-    gear, name = named.groups()
+    gear, name = problem.where.gear, problem.where.name
     if name in _KEYS:
         return _KEYS[name]
-    if gear is None and section == "gears" and name in Gear.model_fields:
+    if not gear and section == "gears" and name in Gear.model_fields:
         return section
     return f"{section}.{gear}.{name}" if gear else f"{section}.{name}"
 

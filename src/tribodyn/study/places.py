@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, ModelOption, Problem
 
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
@@ -31,12 +31,12 @@ _KEYS = {
 
 def _key(case: Case, problem: Problem) -> str:
     """Key of the case that a problem is about; empty if it cannot be told."""
-    if argument := re.match(r"argument (\w+)", problem.where):
+    place = problem.where
+    if isinstance(place, ModelOption) and place.kind == "stiffness" and place.model:
+        known = place.name in type(case.stiffness).model_fields
+        return f"stiffness.{place.name}" if known else "stiffness.model"
+    if argument := re.match(r"argument (\w+)", str(place)):
         return _KEYS.get(argument.group(1), "")
-    if stiffness := re.match(r"\S+ stiffness(?:: (\w+))?", problem.where):
-        option = stiffness.group(1) or ""
-        known = option in type(case.stiffness).model_fields
-        return f"stiffness.{option}" if known else "stiffness.model"
     return ""
 
 

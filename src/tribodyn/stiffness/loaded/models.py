@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.loaded.prepare import mesh_problem
+from tribodyn.stiffness.loaded.contact import mesh_problem
 from tribodyn.stiffness.model import MODELS, StiffnessModel
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 #: Options of every model that knows the structure of the gears.
@@ -28,13 +28,13 @@ def _fe2d(gear: SpurGear, material: Material, *, reference: str) -> GearInfluenc
 
 
 def _analytic(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.analytic import analytic_influence
+    from tribodyn.stiffness.teeth.analytic import analytic_influence
 
     return analytic_influence(gear, material, reference=reference)
 
 
 def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.weber import weber_influence
+    from tribodyn.stiffness.teeth.weber import weber_influence
 
     return weber_influence(gear, material, reference=reference)
 
