@@ -75,7 +75,17 @@ class Drawing:
     needs: Lack | None = None
 
     def subject(self, result: Any) -> Any:
-        """Return the result, or the part of it, that the figure draws; None if it draws another."""
+        """Return the result, or the part of it, that the figure draws; None if it draws another.
+
+        Parameters
+        ----------
+        result : object
+            Any result.
+
+        Returns
+        -------
+        object or None
+        """
         kinds = {kind.__name__ for kind in type(result).__mro__}
         for place in self.of:
             name, _, path = place.partition(".")
@@ -89,7 +99,17 @@ class Drawing:
         return None if self.of else result
 
     def missing(self, result: Any) -> str:
-        """Say in one sentence why a result has no such figure; empty if it has."""
+        """Say in one sentence why a result has no such figure; empty if it has.
+
+        Parameters
+        ----------
+        result : object
+            Any result.
+
+        Returns
+        -------
+        str
+        """
         subject = self.subject(result)
         if subject is None:
             kinds = " or ".join(dict.fromkeys(place.partition(".")[0] for place in self.of))
@@ -97,7 +117,17 @@ class Drawing:
         return "" if self.needs is None else self.needs(subject)
 
     def caption_of(self, result: Any) -> str:
-        """Tell what to look for in the figure of a result."""
+        """Tell what to look for in the figure of a result.
+
+        Parameters
+        ----------
+        result : object
+            One of the classes in ``of``.
+
+        Returns
+        -------
+        str
+        """
         return self.caption if isinstance(self.caption, str) else self.caption(self.subject(result))
 
     def __call__(self, result: Any, **options: Any) -> Any:
