@@ -23,9 +23,6 @@ from tribodyn.stiffness.fe2d.flank_load import flank_loads, half_plane_displacem
 from tribodyn.stiffness.fe2d.provider import UnitCompliances, unit_compliances
 from tribodyn.stiffness.fe2d.ring import Ring, plane_stress
 from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, tooth_mesh
-from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import load_point
-from tribodyn.stiffness.teeth.sainsot import wind_up_compliance
 
 STEEL = Material()
 #: Radius of curvature of the pinion at the pitch point [m].

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,17 +14,15 @@ from tribodyn.analysis.poincare_march import (
     march_section,
     repeat_period,
 )
+from tribodyn.drawing import draw
 from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.response import Response
 from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    import xarray
-
 
 #: Points that differ by less than this, relative to their size, are the same.
 _SAME = 1e-5
@@ -32,8 +30,8 @@ _SAME = 1e-5
 _ORBIT = 100
 
 
-@dataclass(frozen=True)
-class PoincareSection:
+@record
+class PoincareSection(Record):
     """States of a motion once per mesh cycle, at the mesh phase 0.
 
     Parameters
@@ -54,13 +52,13 @@ class PoincareSection:
         where it was not asked.
     """
 
-    position: Array = field(repr=False)
-    velocity: Array = field(repr=False)
-    deflection: Array = field(repr=False)
+    position: Array = quantity("mesh_cycle", "coordinate", unit="m or rad")
+    velocity: Array = quantity("mesh_cycle", "coordinate", unit="m/s or rad/s")
+    deflection: Array = quantity("mesh_cycle", "contact", unit="m")
     names: tuple[str, ...]
-    mesh_frequency: float
-    period: int
-    verdict: str = ""
+    mesh_frequency: float = fact()
+    period: int = fact()
+    verdict: str = fact(default="")
 
     def __repr__(self) -> str:
         """One line."""
@@ -69,29 +67,6 @@ class PoincareSection:
             f"PoincareSection({len(self.position)} points at {self.mesh_frequency:.6g} Hz, {kind}"
             f"{', ' + self.verdict if self.verdict else ''})"
         )
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the points as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``mesh_cycle``, ``coordinate`` and ``contact``.
-        """
-        import xarray
-
-        coordinate, contact = ("mesh_cycle", "coordinate"), ("mesh_cycle", "contact")
-        data: dict[str, Any] = {
-            "position": (coordinate, self.position, {"units": "m or rad"}),
-            "velocity": (coordinate, self.velocity, {"units": "m/s or rad/s"}),
-            "deflection": (contact, self.deflection, {"units": "m"}),
-        }
-        attributes = {
-            "mesh_frequency": self.mesh_frequency,
-            "period": self.period,
-            "verdict": self.verdict,
-        }
-        return xarray.Dataset(data, {"coordinate": list(self.names)}, attributes)
 
     def plot(self, coordinate: int | str = 0) -> Any:
         """Draw the points of one coordinate in its phase plane.
@@ -105,10 +80,12 @@ class PoincareSection:
         -------
         plotly.graph_objects.Figure
         """
-        from tribodyn.plot import FIGURES
-
-        draw: Any = FIGURES["poincare"]
         return draw(self, coordinate=coordinate)
+
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["coordinate"] = list(self.names)
+        return parts
 
 
 def poincare(

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -11,11 +10,8 @@ from tribodyn.analysis.order_map_result import OrderCut, OrderMap
 from tribodyn.analysis.spectrum_input import window_values
 from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, Index, Mask
-
-if TYPE_CHECKING:
-    import xarray
-
 
 Part = Literal["all", "up", "down"]
 
@@ -23,8 +19,8 @@ Part = Literal["all", "up", "down"]
 _SHORT, _LONG = 4, 64
 
 
-@dataclass(frozen=True)
-class OverallLevel:
+@record
+class OverallLevel(Record):
     """Alternating rms of a signal over the speed.
 
     Parameters
@@ -39,9 +35,11 @@ class OverallLevel:
         Unit of the signal.
     """
 
-    time: Array
-    speed: Array
-    rms: Array
+    ARRAY = "rms"
+
+    time: Array = quantity("block", unit="s", axis=True)
+    speed: Array = quantity("block", unit="rad/s", axis=True)
+    rms: Array = quantity("block", unit="@unit")
     unit: str = ""
 
     def __repr__(self) -> str:
@@ -51,26 +49,6 @@ class OverallLevel:
             f"OverallLevel({self.speed.size} blocks, largest {self.rms[top]:.4g} {self.unit} at "
             f"{self.speed[top]:.5g} rad/s)"
         ).replace("  ", " ")
-
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over the blocks.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.rms,
-            coords={
-                "time": ("block", self.time, {"units": "s"}),
-                "speed": ("block", self.speed, {"units": "rad/s"}),
-            },
-            dims="block",
-            name="rms",
-            attrs={"units": self.unit or "1"},
-        )
 
 
 def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:

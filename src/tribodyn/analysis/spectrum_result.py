@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from tribodyn.analysis.spectrum_peaks import Peak, interpolated_peaks
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
-if TYPE_CHECKING:
-    import xarray
 
-
-@dataclass(frozen=True)
-class SignalSpectrum:
+@record
+class SignalSpectrum(Record):
     """Single-sided spectrum of a recorded signal.
 
     Parameters
@@ -41,13 +36,15 @@ class SignalSpectrum:
         Unit of the signal.
     """
 
-    frequency: Array
-    amplitude: Array
+    ARRAY = "amplitude"
+
+    frequency: Array = quantity("frequency", unit="Hz", axis=True)
+    amplitude: Array = quantity("frequency", unit="@value_unit")
     phase: Array | None = None
     scaling: str = "amplitude"
-    window: str = "boxcar"
-    noise_bandwidth: float = 0.0
-    averages: int = 1
+    window: str = fact(default="boxcar")
+    noise_bandwidth: float = fact(default=0.0)
+    averages: int = fact(default=1)
     window_length: int = 0
     unit: str = ""
 
@@ -104,24 +101,5 @@ class SignalSpectrum:
             self.frequency, self.amplitude, self.phase, self.window, self.window_length, count
         )
 
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over frequency.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.amplitude,
-            coords={"frequency": ("frequency", self.frequency, {"units": "Hz"})},
-            dims="frequency",
-            name=self.scaling,
-            attrs={
-                "units": self.value_unit or "1",
-                "window": self.window,
-                "noise_bandwidth": self.noise_bandwidth,
-                "averages": self.averages,
-            },
-        )
+    def _array_name(self) -> str:
+        return self.scaling

@@ -9,6 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.both_gears import motion_panels, no_translation
+from tribodyn.plot.cycle import RUN
 from tribodyn.plot.labels import rounded
 from tribodyn.plot.motion import Motion
 from tribodyn.plot.style import stack
@@ -27,6 +28,8 @@ def _caption(result: Any) -> str:
     heading="Accelerations",
     caption=_caption,
     needs=no_translation,
+    of="Result",
+    made_by=RUN,
 )
 def acceleration(result: Any) -> Any:
     """Draw the accelerations of the gear centres.

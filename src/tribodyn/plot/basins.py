@@ -16,12 +16,6 @@ _COLORS = (PINION, PAIR_COLORS[3], PAIR_COLORS[0], PAIR_COLORS[1], PAIR_COLORS[2
 _NOWHERE = "#d5dae0"
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "attractors"):
-        return ""
-    return "This figure shows a plane of starts. Call tribodyn.analysis.basins(...) and its plot."
-
-
 def _name(found: Any, number: int, factor: float, unit: str) -> str:
     each = found.attractors[number]
     kind = f"period {each.period}" if each.period else "does not repeat"
@@ -67,7 +61,8 @@ def _component(found: Any, number: int, name: str) -> Any:
     caption="Every start of the plane has the colour of the motion that it comes to; crosses "
     "are the states of these motions at the mesh phase 0. Where colours mix finely, the motion "
     "cannot be foretold from the start.",
-    needs=_missing,
+    of="Basins",
+    made_by="Call tribodyn.analysis.basins(...) and its plot method.",
 )
 def basins(found: Any) -> Any:
     """Draw the plane of starts.

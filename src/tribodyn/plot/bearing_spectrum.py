@@ -7,11 +7,12 @@ from typing import Any
 from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.both_gears import harmonic_panels, no_translation
+from tribodyn.plot.cycle import RUN
 from tribodyn.plot.harmonics import harmonic_layout, no_harmonics, strongest
 from tribodyn.plot.style import stack
 
 
-def _missing(result: Any) -> str:
+def _no_bearing_harmonics(result: Any) -> str:
     return no_translation(result) or no_harmonics(result)
 
 
@@ -20,7 +21,9 @@ def _missing(result: Any) -> str:
     heading="Spectra of the bearing forces",
     caption="What the bearings pass on to the housing, by mesh harmonic. A harmonic that meets a "
     "natural frequency of the housing is the one that is heard.",
-    needs=_missing,
+    needs=_no_bearing_harmonics,
+    of="Result",
+    made_by=RUN,
 )
 def bearing_spectrum(result: Any) -> Any:
     """Draw the mesh harmonics of the bearing forces.

@@ -23,16 +23,6 @@ _APART = 0.05
 _FEW = 0.05
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "refined_period"):
-        return ""
-    return (
-        "This figure shows motions over a parameter. Call "
-        'tribodyn.bifurcation(case, over="operation.speed", between=("400 rpm", "3500 rpm")) and '
-        "its plot method."
-    )
-
-
 def _scale(found: Any) -> tuple[float, str]:
     """Factor and unit in which lengths below a tenth of a millimetre are drawn."""
     largest = float(np.nanmax(np.abs(found.section), initial=0.0))
@@ -133,7 +123,9 @@ def _title(found: Any, parameter: Any, label: str) -> str:
     "point means that the motion repeats with the mesh, two that it repeats every second cycle, a "
     "cloud that it does not repeat. Where the sweep upwards and the sweep downwards differ, two "
     "motions are possible. Grey points vanish with a shorter step: they are not physics.",
-    needs=_missing,
+    of="Bifurcation",
+    made_by='Call tribodyn.bifurcation(case, over="operation.speed", between=("400 '
+    'rpm", "3500 rpm")) and its plot method.',
 )
 def bifurcation(found: Any) -> Any:
     """Draw the section, the rms and, if it is there, the largest exponent over the parameter.

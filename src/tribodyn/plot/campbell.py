@@ -14,15 +14,6 @@ from tribodyn.plot.style import MUTED, PAIR_COLORS, WHEEL, Panel, line, stack
 _THIN, _THICK = 1.0, 4.0
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "resonances"):
-        return ""
-    return (
-        "This figure shows natural frequencies over speed. Call tribodyn.dynamics.campbell and "
-        "its plot method."
-    )
-
-
 def _title(diagram: Any) -> str:
     if not diagram.resonances:
         return f"None of {len(diagram.orders)} mesh harmonics meets a natural frequency"
@@ -92,7 +83,8 @@ def _met(diagram: Any) -> list[dict[str, Any]]:
     caption="Natural frequencies across, mesh harmonics rising with speed. Where two lines cross "
     "the mesh can drive a resonance; the thicker the line of a mode and the larger the dot, the "
     "more of the strain sits in the mesh.",
-    needs=_missing,
+    of="Campbell",
+    made_by="Call tribodyn.dynamics.campbell and its plot method.",
 )
 def campbell(diagram: Any) -> Any:
     """Draw natural frequencies and mesh harmonics over speed.

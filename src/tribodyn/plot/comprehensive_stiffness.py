@@ -24,15 +24,6 @@ _WIDE = 20.0
 _DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "film_mesh_stiffness"):
-        return ""
-    return (
-        "This figure shows the stiffness of teeth and film over torque and speed. Call "
-        "tribodyn.comprehensive_stiffness(case) and its plot method."
-    )
-
-
 def _looks(study: Any) -> list[tuple[int, int, str, str, str]]:
     """Indices of torque and speed with name, colour and dash of each curve."""
     torques = torque_texts(study.pinion_torque)
@@ -78,7 +69,8 @@ def _caption(study: Any) -> str:
     "comprehensive_stiffness",
     heading="Stiffness of teeth and film",
     caption=_caption,
-    needs=_missing,
+    of="ComprehensiveStiffness",
+    made_by="Call tribodyn.comprehensive_stiffness(case) and its plot method.",
 )
 def comprehensive_stiffness(study: Any) -> Any:
     """Draw the stiffness of film, teeth and both in series over the roll angle.

@@ -24,15 +24,6 @@ _MARKS = {
 }
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "special_points") and hasattr(result, "floquet_multipliers"):
-        return ""
-    return (
-        "This figure shows a branch of periodic orbits. Call "
-        "tribodyn.dynamics.continuation(...) and its plot method."
-    )
-
-
 def _parameter(branch: Any, values: Any) -> Array:
     known = branch.name in QUANTITIES
     return displayed(branch.name, values) if known else np.asarray(values, dtype=float)
@@ -97,7 +88,8 @@ def _title(branch: Any) -> str:
     caption="How strong the periodic motion is over the parameter. Dashed parts exist but are "
     "left at the slightest disturbance. Where the branch turns back, the motion jumps. Below: the "
     "largest Floquet multiplier, by which a disturbance grows in one period.",
-    needs=_missing,
+    of="Branch",
+    made_by="Call tribodyn.dynamics.continuation(...) and its plot method.",
 )
 def continuation(branch: Any) -> Any:
     """Draw rms and largest multiplier of a branch over its parameter.

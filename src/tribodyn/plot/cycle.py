@@ -16,6 +16,10 @@ from tribodyn.types import Array
 #: Mesh cycles drawn, so that the transition from one cycle to the next is seen.
 CYCLES = 2
 
+#: How to come by what these figures draw.
+RUN = "Call tribodyn.run(case) and draw what it returns."
+TABLE = "Call tribodyn.run(case), whose result has one, or tribodyn.mesh.build."
+
 Curve = tuple[Array, Array]
 
 

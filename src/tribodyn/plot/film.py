@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
+    TABLE,
     driving_roll_angle,
     pair_life,
     roll_angle_label,
@@ -18,6 +19,9 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 from tribodyn.types import Array
 
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
 #: Column of the mesh table, name in the legend, and colour.
 _FILMS = (
     ("central_film", "in the centre", PAIR_COLORS[2]),
@@ -27,18 +31,18 @@ _FILMS = (
 _VERY_THICK = 10.0
 
 
-def _columns(mesh: Any) -> list[tuple[str, str, str]]:
+def _columns(mesh: MeshTable) -> list[tuple[str, str, str]]:
     return [row for row in _FILMS if getattr(mesh, row[0], None) is not None]
 
 
-def no_film(result: Any) -> str:
+def no_film(mesh: MeshTable) -> str:
     """Say why a result has no oil film."""
-    if _columns(result.mesh):
+    if _columns(mesh):
         return ""
     return 'No film model was chosen, so no oil film was computed. Choose film.model = "newton".'
 
 
-def _thickness(mesh: Any, angle: Any) -> Panel:
+def _thickness(mesh: MeshTable, angle: Any) -> Panel:
     unit = display_unit("film_thickness")
     traces = [
         line(angle, displayed("film_thickness", pair_life(mesh, row)[1]), name, color, unit=unit)
@@ -59,7 +63,7 @@ def _axis(films: list[Array]) -> dict[str, Any]:
     )
 
 
-def _ratio(mesh: Any, angle: Any) -> list[Panel]:
+def _ratio(mesh: MeshTable, angle: Any) -> list[Panel]:
     """Panel of the film ratio; none for ideal flanks."""
     if mesh.film_ratio is None:
         return []
@@ -77,20 +81,21 @@ def _ratio(mesh: Any, angle: Any) -> list[Panel]:
     caption="Thickness of the oil film between the flanks, and its ratio to the composite "
     "roughness. Where the ratio comes near one, the highest asperities touch.",
     needs=no_film,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
 )
-def film(result: Any) -> Any:
+def film(mesh: MeshTable) -> Any:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh = result.mesh
     angle = driving_roll_angle(mesh)
     name, place, _ = _columns(mesh)[-1]
     least = rounded("film_thickness", float(np.nanmin(pair_life(mesh, name)[1])))

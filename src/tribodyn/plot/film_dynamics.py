@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.drawing import drawing
 from tribodyn.errors import InputError, Problem
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded, significant
@@ -140,6 +141,14 @@ def _films(transient: Any, time: Any, steady: ArrayLike | None) -> list[dict[str
     ]
 
 
+@drawing(
+    "film_transient",
+    heading="Film over time",
+    caption="Load, film and greatest pressure of a contact whose load, radius and speed change. "
+    "Squeezing keeps the film thick for a moment where the load rises.",
+    of="TransientLineContact",
+    made_by="Call tribodyn.ehl.solve_transient_line_contact and its plot method.",
+)
 def film_transient(transient: Any, *, steady: ArrayLike | None = None) -> Any:
     """Draw load, central and minimum film and the greatest pressure over time.
 

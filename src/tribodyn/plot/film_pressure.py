@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
+    TABLE,
     driving_roll_angle,
     pair_life,
     roll_angle_label,
@@ -19,40 +20,50 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
 
-def _caption(result: Any) -> str:
+
+def _caption(mesh: MeshTable) -> str:
     return (
         "The greatest pressure in the oil film of one tooth pair from its entry to its exit, and "
         "the pressure of the dry contact under the same load. The film exceeds it where a spike "
         "stands at its outlet, and stays below it where a thick film spreads the load. A spike is "
         "narrower than the grid: its height is a lower bound, and uneven by some percent. "
-        + load_sharing(result.mesh.transverse_contact_ratio)
+        + load_sharing(mesh.transverse_contact_ratio)
     )
 
 
-def _no_pressure(result: Any) -> str:
-    if result.mesh.film_pressure is not None:
+def _no_pressure(mesh: MeshTable) -> str:
+    if mesh.film_pressure is not None:
         return ""
-    return no_film(result) or (
-        f'The film model "{result.mesh.film_model}" is a formula for the thickness: it knows no '
+    return no_film(mesh) or (
+        f'The film model "{mesh.film_model}" is a formula for the thickness: it knows no '
         'pressure. Choose film.model = "newton".'
     )
 
 
-@drawing("film_pressure", heading="Pressure in the oil film", caption=_caption, needs=_no_pressure)
-def film_pressure(result: Any) -> Any:
+@drawing(
+    "film_pressure",
+    heading="Pressure in the oil film",
+    caption=_caption,
+    needs=_no_pressure,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def film_pressure(mesh: MeshTable) -> Any:
     """Draw the greatest film pressure of one tooth pair over the roll angle.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table with a solved film.
+    mesh : MeshTable
+        Contact of one mesh cycle with a solved film.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh, unit = result.mesh, display_unit("film_pressure")
+    unit = display_unit("film_pressure")
     angle = driving_roll_angle(mesh)
     film, dry = (pair_life(mesh, name)[1] for name in ("film_pressure", "hertz_pressure"))
     traces = [

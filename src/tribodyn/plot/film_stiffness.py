@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
+    TABLE,
     driving_roll_angle,
     pair_life,
     roll_angle_label,
@@ -18,12 +19,15 @@ from tribodyn.plot.film import no_film
 from tribodyn.plot.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
 #: Kinds of film stiffness that are in series with the teeth.
 _SPRINGS = ("tangent", "secant")
 
 
-def _caption(result: Any) -> str:
-    kind = result.mesh.film_stiffness_kind
+def _caption(mesh: MeshTable) -> str:
+    kind = mesh.film_stiffness_kind
     if kind not in _SPRINGS:
         sum_of_source = "The film stiffness is the sum as one source prints it. "
         return (
@@ -39,31 +43,35 @@ def _caption(result: Any) -> str:
     )
 
 
-def _no_stiffness(result: Any) -> str:
-    if result.mesh.film_stiffness is not None:
+def _no_stiffness(mesh: MeshTable) -> str:
+    if mesh.film_stiffness is not None:
         return ""
-    return no_film(result) or (
-        f'The film model "{result.mesh.film_model}" gives no film stiffness. Choose film.model = '
-        '"newton".'
+    return no_film(mesh) or (
+        f'The film model "{mesh.film_model}" gives no film stiffness. Choose film.model = "newton".'
     )
 
 
 @drawing(
-    "film_stiffness", heading="Stiffness of the oil film", caption=_caption, needs=_no_stiffness
+    "film_stiffness",
+    heading="Stiffness of the oil film",
+    caption=_caption,
+    needs=_no_stiffness,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
 )
-def film_stiffness(result: Any) -> Any:
+def film_stiffness(mesh: MeshTable) -> Any:
     """Draw the stiffness of film, teeth and pair over the roll angle.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table with a film stiffness.
+    mesh : MeshTable
+        Contact of one mesh cycle with a film stiffness.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh, unit = result.mesh, display_unit("film_stiffness")
+    unit = display_unit("film_stiffness")
     angle = driving_roll_angle(mesh)
     film, teeth, pair = (
         displayed(quantity, pair_life(mesh, column)[1])

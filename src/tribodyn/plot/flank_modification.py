@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,23 +15,29 @@ from tribodyn.gear import (
     profile_gap,
     tooth_positions,
 )
+from tribodyn.plot.cycle import RUN
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import PINION, TOTAL, WHEEL, Panel, line
 from tribodyn.types import Array
 
+if TYPE_CHECKING:
+    from tribodyn.gear import SpurPair
+
 #: Places along the profile and along the face.
 _POINTS = 201
+#: Where a pair is found.
+_HOLDERS = (
+    "SpurPair",
+    "Result.case.gear_pair",
+    *(f"{name}.gear_pair" for name in ("Case", "MeshTable", "LoadedContact", "HarrisMap")),
+    *(f"{name}.gear_pair" for name in ("TipReliefOptimum", "ComprehensiveStiffness")),
+)
 
 
-def _pair_of(result: Any) -> Any:
-    case = getattr(result, "case", None)
-    return result.gear_pair if case is None else case.gear_pair
-
-
-def _missing(result: Any) -> str:
-    if _pair_of(result).has_modification:
+def _perfect(pair: SpurPair) -> str:
+    if pair.has_modification:
         return ""
     return (
         "The flanks are perfect involutes: neither gear has a modification or a deviation. "
@@ -39,7 +45,7 @@ def _missing(result: Any) -> str:
     )
 
 
-def _own_gap(pair: Any, name: str, radius: Array, face: Array) -> Array:
+def _own_gap(pair: SpurPair, name: str, radius: Array, face: Array) -> Array:
     """Material missing on the flank of one gear, at radii of curvature and face positions."""
     gear = getattr(pair, name)
     flank = flank_ranges(pair)[0 if name == "pinion" else 1]
@@ -59,7 +65,7 @@ def _curves(x: Array, parts: dict[str, Array]) -> list[dict[str, Any]]:
     ]
 
 
-def _profile(pair: Any) -> Row:
+def _profile(pair: SpurPair) -> Row:
     age = np.linspace(0.0, pair.transverse_contact_ratio, _POINTS)
     angle = roll_angle_of(pair, age)
     driving = angle * pair.driving.base_radius
@@ -79,7 +85,7 @@ def _profile(pair: Any) -> Row:
     )
 
 
-def _lead(pair: Any) -> Row:
+def _lead(pair: SpurPair) -> Row:
     half = 0.5 * pair.common_face_width
     face = np.linspace(-half, half, _POINTS)
     middle = np.array([0.5 * (flank.lowest + flank.highest) for flank in flank_ranges(pair)])
@@ -96,7 +102,7 @@ def _lead(pair: Any) -> Row:
     )
 
 
-def _pitch(pair: Any) -> Row:
+def _pitch(pair: SpurPair) -> Row:
     unit, bars = display_unit("cumulative_pitch_deviation"), []
     for name, color in (("pinion", PINION), ("wheel", WHEEL)):
         gear = getattr(pair, name)
@@ -117,7 +123,7 @@ def _pitch(pair: Any) -> Row:
     return Row("Tooth", Panel(label, bars, height=0.8), {"showgrid": False})
 
 
-def _run_out(pair: Any) -> Row:
+def _run_out(pair: SpurPair) -> Row:
     turn, traces = np.linspace(0.0, 2.0 * np.pi, _POINTS), []
     for name, color in (("pinion", PINION), ("wheel", WHEEL)):
         given = getattr(pair, name).modification
@@ -138,22 +144,23 @@ def _run_out(pair: Any) -> Row:
     caption="How far the flanks stand apart where perfect involutes would touch: material is "
     "missing where the curves are above zero. The profile is drawn at the middle of the face, the "
     "face in the middle of the profile against its own middle.",
-    needs=_missing,
+    needs=_perfect,
+    of=_HOLDERS,
+    made_by=RUN,
 )
-def flank_modification(result: Any) -> Any:
+def flank_modification(pair: SpurPair) -> Any:
     """Draw the modifications and deviations of both flanks.
 
     Parameters
     ----------
-    result : Result or LoadedContact
-        Anything that has a gear pair.
+    pair : SpurPair
+        Both gears in their working position.
 
     Returns
     -------
     plotly.graph_objects.Figure
         A panel for each of profile, lead, pitch and run-out that is there.
     """
-    pair = _pair_of(result)
     rows = [
         make(pair)
         for there, make in (
@@ -167,7 +174,7 @@ def flank_modification(result: Any) -> Any:
     return separate(_title(pair), rows)
 
 
-def _title(pair: Any) -> str:
+def _title(pair: SpurPair) -> str:
     """Answer: the largest gap over profile and face, or what there is besides."""
     low, high = pair.path_limits
     path = np.linspace(low, high, _POINTS)[:, None]

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.cycle import positions
+from tribodyn.plot.cycle import TABLE, positions
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
 
 _COLORS = (TOTAL, *PAIR_COLORS)
 #: Deflections of a curve, and how far it goes beyond the working load.
 _POINTS, _BEYOND = 241, 1.3
 
 
-def _phases(mesh: Any) -> list[tuple[str, float]]:
+def _phases(mesh: MeshTable) -> list[tuple[str, float]]:
     """Phases in the middle between two events, and how many pairs are on the path there."""
     events = sorted({0.0, positions(mesh)["E"] % 1.0, 1.0})
     found = []
@@ -38,20 +41,21 @@ def _phases(mesh: Any) -> list[tuple[str, float]]:
     caption="Force over the approach of the gears at places of the mesh cycle. The curve bends "
     "upwards where the flanks flatten and where a further pair comes to bear; the marks are the "
     "working load. To the left of a curve's foot the flanks are apart.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
 )
-def force_law(result: Any) -> Any:
+def force_law(mesh: MeshTable) -> Any:
     """Draw the force on the mesh over its deflection for several mesh phases.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh = result.mesh
     law, load = mesh.force_law, mesh.total_normal_force
     chosen = _phases(mesh)
     working = np.array([float(law.deflection(phase, load)) for _, phase in chosen])

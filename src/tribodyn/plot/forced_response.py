@@ -11,22 +11,14 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "structure_force"):
-        return ""
-    return (
-        "This figure shows the response to a harmonic error. Call "
-        "tribodyn.dynamics.forced_response and its plot method."
-    )
-
-
 @drawing(
     "forced_response",
     heading="Response to a harmonic error",
     caption="Amplitudes over the frequency of the error. Slow errors turn the gears and press "
     "little; fast ones leave the inertias at rest and are taken up by the teeth; between "
     "them stand the natural modes of the mesh.",
-    needs=_missing,
+    of="ForcedResponse",
+    made_by="Call tribodyn.dynamics.forced_response and its plot method.",
 )
 def forced_response(response: Any) -> Any:
     """Draw amplitudes of mesh force, deflection and transmission error over frequency.

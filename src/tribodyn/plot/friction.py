@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
+    TABLE,
     driving_roll_angle,
     pair_life,
     roll_angle_label,
@@ -18,18 +19,21 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, WHEEL, Panel, line, stack
 
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
 
-def _caption(result: Any) -> str:
+
+def _caption(mesh: MeshTable) -> str:
     return (
         "The friction coefficient of one tooth pair from its entry to its exit, and the friction "
         "force that it causes under the static load. The force turns round where the sliding does, "
         "at the pitch point C. Its other steps come from the load. "
-        + load_sharing(result.mesh.transverse_contact_ratio)
+        + load_sharing(mesh.transverse_contact_ratio)
     )
 
 
-def _frictionless(result: Any) -> str:
-    if np.any(result.mesh.friction_coefficient):
+def _frictionless(mesh: MeshTable) -> str:
+    if np.any(mesh.friction_coefficient):
         return ""
     return (
         "No friction acts between the flanks: the friction coefficient is zero. Choose a law, for "
@@ -37,20 +41,26 @@ def _frictionless(result: Any) -> str:
     )
 
 
-@drawing("friction", heading="Friction", caption=_caption, needs=_frictionless)
-def friction(result: Any) -> Any:
+@drawing(
+    "friction",
+    heading="Friction",
+    caption=_caption,
+    needs=_frictionless,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def friction(mesh: MeshTable) -> Any:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh = result.mesh
     angle = driving_roll_angle(mesh)
     coefficient = pair_life(mesh, "friction_coefficient")[1]
     load = pair_life(mesh, "normal_force")[1]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.contact import path_of_contact
 from tribodyn.drawing import drawing
+from tribodyn.plot.cycle import RUN
 from tribodyn.plot.gear_drawing import (
     circle,
     on_line_of_action,
@@ -19,6 +20,9 @@ from tribodyn.plot.labels import axis_label, displayed
 from tribodyn.plot.sharing import further_changes, load_sharing
 from tribodyn.plot.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, figure
 from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.gear import SpurPair
 
 #: Circles of each gear: name and dash.
 _CIRCLES = (("tip", "dot"), ("pitch", "dashdot"), ("base", "dash"))
@@ -40,7 +44,7 @@ def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
     }
 
 
-def _gears(pair: Any, touching: float) -> list[dict[str, Any]]:
+def _gears(pair: SpurPair, touching: float) -> list[dict[str, Any]]:
     angles = tooth_angles(pair, touching)
     traces = []
     for gear, center, angle, name, color in (
@@ -58,7 +62,7 @@ def _gears(pair: Any, touching: float) -> list[dict[str, Any]]:
     return traces
 
 
-def _circles(pair: Any) -> list[dict[str, Any]]:
+def _circles(pair: SpurPair) -> list[dict[str, Any]]:
     cosine = np.cos(pair.operating_pressure_angle)
     traces = []
     for gear, center, color in (
@@ -80,7 +84,7 @@ def _circles(pair: Any) -> list[dict[str, Any]]:
     return traces
 
 
-def _arrows(pair: Any) -> list[dict[str, Any]]:
+def _arrows(pair: SpurPair) -> list[dict[str, Any]]:
     """Arcs with an arrow head in the sense in which each gear turns."""
     pinion_turns = 1 if pair.driver == "pinion" else -1
     traces = []
@@ -97,7 +101,7 @@ def _arrows(pair: Any) -> list[dict[str, Any]]:
     return traces
 
 
-def _roles(pair: Any) -> list[dict[str, Any]]:
+def _roles(pair: SpurPair) -> list[dict[str, Any]]:
     """Words below each gear."""
     return [
         {
@@ -115,7 +119,7 @@ def _roles(pair: Any) -> list[dict[str, Any]]:
     ]
 
 
-def _letters(pair: Any, path: Any) -> dict[str, float]:
+def _letters(pair: SpurPair, path: Any) -> dict[str, float]:
     """Positions to be marked on the line of action, in the order along it."""
     letters = {name: getattr(path, name) for name in "ABCDE"}
     for name, age in further_changes(path.contact_ratio).items():
@@ -123,7 +127,7 @@ def _letters(pair: Any, path: Any) -> dict[str, float]:
     return dict(sorted(letters.items(), key=lambda each: each[1]))
 
 
-def _names(pair: Any, path: Any, axes: tuple[str, str]) -> list[dict[str, Any]]:
+def _names(pair: SpurPair, path: Any, axes: tuple[str, str]) -> list[dict[str, Any]]:
     """Letters in a column beside the line of action, each led to its position."""
     letters = _letters(pair, path)
     x, y = displayed("center_distance", on_line_of_action(pair, np.array(list(letters.values()))))
@@ -149,7 +153,7 @@ def _names(pair: Any, path: Any, axes: tuple[str, str]) -> list[dict[str, Any]]:
     ]
 
 
-def _contact_line(pair: Any, path: Any) -> list[dict[str, Any]]:
+def _contact_line(pair: SpurPair, path: Any) -> list[dict[str, Any]]:
     tangent = on_line_of_action(pair, np.array([0.0, pair.line_of_action_length]))
     active = on_line_of_action(pair, np.array([path.A, path.E]))
     letters = _letters(pair, path)
@@ -170,7 +174,7 @@ def _contact_line(pair: Any, path: Any) -> list[dict[str, Any]]:
     ]
 
 
-def _window(pair: Any, path: Any) -> dict[str, Any]:
+def _window(pair: SpurPair, path: Any) -> dict[str, Any]:
     """Axes: the whole pair on the left, the surroundings of the path of contact on the right."""
     ends = displayed("center_distance", on_line_of_action(pair, np.array([path.A, path.E])))
     middle = ends.mean(axis=1)
@@ -206,8 +210,8 @@ def _window(pair: Any, path: Any) -> dict[str, Any]:
     }
 
 
-def _caption(result: Any) -> str:
-    ratio = path_of_contact(result.case.gear_pair).contact_ratio
+def _caption(pair: SpurPair) -> str:
+    ratio = path_of_contact(pair).contact_ratio
     return (
         "Both gears to scale, with two flanks touching. On the right the mesh zone enlarged: a "
         f"tooth pair enters at A and leaves at E. {load_sharing(ratio)} C is the pitch point, "
@@ -215,20 +219,25 @@ def _caption(result: Any) -> str:
     )
 
 
-@drawing("gear_pair", heading="The gear pair", caption=_caption)
-def gear_pair(result: Any) -> Any:
+@drawing(
+    "gear_pair",
+    heading="The gear pair",
+    caption=_caption,
+    of=("SpurPair", "Result.case.gear_pair", "MeshTable.gear_pair", "LoadedContact.gear_pair"),
+    made_by=RUN,
+)
+def gear_pair(pair: SpurPair) -> Any:
     """Draw both gears in mesh with their circles and the path of contact.
 
     Parameters
     ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
+    pair : SpurPair
+        Both gears in their working position.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    pair = result.case.gear_pair
     path = path_of_contact(pair)
     traces = [*_gears(pair, 0.5 * (path.B + path.D)), *_circles(pair), *_contact_line(pair, path)]
     enlarged = [{**trace, "xaxis": "x2", "yaxis": "y2", "showlegend": False} for trace in traces]

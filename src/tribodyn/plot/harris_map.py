@@ -20,15 +20,6 @@ _HARMONICS = ("dash", "dot", "dashdot")
 _MOST_CURVES = 25
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "quietest_torque"):
-        return ""
-    return (
-        "This figure shows the transmission error over torque. Call tribodyn.harris_map(case) "
-        "and its plot method."
-    )
-
-
 def _curves(study: Any) -> Row:
     """Transmission error over the mesh cycles, one curve for each torque."""
     unit, cycles = display_unit(_QUANTITY), 2 if study.mesh_cycles == 1 else 1
@@ -87,7 +78,8 @@ def _swings(study: Any) -> Row:
     caption="Above, the transmission error of the mesh at rest under rising torque; below, how far "
     "it swings and how much of that falls on each mesh harmonic. Modified flanks are quietest at "
     "the torque for which they were made.",
-    needs=_missing,
+    of="HarrisMap",
+    made_by="Call tribodyn.harris_map(case) and its plot method.",
 )
 def harris_map(study: Any) -> Any:
     """Draw the transmission error for each torque, and its swing and harmonics over the torque.

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.contact_scales import (
     Scales,
     contact_scales,
@@ -97,6 +98,14 @@ def _film(solution: Any, kept: Any, scales: Scales) -> list[dict[str, Any]]:
     ]
 
 
+@drawing(
+    "line_contact",
+    heading="Pressure and film of a line contact",
+    caption="Pressure and film over the place, the inlet on the left. The film narrows before its "
+    "outlet; the dashed curve is the pressure of the dry contact under the same load.",
+    of="LineContactSolution",
+    made_by="Call tribodyn.ehl.solve_line_contact and its plot method.",
+)
 def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
     """Draw pressure and film of a line contact over the position, the inlet on the left.
 

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.cycle import pair_life, positions
+from tribodyn.plot.cycle import TABLE, pair_life, positions
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.style import TOTAL, Panel, line, stack
 from tribodyn.types import Array
 
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
 #: Part of the total force that counts as load on a tip corner.
 _LOADED = 1e-6
 
 
-def whole_life(mesh: Any) -> tuple[Array, Array]:
+def whole_life(mesh: MeshTable) -> tuple[Array, Array]:
     """Follow the load share of one tooth pair, tip corners before A and after E included."""
     age, share = pair_life(mesh, "load_share")
     ratio = positions(mesh)["E"]
@@ -40,9 +43,9 @@ def _closed(age: Array, share: Array) -> tuple[Array, Array]:
     return ends, np.concatenate(([0.0], share, [0.0]))
 
 
-def _caption(result: Any) -> str:
+def _caption(mesh: MeshTable) -> str:
     words = "How much of the load one tooth pair carries from where it comes in to where it leaves."
-    if np.any(result.mesh.corner_share > _LOADED):
+    if np.any(mesh.corner_share > _LOADED):
         return (
             f"{words} The loaded teeth bend: where the background is grey, before A or after E, a "
             "tip corner bears."
@@ -50,20 +53,25 @@ def _caption(result: Any) -> str:
     return words
 
 
-@drawing("load_sharing", heading="Load sharing", caption=_caption)
-def load_sharing(result: Any) -> Any:
+@drawing(
+    "load_sharing",
+    heading="Load sharing",
+    caption=_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def load_sharing(mesh: MeshTable) -> Any:
     """Draw the load on one tooth pair over the roll angle of the driving gear.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh = result.mesh
     pair = mesh.gear_pair
     age, share = _closed(*whole_life(mesh))
     x = displayed("roll_angle", roll_angle_of(pair, age))

@@ -11,7 +11,6 @@ from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import (
     Life,
-    needs_loaded_contact,
     pair_letters,
     roll_angle_of,
     roll_label,
@@ -127,7 +126,8 @@ def _shares_over_cycles(contact: Any) -> list[dict[str, Any]]:
     "of action; what varies in it excites the vibration. The tangent of the stiffness counts for "
     "small vibration about the load, the secant for the whole deflection. A pair that carries "
     "before A or after E does so on a tip corner.",
-    needs=needs_loaded_contact,
+    of="LoadedContact",
+    made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
 def loaded_contact(contact: Any) -> Any:
     """Draw transmission error, stiffness and load sharing of a loaded tooth contact.

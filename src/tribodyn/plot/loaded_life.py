@@ -23,16 +23,6 @@ _NAMED_SHADE = 0.03
 _SHADE = "rgba(107, 119, 133, 0.13)"
 
 
-def needs_loaded_contact(result: Any) -> str:
-    """Tell why something is not a loaded tooth contact."""
-    if hasattr(result, "pair_deflection"):
-        return ""
-    return (
-        "This figure shows a loaded tooth contact at rest. Call tribodyn.loaded_contact(case) "
-        "and its plot method."
-    )
-
-
 @dataclass(frozen=True)
 class Life:
     """Least, mean and greatest value over all tooth pairs, from entry to exit."""

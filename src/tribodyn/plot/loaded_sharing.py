@@ -12,7 +12,6 @@ from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import (
     Life,
     corner_shades,
-    needs_loaded_contact,
     pair_letters,
     roll_angle_of,
     roll_label,
@@ -71,7 +70,13 @@ def _traces(contact: Any, life: Life, seen: Mask) -> list[dict[str, Any]]:
     return traces
 
 
-@drawing("loaded_sharing", heading="Load sharing", caption=_caption, needs=needs_loaded_contact)
+@drawing(
+    "loaded_sharing",
+    heading="Load sharing",
+    caption=_caption,
+    of="LoadedContact",
+    made_by="Call tribodyn.loaded_contact(case) and its plot method.",
+)
 def loaded_sharing(contact: Any) -> Any:
     """Draw the force on one tooth pair from where it begins to carry to where it ends.
 

@@ -16,15 +16,6 @@ _COLORS = (PINION, WHEEL, PAIR_COLORS[0])
 _KEPT = 1500
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "growth") and hasattr(result, "standard_error"):
-        return ""
-    return (
-        "This figure shows Lyapunov exponents. Call tribodyn.analysis.lyapunov_exponents(...) and "
-        "its plot method."
-    )
-
-
 def _title(found: Any) -> str:
     value, error = found.vibrating[0], found.standard_error[0]
     words = f"{value:.4g} 1/s, standard error {error:.1g} 1/s"
@@ -41,7 +32,8 @@ def _title(found: Any) -> str:
     caption="Mean growth of a small disturbance up to each mesh cycle. The band is the standard "
     "error of a mean over so many cycles, the dotted line the result. A largest exponent that "
     "stays above zero means chaos.",
-    needs=_missing,
+    of="LyapunovExponents",
+    made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
 )
 def lyapunov(found: Any) -> Any:
     """Draw the running means of the largest exponents.

@@ -8,6 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot import signals
+from tribodyn.plot.cycle import RUN
 from tribodyn.plot.labels import axis_label, display_unit, rounded
 from tribodyn.plot.motion import Motion
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
@@ -41,7 +42,13 @@ def _caption(result: Any) -> str:
     return " ".join(filter(None, sentences))
 
 
-@drawing("mesh_force", heading="Mesh force", caption=_caption)
+@drawing(
+    "mesh_force",
+    heading="Mesh force",
+    caption=_caption,
+    of="Result",
+    made_by=RUN,
+)
 def mesh_force(result: Any) -> Any:
     """Draw the dynamic and the static mesh force.
 

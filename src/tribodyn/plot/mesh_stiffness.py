@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.cycle import CYCLES, cycles, mesh_events, pair_lives
+from tribodyn.plot.cycle import CYCLES, TABLE, cycles, mesh_events, pair_lives
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
 
 
 @drawing(
@@ -19,20 +22,22 @@ from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
     caption="The stiffness jumps whenever a tooth pair enters or leaves the contact. These jumps "
     "excite the vibration: the higher they are, the louder the gears. The coloured curves are "
     "the single tooth pairs that add up to the total.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
 )
-def mesh_stiffness(result: Any) -> Any:
+def mesh_stiffness(mesh: MeshTable) -> Any:
     """Draw the stiffness of the tooth pairs and their sum.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh, unit = result.mesh, display_unit("mesh_stiffness")
+    unit = display_unit("mesh_stiffness")
     phase, total = cycles(mesh.phase, displayed("mesh_stiffness", mesh.mesh_stiffness))
     traces = [line(phase, total, "all pairs", TOTAL, unit=unit)]
     for number, (at, pair) in enumerate(pair_lives(mesh, "stiffness"), start=1):

@@ -16,14 +16,6 @@ _HATCHES = ("", "/", "x", ".")
 _LEAST = 1e-3
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "strain_share"):
-        return ""
-    return (
-        "This figure shows natural modes. Call tribodyn.dynamics.natural_modes and its plot method."
-    )
-
-
 def _bars(labels: list[str], shares: dict[str, Any]) -> list[dict[str, Any]]:
     seen = {name: share for name, share in shares.items() if np.max(share, initial=0.0) > _LEAST}
     return [
@@ -48,7 +40,8 @@ def _bars(labels: list[str], shares: dict[str, Any]) -> list[dict[str, Any]]:
     heading="Natural modes",
     caption="One bar for each natural frequency. Above, which body moves; below, which spring "
     "is strained. A mode with much of its strain in the mesh answers to transmission errors.",
-    needs=_missing,
+    of="NaturalModes",
+    made_by="Call tribodyn.dynamics.natural_modes and its plot method.",
 )
 def mode_shapes(modes: Any) -> Any:
     """Draw the energy shares of all elastic modes.

@@ -34,15 +34,6 @@ def strongest_orders(result: Any, count: int = 3) -> list[float]:
     return found
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "cut") and hasattr(result, "revolutions"):
-        return ""
-    return (
-        "This figure shows amplitudes over orders and speed. Call tribodyn.analysis.order_map on "
-        "the record of a run-up and tribodyn.plot.order_map.order_map on what it returns."
-    )
-
-
 def _axis(result: Any) -> tuple[Array, str, str]:
     """Speed where it only rises or only falls, else time; label and unit on hovering."""
     change = np.diff(result.speed)
@@ -58,7 +49,8 @@ def _axis(result: Any) -> tuple[Array, str, str]:
     caption="What turns with the shaft is a level line; its order counts the cycles in one "
     "revolution. Where a level line darkens, that order meets a natural frequency. Below, the "
     "strongest orders over the speed.",
-    needs=_missing,
+    of="OrderMap",
+    made_by="Call tribodyn.analysis.order_map on the record of a run-up and its plot method.",
 )
 def order_map(result: Any) -> Any:
     """Draw amplitudes over orders and speed, and cuts at the strongest orders.

@@ -23,15 +23,6 @@ _SCALE = [[0.0, "#f7fbff"], [0.35, "#9ecae1"], [0.7, "#3182bd"], [1.0, "#08306b"
 _USUAL = 0.98
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "contact_loss_share") and hasattr(result, "units"):
-        return ""
-    return (
-        "This figure shows motions over two parameters. Call "
-        "tribodyn.analysis.parameter_map(...) and its plot method."
-    )
-
-
 def _class(found: Any) -> Any:
     """Number of the colour of every motion; NaN where there is none yet."""
     period = found.period
@@ -94,7 +85,8 @@ def _title(found: Any) -> str:
     caption="After how many mesh cycles the motion repeats, how much the mesh vibrates and how "
     "long the teeth are apart, over two parameters. Each motion starts by itself: where several "
     "exist, another start may show another one.",
-    needs=_missing,
+    of="ParameterMap",
+    made_by="Call tribodyn.analysis.parameter_map(...) and its plot method.",
 )
 def parameter_map(found: Any) -> Any:
     """Draw period, rms and contact loss.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
+    TABLE,
     driving_roll_angle,
     pair_life,
     roll_angle_label,
@@ -17,6 +18,9 @@ from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PINION, TOTAL, WHEEL, Panel, line, stack
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
 
 Rows = tuple[tuple[str, str, str, str], ...]
 
@@ -36,28 +40,33 @@ _RADII: Rows = (
 _ZERO = {"zeroline": True}
 
 
-def _caption(result: Any) -> str:
+def _caption(mesh: MeshTable) -> str:
     return (
         "What one tooth pair meets from A, where it enters, to E, where it leaves. At the pitch "
         "point C the surfaces roll without sliding; the sliding speed changes its sign there, and "
-        f"so does the friction. {load_sharing(result.mesh.transverse_contact_ratio)}"
+        f"so does the friction. {load_sharing(mesh.transverse_contact_ratio)}"
     )
 
 
-@drawing("path_of_contact", heading="Along the path of contact", caption=_caption)
-def path_of_contact(result: Any) -> Any:
+@drawing(
+    "path_of_contact",
+    heading="Along the path of contact",
+    caption=_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def path_of_contact(mesh: MeshTable) -> Any:
     """Draw speeds, radii and slide-to-roll ratio over the roll angle of the driving gear.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh = result.mesh
     angle = driving_roll_angle(mesh)
 
     def curves(quantity: str, rows: Rows) -> list[dict[str, Any]]:

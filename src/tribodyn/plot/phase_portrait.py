@@ -11,22 +11,14 @@ from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import MUTED, PINION, WHEEL, figure
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "section_position"):
-        return ""
-    return (
-        "This figure shows a motion in its phase plane. Call "
-        "tribodyn.analysis.phase_portrait(response) and its plot method."
-    )
-
-
 @drawing(
     "phase_portrait",
     heading="Phase portrait",
     caption="Velocity over position of one coordinate, or of the compression of a contact. A "
     "motion that repeats is a closed curve; the dots are its states at the mesh phase 0. Dashed "
     "lines are the ends of the backlash.",
-    needs=_missing,
+    of="PhasePortrait",
+    made_by="Call tribodyn.analysis.phase_portrait(response) and its plot method.",
 )
 def phase_portrait(portrait: Any) -> Any:
     """Draw the curve and its points at the mesh phase 0.

@@ -12,12 +12,6 @@ from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import PINION, TOTAL, figure
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "names") and hasattr(result, "velocity") and hasattr(result, "deflection"):
-        return ""
-    return "This figure shows a section. Call tribodyn.analysis.poincare(...) and its plot method."
-
-
 def _title(section: Any) -> str:
     if section.verdict == "step-limited":
         return "The motion is made by the step, not by physics"
@@ -41,7 +35,8 @@ def _window(values: Any, motion: float) -> list[float]:
     caption="The state once per mesh cycle, at the mesh phase 0. A motion that repeats shows as "
     "many points as it takes mesh cycles to do so, a quasi-periodic one a closed curve, a chaotic "
     "one a cloud with inner structure.",
-    needs=_missing,
+    of="PoincareSection",
+    made_by="Call tribodyn.analysis.poincare(...) and its plot method.",
 )
 def poincare(section: Any, coordinate: int | str = 0) -> Any:
     """Draw the points of one coordinate in its phase plane.

@@ -29,15 +29,6 @@ def signal_words(run: Any, signal: str) -> tuple[str, str]:
     return words, "µm" if unit == "m" else readable(unit)
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "profile") and hasattr(result, "cycles"):
-        return ""
-    return (
-        "This figure shows a run-up. Call tribodyn.dynamics.run_up(...) or tribodyn.run_up(case) "
-        "and its plot method."
-    )
-
-
 def _parts(run: Any) -> list[tuple[Any, str]]:
     """Parts of the run and the dash of their curves."""
     rate = run.cycles.rate
@@ -111,7 +102,8 @@ def _title(run: Any, levels: list[Any], found: Sequence[Any], unit: str, factor:
     caption="Overall level and orders of the mesh over the speed. Solid on the way up, dotted on "
     "the way down; where the two differ, the motion jumps or the speed changes too quickly for a "
     "resonance to build up. Circles mark peaks of an order and the natural mode that it meets.",
-    needs=_missing,
+    of="RunUp",
+    made_by="Call tribodyn.dynamics.run_up(...) or tribodyn.run_up(case) and its plot method.",
 )
 def run_up(
     run: Any, *, signal: str = "contact_force", orders: Sequence[float] | None = None

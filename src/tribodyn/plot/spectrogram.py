@@ -67,21 +67,13 @@ def amplitude_heatmap(
     }
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "block_duration"):
-        return ""
-    return (
-        "This figure shows amplitudes over time and frequency. Call tribodyn.analysis.spectrogram "
-        "on a signal and tribodyn.plot.spectrogram.spectrogram on what it returns."
-    )
-
-
 @drawing(
     "spectrogram",
     heading="Spectrogram",
     caption="Which frequencies are there at what time. Lines that rise with the speed are orders "
     "of a shaft; level ones are natural frequencies. Below, the rms over time.",
-    needs=_missing,
+    of="Spectrogram",
+    made_by="Call tribodyn.analysis.spectrogram on a signal and its plot method.",
 )
 def spectrogram(result: Any) -> Any:
     """Draw amplitudes over time and frequency, and the rms over time.

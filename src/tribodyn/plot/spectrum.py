@@ -7,6 +7,7 @@ from typing import Any
 from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.both_gears import harmonic_panels
+from tribodyn.plot.cycle import RUN
 from tribodyn.plot.harmonics import harmonic_layout, harmonic_panel, no_harmonics, strongest
 from tribodyn.plot.style import TOTAL, stack
 
@@ -18,6 +19,8 @@ from tribodyn.plot.style import TOTAL, stack
     "pass in a second. A high bar at a higher harmonic tells of a natural frequency near it. The "
     "buttons switch to a logarithmic scale, on which small harmonics show.",
     needs=no_harmonics,
+    of="Result",
+    made_by=RUN,
 )
 def spectrum(result: Any) -> Any:
     """Draw the mesh harmonics of the transmission error and of the accelerations.

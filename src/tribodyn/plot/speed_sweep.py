@@ -14,15 +14,6 @@ _COLORS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
 _WORDS = {"up": "upwards", "down": "downwards"}
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "jumps") and hasattr(result, "directions"):
-        return ""
-    return (
-        "This figure shows steady motions over the speed. Call "
-        "tribodyn.dynamics.speed_sweep(...) and its plot method."
-    )
-
-
 def _curves(sweep: Any, values: Any, unit: str) -> list[dict[str, Any]]:
     speed = displayed("speed", sweep.speed)
     traces = []
@@ -77,7 +68,8 @@ def _title(sweep: Any) -> str:
     caption="How strong the steady motion is when the speed goes up slowly, and when it comes "
     "down. Where the two differ, two motions are possible and the one before decides; arrows are "
     "jumps. Crosses are motions that are not stable or do not repeat.",
-    needs=_missing,
+    of="SpeedSweep",
+    made_by="Call tribodyn.dynamics.speed_sweep(...) and its plot method.",
 )
 def speed_sweep(sweep: Any, *, signal: str | None = None) -> Any:
     """Draw rms, range and loss of contact over the speed.

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.cycle import pair_life
+from tribodyn.plot.cycle import TABLE, pair_life
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 from tribodyn.types import Array
 
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
 _PAIR = "one tooth pair"
 #: Mesh cycles shown before A and after E.
 _MARGIN = 0.12
 
 
-def _pairs(mesh: Any, ends: tuple[float, float]) -> list[tuple[str, Array, Array]]:
+def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array, Array]]:
     """Stiffness of the pair between A and E, and of those before and after it."""
     age, stiffness = pair_life(mesh, "stiffness")
     age = np.concatenate((age[:1], age, age[-1:]))
@@ -33,7 +36,7 @@ def _pairs(mesh: Any, ends: tuple[float, float]) -> list[tuple[str, Array, Array
     return sorted(found, key=lambda each: each[0] != _PAIR)
 
 
-def _total(mesh: Any, values: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
+def _total(mesh: MeshTable, values: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
     """Repeat a column of the whole mesh over the ages that are shown."""
     cycles = range(int(np.floor(ends[0])), int(np.ceil(ends[1])))
     age = np.concatenate([mesh.phase + cycle for cycle in cycles])
@@ -46,20 +49,21 @@ def _total(mesh: Any, values: Array, ends: tuple[float, float]) -> tuple[Array, 
     heading="Stiffness over the roll angle",
     caption="The secant is the load over the whole deflection, the tangent what counts for small "
     "vibration about the load. The part of each tooth pair is its share of the secant.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
 )
-def static_stiffness(result: Any) -> Any:
+def static_stiffness(mesh: MeshTable) -> Any:
     """Draw secant and tangent stiffness of the mesh and the part of each tooth pair.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh = result.mesh
     pair, unit = mesh.gear_pair, display_unit("mesh_stiffness")
     ends = (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
 

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.cycle import CYCLES, cycles, mesh_events
+from tribodyn.plot.cycle import CYCLES, TABLE, cycles, mesh_events
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
 
 _QUANTITY = "static_transmission_error"
 #: Mesh harmonics drawn.
 _ORDERS = 8
 
 
-def _course(mesh: Any, mean: float) -> Row:
+def _course(mesh: MeshTable, mean: float) -> Row:
     """Transmission error over the mesh cycles, and its mean."""
     unit = display_unit(_QUANTITY)
     phase, shown = cycles(mesh.phase, displayed(_QUANTITY, mesh.static_transmission_error))
@@ -34,7 +37,7 @@ def _course(mesh: Any, mean: float) -> Row:
     )
 
 
-def _bars(mesh: Any) -> Row:
+def _bars(mesh: MeshTable) -> Row:
     """Amplitudes of the mesh harmonics."""
     unit = display_unit(_QUANTITY)
     bars = {
@@ -59,20 +62,21 @@ def _bars(mesh: Any) -> Row:
     caption="How far the gears approach along the line of action when they turn very slowly under "
     "load. What varies is the excitation of the vibration; the bars show how much of it falls on "
     "each harmonic of the mesh frequency.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
 )
-def static_transmission_error(result: Any) -> Any:
+def static_transmission_error(mesh: MeshTable) -> Any:
     """Draw the static transmission error over two mesh cycles, and its mesh harmonics.
 
     Parameters
     ----------
-    result : Result or MeshTable
-        Anything that has a mesh table.
+    mesh : MeshTable
+        Contact of one mesh cycle.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    mesh = result.mesh
     mean = float(mesh.grid.mean(mesh.static_transmission_error))
     swing = float(np.ptp(mesh.static_transmission_error))
     return separate(

@@ -18,16 +18,6 @@ _COLORS = (PINION, WHEEL, *PAIR_COLORS)
 _CURVES = len(_COLORS)
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "axes") and hasattr(result, "failed"):
-        return ""
-    return (
-        "This figure shows one figure of the summary over values of the case. Call "
-        'tribodyn.sweep(case, {"operation.speed": ("400 rpm", "3500 rpm", 60)}) and its plot '
-        "method."
-    )
-
-
 def _words(name: str) -> str:
     words = name.replace("_", " ")
     return words[:1].upper() + words[1:]
@@ -118,7 +108,9 @@ def _map(found: Any, values: Any, label: str, unit: str, title: str) -> Any:
     caption="One figure of the summary over the values that were varied. Peaks are resonances; a "
     "step means that the motion jumped. A cross or an empty place is a value that could not be "
     "computed, and the reason stands in the table.",
-    needs=_missing,
+    of="Sweep",
+    made_by='Call tribodyn.sweep(case, {"operation.speed": ("400 rpm", "3500 rpm", '
+    "60)}) and its plot method.",
 )
 def sweep(found: Any, figure: str = "rms_mesh_force") -> Any:
     """Draw a figure of the summary over the keys that vary.

@@ -19,15 +19,6 @@ _SCALE = [[0.0, "#f7fbff"], [0.5, "#c6dbef"], [1.0, "#6baed6"]]
 _BAR = {"len": 0.34, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "map_objective"):
-        return ""
-    return (
-        "This figure shows the search for a tip relief. Call tribodyn.optimize_tip_relief(case) "
-        "and its plot method."
-    )
-
-
 def _map(study: Any) -> Row:
     """Objective over amount and length, with a mark at the optimum."""
     unit = display_unit(_QUANTITY)
@@ -122,7 +113,13 @@ def _caption(study: Any) -> str:
     return words
 
 
-@drawing("tip_relief_map", heading="Search for a tip relief", caption=_caption, needs=_missing)
+@drawing(
+    "tip_relief_map",
+    heading="Search for a tip relief",
+    caption=_caption,
+    of="TipReliefOptimum",
+    made_by="Call tribodyn.optimize_tip_relief(case) and its plot method.",
+)
 def tip_relief_map(study: Any) -> Any:
     """Draw the objective over amount and length, and the transmission error before and after.
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot import signals
-from tribodyn.plot.cycle import cycles
+from tribodyn.plot.cycle import RUN, cycles
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.motion import Motion, is_periodic
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
@@ -34,7 +34,13 @@ def _caption(result: Any) -> str:
     return " ".join(sentences)
 
 
-@drawing("transmission_error", heading="Transmission error", caption=_caption)
+@drawing(
+    "transmission_error",
+    heading="Transmission error",
+    caption=_caption,
+    of="Result",
+    made_by=RUN,
+)
 def transmission_error(result: Any) -> Any:
     """Draw the dynamic transmission error and, for a steady state, the quasi-static one.
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.analysis import OrderMap
 from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, readable, rounded, significant
 from tribodyn.plot.spectrogram import with_unit
@@ -15,21 +16,13 @@ from tribodyn.plot.style import INK, MUTED, WHEEL, Panel, line, stack
 _CURVES, _POINTS, _REACH = 40, 600, 6.0
 
 
-def _missing(result: Any) -> str:
-    if hasattr(result, "strongest") and hasattr(result, "time"):
-        return ""
-    return (
-        "This figure shows spectra one behind the other. Call tribodyn.analysis.order_map or "
-        "spectrogram on a signal and tribodyn.plot.waterfall.waterfall on what it returns."
-    )
-
-
 @drawing(
     "waterfall",
     heading="Waterfall",
     caption="One spectrum behind the other, from the first at the bottom to the last at the top; "
     "all on one scale. The one with the highest peak is drawn in colour.",
-    needs=_missing,
+    of=("OrderMap", "Spectrogram"),
+    made_by="Call tribodyn.analysis.order_map or spectrogram on a signal and draw what it returns.",
 )
 def waterfall(result: Any) -> Any:
     """Draw the spectra of an order map or a spectrogram one behind the other.
@@ -43,7 +36,7 @@ def waterfall(result: Any) -> Any:
     -------
     plotly.graph_objects.Figure
     """
-    by_order = hasattr(result, "order")
+    by_order = isinstance(result, OrderMap)
     place = result.order if by_order else result.frequency
     words = "Order" if by_order else axis_label("frequency")
     number, block = result.strongest()
@@ -82,6 +75,6 @@ def waterfall(result: Any) -> Any:
 
 def _when(result: Any, block: int) -> str:
     """Speed or time of a block."""
-    if hasattr(result, "order"):
+    if isinstance(result, OrderMap):
         return rounded("speed", float(result.speed[block]))
     return f"{significant(float(result.time[block]))} s"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tribodyn.stiffness.loaded.plain import plain_approach, plain_loads
 
 from plain.loaded_contact import plain_approach, plain_loads
 from tribodyn.errors import ComputationError
