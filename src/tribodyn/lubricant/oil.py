@@ -14,7 +14,7 @@ from tribodyn.lubricant.barus import barus_viscosity
 from tribodyn.lubricant.dowson_higginson import dowson_higginson_density
 from tribodyn.lubricant.iso_15144 import DENSITY_FALL, density_at_temperature
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: Pressure laws by name, each ``law(pressure, dynamic_viscosity, coefficient)``.

@@ -17,7 +17,7 @@ from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.analytic_nodes import flank_nodes
 from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.load_point import load_point
-from tribodyn.stiffness.model import MODELS, StiffnessModel
+from tribodyn.stiffness.model import MODELS, StiffnessModel, reference_option
 from tribodyn.stiffness.tooth_compliance import tooth_compliance
 from tribodyn.stiffness.weber_banaschek import weber_banaschek_compression
 from tribodyn.types import Array, Mask
@@ -251,6 +251,12 @@ def _model(
 
 MODELS.register("potential-energy")(
     StiffnessModel(
-        "potential-energy", _model, {"reference": "bore"}, influence=potential_energy_influence
+        "potential-energy",
+        _model,
+        {"reference": reference_option("bore")},
+        influence=potential_energy_influence,
+        meaning="stiffness from the strain energy of each tooth, its foundation and the Hertzian "
+        "contact",
+        papers=("sainsot", "weber-banaschek"),
     )
 )

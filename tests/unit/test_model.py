@@ -2,9 +2,9 @@
 
 import pytest
 
-from tribodyn import registry as module
+from tribodyn import model as module
 from tribodyn.errors import InputError
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 
 class Entry:
