@@ -9,8 +9,8 @@ from tribodyn.cli.app import COMMANDS
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
-from tribodyn.study.options import model_options
-from tribodyn.study.reference import case_keys, reference_tables
+from tribodyn.study.case.checks import model_options
+from tribodyn.study.case.reference import case_keys, reference_tables
 
 _ROW = r"^\| `([\w-]+)` \| (.*) \|$"
 _DOCS = Path(__file__).parents[2] / "docs"

@@ -17,10 +17,10 @@ from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, default_relief_length, flank_gap, flank_ranges
 from tribodyn.study import SUMMARY
-from tribodyn.study.case import Case
-from tribodyn.study.geometry import geometry
-from tribodyn.study.provenance import assumptions
-from tribodyn.study.read import read_case
+from tribodyn.study.case.case import Case
+from tribodyn.study.run.geometry import geometry
+from tribodyn.study.case.provenance import assumptions
+from tribodyn.study.case.read import read_case
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

@@ -15,17 +15,17 @@ from tribodyn.cases.catalogue import case_files
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.report import render_report, write_sweep_report
-from tribodyn.study.cautions import case_cautions
-from tribodyn.study.citations import cite
-from tribodyn.study.fields import Spec
-from tribodyn.study.provenance import (
+from tribodyn.study.run.cautions import case_cautions
+from tribodyn.study.run.citations import cite
+from tribodyn.model import Spec
+from tribodyn.study.case.provenance import (
     assumptions,
     changed_keys,
     effective,
     provenance,
     spec_of,
 )
-from tribodyn.study.read import read_case
+from tribodyn.study.case.read import read_case
 
 WIDTH = "gears.pinion.face_width"
 MARK = re.compile(r'^("[\w.]+") = \{ value = (.*), reason = (".*") \}$', re.MULTILINE)
