@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 
 __all__ = [
+    "Argument",
     "ComputationError",
     "InputError",
+    "ModelOption",
     "ModelWarning",
     "OutputExistsError",
     "Problem",
@@ -27,6 +29,61 @@ __all__ = [
 
 
 @dataclass(frozen=True)
+class Argument:
+    """The argument of a function, or the field of an object, that a problem is about.
+
+    Parameters
+    ----------
+    name : str
+        Its name; a field of an argument follows after a point.
+    gear : str
+        ``"pinion"`` or ``"wheel"`` for what each of the two gears has; empty otherwise.
+
+    Examples
+    --------
+    >>> str(Argument("modification.tip_relief", gear="pinion"))
+    'argument pinion_modification.tip_relief'
+    """
+
+    name: str
+    gear: str = ""
+
+    def __str__(self) -> str:
+        """Name the argument as the caller writes it."""
+        return f"argument {self.gear}_{self.name}" if self.gear else f"argument {self.name}"
+
+
+@dataclass(frozen=True)
+class ModelOption:
+    """The option of a model picked by name that a problem is about, or the model as a whole.
+
+    Parameters
+    ----------
+    kind : str
+        What the model is of: ``"stiffness"``.
+    model : str
+        Name of the model; empty where an option of all models is meant.
+    name : str
+        Name of the option; empty where the model as a whole is meant.
+
+    Examples
+    --------
+    >>> str(ModelOption("stiffness", "table", "phase")), str(ModelOption("stiffness", "table"))
+    ('table stiffness: phase', 'table stiffness')
+    """
+
+    kind: str
+    model: str = ""
+    name: str = ""
+
+    def __str__(self) -> str:
+        """Name the model and its option."""
+        if not self.model:
+            return f"{self.kind} option {self.name}"
+        return f"{self.model} {self.kind}: {self.name}".removesuffix(": ")
+
+
+@dataclass(frozen=True)
 class Problem:
     """One fault, told as a colleague would.
 
@@ -34,8 +91,9 @@ class Problem:
     ----------
     what : str
         The finding, with value and unit.
-    where : str
-        Argument name, or ``file:line: key``. Empty when the context is obvious.
+    where : Argument, ModelOption or str
+        What it is about; a text such as ``file:line: key`` for anything else, or empty when the
+        context is obvious.
     why : str
         The limit that is broken and where it comes from.
     remedy : str
@@ -43,7 +101,7 @@ class Problem:
     """
 
     what: str
-    where: str = ""
+    where: Argument | ModelOption | str = ""
     why: str = ""
     remedy: str = ""
 
@@ -132,7 +190,7 @@ def _check(
         raise InputError(
             Problem(
                 what=f"{name} = {worst:.6g} {unit}".rstrip(),
-                where=f"argument {name}",
+                where=Argument(name),
                 why=f"{name} must be finite and {limit}",
                 remedy=remedy,
             )

@@ -28,9 +28,9 @@ def check(
     json : bool
         Write one flat JSON object in SI to stdout.
     """
+    from tribodyn.study.case.provenance import assumptions
     from tribodyn.study.run.cautions import case_cautions
     from tribodyn.study.run.geometry import geometry
-    from tribodyn.study.case.provenance import assumptions
     from tribodyn.study.run.summary_names import SUMMARY
 
     checked = changed_case(case, set_ or [])

@@ -70,9 +70,8 @@ def _keys(symbol: str) -> list[dict[str, Any]]:
 
 def _choices(symbol: str) -> list[dict[str, Any]]:
     """Models, laws and methods with the papers behind them."""
+    from tribodyn.study.case.reference import case_keys, choice_meanings
     from tribodyn.study.run.citations import sources_of
-    from tribodyn.study.case.reference import case_keys
-    from tribodyn.study.case.reference import choice_meanings
 
     meaning = choice_meanings().get(symbol)
     if meaning is None:
@@ -113,9 +112,8 @@ def _figures(symbol: str) -> list[dict[str, Any]]:
 
 def _unknown(symbol: str) -> Problem:
     from tribodyn.nomenclature import QUANTITIES
-    from tribodyn.study.case.reference import case_keys
+    from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
     from tribodyn.study.run.summary_names import SUMMARY
-    from tribodyn.study.case.reference import choice_meanings, warning_meanings
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
     names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.model import Model, Registry, choice
-from tribodyn.stiffness.influence import GearInfluence
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 
@@ -111,7 +111,7 @@ class StiffnessModel(Model):
         known = ", ".join(self.options)
         return Problem(
             what=f'the stiffness model "{self.name}" has no option "{name}"',
-            where=f"stiffness option {name}",
+            where=ModelOption("stiffness", name=name),
             why=f"Its options are: {known}",
             remedy=self.nearest(name),
         )

@@ -6,22 +6,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.case.case import Case
-    from tribodyn.study.studies.static import film_over_operation
-    from tribodyn.study.studies.sweep import sweep
-    from tribodyn.study.run.pipeline import run
     from tribodyn.study.case.read import read_case
+    from tribodyn.study.run.loaded_teeth import loaded_contact
+    from tribodyn.study.run.pipeline import run
     from tribodyn.study.run.result import Result
+    from tribodyn.study.run.summary_names import SUMMARY
+    from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.study.studies.static import (
         comprehensive_stiffness,
+        film_over_operation,
         harris_map,
         optimize_tip_relief,
     )
-    from tribodyn.study.run.summary_names import SUMMARY
+    from tribodyn.study.studies.sweep import sweep
     from tribodyn.study.studies.sweep_result import Sweep
-    from tribodyn.study.run.loaded_teeth import loaded_contact
 
 __all__ = [
     "SUMMARY",

@@ -88,7 +88,7 @@ def test_faults_of_both_gears_and_of_the_geometry_come_at_once() -> None:
     )
     with pytest.raises(InputError) as caught:
         read_case(text.replace('"91.5 mm"', '"80 mm"', 1), "pair.toml")
-    places = [problem.where.partition(": ")[2] for problem in caught.value.problems]
+    places = [str(problem.where).partition(": ")[2] for problem in caught.value.problems]
     assert places == ["gears.center_distance", f"{PINION}.profile_map", f"{WHEEL}.profile_map"]
 
 

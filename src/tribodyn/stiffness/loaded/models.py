@@ -13,9 +13,9 @@ import numpy as np
 
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.model import flag
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.loaded.prepare import mesh_problem
+from tribodyn.stiffness.loaded.contact import mesh_problem
 from tribodyn.stiffness.model import MODELS, StiffnessModel, reference_option
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 #: Options of every model that knows the structure of the gears.
@@ -29,13 +29,13 @@ def _fe2d(gear: SpurGear, material: Material, *, reference: str) -> GearInfluenc
 
 
 def _analytic(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.analytic import analytic_influence
+    from tribodyn.stiffness.teeth.analytic import analytic_influence
 
     return analytic_influence(gear, material, reference=reference)
 
 
 def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.weber import weber_influence
+    from tribodyn.stiffness.teeth.weber import weber_influence
 
     return weber_influence(gear, material, reference=reference)
 

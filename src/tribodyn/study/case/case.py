@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError
 from tribodyn.model import text
-from tribodyn.study.case.case import derive
+from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.given import Given, Source, plain
 from tribodyn.study.case.provenance import effective_values, provenance
-from tribodyn.study.case.section import Found, Section, Table, read_fields
+from tribodyn.study.case.section import Section, Table, read_fields
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -93,8 +93,12 @@ class Case(Section, whole=True):
         marks = body.pop("assumed", {})
         super().__init__(**read_fields(type(self), body, "", found))
         found += reason_faults(marks)
+        readable = not any(key.startswith("gears") for key, _ in found)
         found += cross_problems(given, {key for key, _ in found})
-        found += self._impossible(found)
+        if not found:
+            found = derive.case_problems(self)
+        elif readable and self.gears is not None:
+            found += derive.gear_problems(self.gears)
         if found:
             raise InputError(source.place(found))
         self._source, self._assumed = source, dict(marks)
@@ -102,13 +106,6 @@ class Case(Section, whole=True):
         for key in stale:
             del self._assumed[key]
         self._given = Given({**given.data, **tables(self._stated, self._assumed)})
-
-    def _impossible(self, found: Found) -> Found:
-        """What no gear pair can be, as far as the values found so far tell."""
-        if not found:
-            return derive.case_problems(self)
-        sound = self.gears is not None and not any(key.startswith("gears") for key, _ in found)
-        return derive.gear_problems(self.gears) if sound else []
 
     def __getstate__(self) -> dict[str, Any]:
         """What makes a case, without what is derived from it."""
@@ -279,7 +276,7 @@ class Case(Section, whole=True):
 
 def _values(section: Section, prefix: str) -> Iterator[tuple[str, Any]]:
     held = vars(section)
-    for name in type(section).keys():
+    for name in type(section).all_keys():
         value = held.get(name)
         if isinstance(value, Section):
             yield from _values(value, f"{prefix}{name}.")

@@ -76,16 +76,33 @@ class Gear(Section):
     """The ``[gears.pinion]`` and ``[gears.wheel]`` tables; None where a default is derived."""
 
     teeth: int = integer(
-        REQUIRED, 5, 1000, "the range of ISO 1328-1", symbol="z", example="16", meaning="number of teeth"
+        REQUIRED,
+        5,
+        1000,
+        "the range of ISO 1328-1",
+        symbol="z",
+        example="16",
+        meaning="number of teeth",
     )
     profile_shift_coefficient: float = number(
         0.0, -3.0, 3.0, "shifts in use lie between -1 and 1.5", of="profile_shift_coefficient"
     )
-    face_width: float | None = number(None, 1e-4, 2.0, _GUARD, of="face_width", basis="that of the other gear")
-    tip_diameter: float | None = number(None, 1e-4, 20.0, _GUARD, of="tip_diameter", basis="the standard addendum less the tip shortening")
+    face_width: float | None = number(
+        None, 1e-4, 2.0, _GUARD, of="face_width", basis="that of the other gear"
+    )
+    tip_diameter: float | None = number(
+        None,
+        1e-4,
+        20.0,
+        _GUARD,
+        of="tip_diameter",
+        basis="the standard addendum less the tip shortening",
+    )
     bore_diameter: float = number(0.0, 0.0, 20.0, _GUARD, of="bore_diameter")
     mass: float | None = number(None, 1e-7, 1e6, _GUARD, of="mass", basis="the solid gear")
-    moment_of_inertia: float | None = number(None, 1e-14, 1e7, _GUARD, of="moment_of_inertia", basis="the solid gear")
+    moment_of_inertia: float | None = number(
+        None, 1e-14, 1e7, _GUARD, of="moment_of_inertia", basis="the solid gear"
+    )
     roughness_rms: float | None = number(
         None, 0.0, 20e-6, "ground to milled flanks; " + _GUARD, of="roughness_rms"
     )
@@ -105,18 +122,30 @@ class Gears(Section):
         REQUIRED, math.radians(10.0), math.radians(35.0), "basic racks lie between 14.5 and 30 deg",
         of="normal_pressure_angle"
     )  # fmt: skip
-    center_distance: float | None = number(None, 1e-4, 10.0, _GUARD, of="center_distance", basis="the profile shifts, without backlash")
+    center_distance: float | None = number(
+        None, 1e-4, 10.0, _GUARD, of="center_distance", basis="the profile shifts, without backlash"
+    )
     driver: str = choice(REQUIRED, ("pinion", "wheel"), meaning="the gear that drives")
     composite_roughness: float | None = number(
-        None, 0.0, 20e-6, "ground to milled flanks; " + _GUARD, of="composite_roughness", argument="roughness")
+        None,
+        0.0,
+        20e-6,
+        "ground to milled flanks; " + _GUARD,
+        of="composite_roughness",
+        argument="roughness",
+    )
     addendum_coefficient: float = number(1.0, 0.2, 1.5, _RACK, of="addendum_coefficient")
-    dedendum_coefficient: float = number(1.25, 0.2, 1.8, _RACK, of="dedendum_coefficient", argument="rack")
+    dedendum_coefficient: float = number(
+        1.25, 0.2, 1.8, _RACK, of="dedendum_coefficient", argument="rack"
+    )
     rack_tip_radius_coefficient: float = number(
         0.38,
         0.0,
         0.6,
         "ISO 53 profiles lie between 0.25 and 0.39",
-        of="rack_tip_radius_coefficient", argument="tip_radius_coefficient")
+        of="rack_tip_radius_coefficient",
+        argument="tip_radius_coefficient",
+    )
     misalignment: float = number(0.0, -0.5e-3, 0.5e-3, _GUARD, of="misalignment")
     pinion: Gear = Table(Gear, "the smaller gear")  # type: ignore[assignment]
     wheel: Gear = Table(Gear, "the larger gear")  # type: ignore[assignment]

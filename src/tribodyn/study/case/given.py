@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import Any
 
 from tribodyn.errors import InputError, Problem
@@ -97,7 +96,7 @@ class Source:
 
     name: str = ""  #: file name as the user gave it
     find: Callable[[], Mapping[str, list[int]]] = dict  #: lines of the keys, looked up when asked
-    replaced: Mapping[str, str] = MappingProxyType({})
+    replaced: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def lines(self) -> Mapping[str, list[int]]:

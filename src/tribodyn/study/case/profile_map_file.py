@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribodyn import units
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 
 if TYPE_CHECKING:
     from tribodyn.gear import ProfileMap
@@ -23,7 +23,7 @@ _FORM = (
 
 def _fault(path: str, line: int, what: str, why: str, remedy: str) -> InputError:
     place = f"{Path(path).name}, line {line}" if line else Path(path).name
-    return InputError(Problem(f"{what} ({place})", "argument profile_map", why, remedy))
+    return InputError(Problem(f"{what} ({place})", Argument("profile_map"), why, remedy))
 
 
 def read_profile_map(path: str, interpolation: str) -> ProfileMap:

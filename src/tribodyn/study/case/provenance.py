@@ -48,14 +48,15 @@ def spec_of(case: Case, key: str) -> Option | None:
 def _model_values(case: Case, name: str, section: Section) -> dict[str, Any]:
     """Values in force of the options of all models that a table can name."""
     model, held = section.chosen, vars(section)
-    others = [key for key in type(section).keys() if key not in type(section).fields]
+    others = [key for key in type(section).all_keys() if key not in type(section).fields]
     values = {key: held.get(key) for key in others}
     if model is None:
         return values
     registry = type(section).registry()
     taken = {key for other in registry or () for key in registry[other].options}  # type: ignore[index]
     for key in taken - set(model.options):
-        values[key] = None
+        if key in values or key in held:
+            values[key] = None
     for key, default in model.options.items():
         if model.declared[key].in_case and held.get(key) is None:
             values[key] = _bored(case, default) if key == "reference" else default

@@ -17,7 +17,7 @@ def case_keys() -> Iterator[tuple[str, Option, str]]:
 
 
 def _walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, Option, str]]:
-    for name, field in section.keys().items():
+    for name, field in section.all_keys().items():
         if isinstance(field, Table):
             yield from _walk(field.kind, (*path, name))
         else:

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Self
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Model, Models, Option, Registry
-from tribodyn.study.case.values import Fault, Plain, read_value, written
+from tribodyn.study.case.values import ValueFaultError, Plain, read_value, written
 
 Found = list[tuple[str, Problem]]
 
@@ -50,7 +50,7 @@ class Section:
 
     def __getattr__(self, name: str) -> Any:
         """None for an option that the chosen model does not have."""
-        if not name.startswith("_") and name in type(self).keys():
+        if not name.startswith("_") and name in type(self).all_keys():
             return None
         raise AttributeError(f"{type(self).__name__} has no {name}")
 
@@ -79,7 +79,7 @@ class Section:
     def __dir__(self) -> list[str]:
         """Values and what can be done with them."""
         own = {n for n in dir(type(self)) if not n.startswith("_") and not hasattr(Section, n)}
-        return sorted({*own, *type(self).keys()})
+        return sorted({*own, *type(self).all_keys()})
 
     @classmethod
     def registry(cls) -> Registry[Any] | None:
@@ -88,7 +88,7 @@ class Section:
         return names.registry() if isinstance(names, Models) else None
 
     @classmethod
-    def keys(cls) -> dict[str, Option | Table]:
+    def all_keys(cls) -> dict[str, Option | Table]:
         """All keys that this table can have: its own, then those of all models it may name."""
         registry = cls.registry()
         keys = dict(cls.fields)
@@ -112,13 +112,13 @@ class Section:
     @classmethod
     def spec(cls, name: str) -> Option | None:
         """Return the Option of a key, or None for an unknown key or a table."""
-        option = cls.fields.get(name) or cls.keys().get(name)
+        option = cls.fields.get(name) or cls.all_keys().get(name)
         return option if isinstance(option, Option) else None
 
     @classmethod
     def specs(cls) -> Iterator[tuple[str, Option]]:
         """Walk over all keys that are no tables, in order."""
-        yield from ((k, o) for k, o in cls.keys().items() if isinstance(o, Option))
+        yield from ((k, o) for k, o in cls.all_keys().items() if isinstance(o, Option))
 
     @classmethod
     def read(cls, data: Mapping[str, Any], path: str, found: Found) -> Self:
@@ -138,7 +138,7 @@ def read_fields(cls: type[Section], data: Mapping[str, Any], path: str, found: F
         elif name in data:
             try:
                 values[name] = read_value(field, name, data[name])
-            except Fault as fault:
+            except ValueFaultError as fault:
                 found.append((key, fault.problem))
         elif name in cls.fields:
             own = cls.fields[name]
@@ -183,14 +183,14 @@ def _foreign(
 ) -> Iterator[tuple[str, Problem]]:
     """Faults of keys that are not those of this table under its model."""
     strange = [name for name in data if name not in options]
-    known = cls.keys() if strange else {}
+    known = cls.all_keys() if strange else {}
     for name in strange:
         key, option = (f"{path}.{name}" if path else name), known.get(name)
         if isinstance(option, Option):
             # That it belongs to another model is told with the other contradictions.
             try:
                 read_value(option, name, data[name])
-            except Fault as fault:
+            except ValueFaultError as fault:
                 yield key, fault.problem
         else:
             yield key, unknown(tuple(key.split(".")), data[name])
@@ -228,7 +228,7 @@ def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:
     """List the tables that have a key called ``name``."""
     section = section_at(path)
     found = []
-    for key, field in section.keys().items() if section else ():
+    for key, field in section.all_keys().items() if section else ():
         if isinstance(field, Table):
             found += _homes(name, (*path, key))
         elif key == name:
@@ -240,7 +240,8 @@ def unknown(path: tuple[str, ...], value: Any) -> Problem:
     """Say that there is no such key, naming the nearest or the table that has it."""
     *table, name = path
     section = section_at(tuple(table))
-    known = list(section.keys()) if section else []
+    known = list(section.all_keys()) if section else []
+    known += [] if table else ["assumed"]
     shown = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
     place = f"[{'.'.join(table)}]" if table else "the top of the file"
     why = f"{place} has: {', '.join(known)}"

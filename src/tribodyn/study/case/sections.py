@@ -67,7 +67,9 @@ class MaterialData(Section):
 class LubricantData(Section):
     """The ``[lubricant]`` table: a name from the library, or the properties themselves."""
 
-    name: str | None = choice(None, _lubricants, meaning="name of an oil of the library", argument="lubricant")
+    name: str | None = choice(
+        None, _lubricants, meaning="name of an oil of the library", argument="lubricant"
+    )
     dynamic_viscosity: float | None = number(None, 1e-5, 100.0, _GUARD, of="dynamic_viscosity")
     density: float | None = number(None, 500.0, 2000.0, "liquids; " + _GUARD, of="density")
     pressure_viscosity_coefficient: float | None = number(
@@ -88,7 +90,9 @@ class LubricantData(Section):
 class Operation(Section):
     """The ``[operation]`` table."""
 
-    speed: float = number(REQUIRED, 0.01 * _RPM, 2e5 * _RPM, _GUARD, of="speed", argument="pinion_speed")
+    speed: float = number(
+        REQUIRED, 0.01 * _RPM, 2e5 * _RPM, _GUARD, of="speed", argument="pinion_speed"
+    )
     torque: float = number(REQUIRED, 1e-6, 1e8, _GUARD, of="torque", argument="pinion_torque")
     speed_of: str = choice(
         "pinion", ("pinion", "wheel"), meaning="the gear whose speed and torque are given"
@@ -160,7 +164,15 @@ class Dynamics(Section):
         0.04, 0.0, 2.0, "meshes lie between 0.03 and 0.17", of="mesh_damping_ratio"
     )
     damping_in_gap: bool = flag(False, meaning="keep the mesh damping while the flanks are apart")
-    backlash: float | None = number(None, 0.0, 0.01, _GUARD, of="backlash", basis="the tooth thicknesses at the operating pitch circles", argument="backlash")
+    backlash: float | None = number(
+        None,
+        0.0,
+        0.01,
+        _GUARD,
+        of="backlash",
+        basis="the tooth thicknesses at the operating pitch circles",
+        argument="backlash",
+    )
     transmission_error_amplitude: float = number(
         0.0, 0.0, 1e-3, _GUARD, of="transmission_error",
         meaning="amplitude of the static transmission error at mesh frequency",
@@ -188,7 +200,9 @@ class Solver(Section):
     )
     steps_per_mesh_cycle: int | None = integer(
         None, 64, 262144, "fewer do not resolve the mesh, more only cost time", example="1024",
-        meaning="integration steps per mesh cycle", basis="the fastest motion of the structure, from 1024 to 65536", argument="steps")  # fmt: skip
+        meaning="integration steps per mesh cycle", argument="steps",
+        basis="the fastest motion of the structure, from 1024 to 65536",
+    )  # fmt: skip
     cycles: int | None = integer(
         None,
         1,

@@ -11,11 +11,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import Problem
-from tribodyn.study.case.checks import DEFAULT_MARK
-from tribodyn.study.case.section import section_at
 from tribodyn.model import Option
+from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.given import Given
-from tribodyn.study.case.values import Fault, Plain, read_value, written
+from tribodyn.study.case.section import section_at
+from tribodyn.study.case.values import ValueFaultError, Plain, read_value, written
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -102,7 +102,7 @@ def _read(given: Given, table: str, typed: Mapping[str, Any]) -> tuple[dict[str,
             continue
         try:
             values[key] = read_value(spec, key.rpartition(".")[2], value)
-        except Fault as fault:
+        except ValueFaultError as fault:
             found.append((place, fault.problem))
     return values, found
 

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from tribodyn.study.run.damping import Damping
 
 
-
 def static_error(case: Case, phase: Array | float) -> Array:
     """Static transmission error of a case: a cosine at mesh frequency."""
     amplitude = case.dynamics.transmission_error_amplitude

@@ -6,6 +6,8 @@ import warnings
 from typing import TYPE_CHECKING
 
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.collect import collected
+from tribodyn.study.case.derive import placed
 from tribodyn.study.run.assembly import system_of
 from tribodyn.study.run.cautions import (
     case_cautions,
@@ -14,10 +16,8 @@ from tribodyn.study.run.cautions import (
     motion_cautions,
     teeth_cautions,
 )
-from tribodyn.study.case.collect import collected
 from tribodyn.study.run.damping import damping_of
 from tribodyn.study.run.motion import motion_of
-from tribodyn.study.case.derive import placed
 from tribodyn.study.run.result import Result
 from tribodyn.study.run.tooth_contact import load_friction_of, mesh_of
 

@@ -9,8 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from tribodyn.study.run.assembly import static_error
 from tribodyn.study.case.provenance import Assumption, assumptions
+from tribodyn.study.run.assembly import static_error
 from tribodyn.study.run.save import new_directory
 from tribodyn.types import Array
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.run.assembly import whole_system
-from tribodyn.study.studies.grid import ends_of
 from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.run.assembly import whole_system
 from tribodyn.study.run.motion import steps_of
 from tribodyn.study.run.tooth_contact import mesh_of
+from tribodyn.study.studies.grid import ends_of
 
 if TYPE_CHECKING:
     from tribodyn.analysis.bifurcation_result import Bifurcation

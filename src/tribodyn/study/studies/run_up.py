@@ -8,10 +8,10 @@ import numpy as np
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.run.assembly import whole_system
 from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import effective
+from tribodyn.study.run.assembly import whole_system
 from tribodyn.study.run.tooth_contact import mesh_of
 
 if TYPE_CHECKING:

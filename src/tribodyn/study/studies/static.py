@@ -6,14 +6,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.gears import Modification
-from tribodyn.study.studies.grid import pinion_speeds, pinion_torques
 from tribodyn.study.case.derive import placed
-from tribodyn.study.run.tooth_contact import model_settings
+from tribodyn.study.case.gears import Modification
+from tribodyn.study.case.values import ValueFaultError, Plain, read_value
 from tribodyn.study.run.loaded_teeth import loaded_settings
-from tribodyn.study.case.values import Fault, Plain, read_value
+from tribodyn.study.run.tooth_contact import model_settings
+from tribodyn.study.studies.grid import pinion_speeds, pinion_torques
 
 if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness, FilmOverOperation
@@ -131,7 +132,7 @@ def _lengths(name: str, given: Any) -> tuple[float, float] | None:
     spec = Modification.fields["tip_relief" if name == "amount" else "tip_relief_length"]
     try:
         low, high = (float(read_value(spec, name, Plain(item))) for item in given)
-    except Fault as fault:
+    except ValueFaultError as fault:
         raise InputError(replace(fault.problem, where=f"argument {name}")) from None
     return low, high
 

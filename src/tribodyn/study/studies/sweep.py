@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.studies.grid import Axis, read_axes
 from tribodyn.study.run.pipeline import run
+from tribodyn.study.studies.grid import Axis, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:
@@ -109,6 +109,6 @@ def _point(case: Case, axes: tuple[Axis, ...], values: tuple[Any, ...]) -> Sweep
             figures = result.summary()
     except (InputError, ComputationError) as error:
         first = error.problems[0]
-        place = first.where.removeprefix("replace: ")  # the sweep is what replaces
+        place = str(first.where).removeprefix("replace: ")  # the sweep is what replaces
         return SweepPoint(values, {}, str(dataclasses.replace(first, where=place)))
     return SweepPoint(values, figures, "", tuple(warning.code for warning in result.warnings))

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.studies.grid import Axis
 from tribodyn.study.run.save import new_directory
 from tribodyn.study.run.summary_names import SUMMARY
+from tribodyn.study.studies.grid import Axis
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
