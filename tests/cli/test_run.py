@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tribodyn.cli import call
-from tribodyn.study.run.save import RESULT_FILES
+from tribodyn.study.pipeline.save import RESULT_FILES
 
 _TRIBODYN = (sys.executable, "-m", "tribodyn.cli")
 _FAST = ("--set", "solver.steps_per_mesh_cycle=256")

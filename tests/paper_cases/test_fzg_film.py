@@ -10,7 +10,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.study.case.provenance import provenance
-from tribodyn.study.run.tooth_contact import mesh_of
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _RPM = math.pi / 30.0
 

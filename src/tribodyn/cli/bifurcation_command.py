@@ -67,7 +67,7 @@ def bifurcation(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.run.save import check_target
+    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
     key, (first, last, points) = _one(over)
@@ -130,7 +130,7 @@ def _check_lengths(cycles: int, transient: int) -> None:
 
 def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, force: bool) -> None:
     from tribodyn.report import write_bifurcation_report
-    from tribodyn.study.run.save import new_directory
+    from tribodyn.study.pipeline.save import new_directory
 
     head, rows = findings.rows()
     with new_directory(target, force=force) as place:

@@ -29,9 +29,9 @@ def check(
         Write one flat JSON object in SI to stdout.
     """
     from tribodyn.study.case.provenance import assumptions
-    from tribodyn.study.run.cautions import case_cautions
-    from tribodyn.study.run.geometry import geometry
-    from tribodyn.study.run.summary_names import SUMMARY
+    from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.geometry import geometry
+    from tribodyn.study.pipeline.summary_names import SUMMARY
 
     checked = changed_case(case, set_ or [])
     values = geometry(checked)

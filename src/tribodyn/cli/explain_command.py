@@ -71,7 +71,7 @@ def _keys(symbol: str) -> list[dict[str, Any]]:
 def _choices(symbol: str) -> list[dict[str, Any]]:
     """Models, laws and methods with the papers behind them."""
     from tribodyn.study.case.reference import case_keys, choice_meanings
-    from tribodyn.study.run.citations import sources_of
+    from tribodyn.study.pipeline.citations import sources_of
 
     meaning = choice_meanings().get(symbol)
     if meaning is None:
@@ -95,7 +95,7 @@ def _warnings(symbol: str) -> list[dict[str, Any]]:
 
 
 def _figures(symbol: str) -> list[dict[str, Any]]:
-    from tribodyn.study.run.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary_names import SUMMARY
 
     figure = SUMMARY.get(symbol)
     if figure is None:
@@ -113,7 +113,7 @@ def _figures(symbol: str) -> list[dict[str, Any]]:
 def _unknown(symbol: str) -> Problem:
     from tribodyn.nomenclature import QUANTITIES
     from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
-    from tribodyn.study.run.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary_names import SUMMARY
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
     names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]

@@ -60,7 +60,7 @@ def sweep(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.run.save import check_target
+    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
@@ -90,7 +90,7 @@ def sweep(
 
 
 def _show(found: Sweep, as_json: bool) -> None:
-    from tribodyn.study.run.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary_names import SUMMARY
 
     if as_json:
         units = {axis.key: axis.unit for axis in found.axes}

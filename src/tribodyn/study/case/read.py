@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +69,7 @@ normal_pressure_angle, driver, pinion, wheel.
         remedy = "Write a case to start from: tribodyn new my.toml --from fzg-roughness"
         raise InputError(Problem("the file holds no values", name, "", remedy))
     _place_files(data, Path(name).parent)
-    return Case(Source(name or "case", lambda: key_lines(text)), **data)
+    return Case(Source(name or "case", partial(key_lines, text)), **data)
 
 
 def _place_files(data: dict[str, Any], folder: Path) -> None:

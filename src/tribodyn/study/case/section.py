@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Self
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Model, Models, Option, Registry
-from tribodyn.study.case.values import ValueFaultError, Plain, read_value, written
+from tribodyn.study.case.values import Plain, ValueFaultError, read_value, written
 
 Found = list[tuple[str, Problem]]
 

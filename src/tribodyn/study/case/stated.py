@@ -15,7 +15,7 @@ from tribodyn.model import Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.given import Given
 from tribodyn.study.case.section import section_at
-from tribodyn.study.case.values import ValueFaultError, Plain, read_value, written
+from tribodyn.study.case.values import Plain, ValueFaultError, read_value, written
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case

@@ -79,12 +79,16 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
         try:
             return float(value.to(spec.unit or "dimensionless").magnitude)
         except Exception as error:
-            raise ValueFaultError(shown, f"{name} is a quantity in {spec.unit or '1'}", str(error)) from None
+            raise ValueFaultError(
+                shown, f"{name} is a quantity in {spec.unit or '1'}", str(error)
+            ) from None
     if isinstance(value, str):
         if comma := _comma(name, value):
             raise comma
         if not spec.unit:
-            raise ValueFaultError(shown, f"{name} is a pure number, not text", "Write it without quotes")
+            raise ValueFaultError(
+                shown, f"{name} is a pure number, not text", "Write it without quotes"
+            )
         try:
             return units.parse(value, spec.unit)
         except units.UnitProblemError as error:
@@ -108,7 +112,9 @@ def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
         display = spec.show(value)
         shown += "" if display == str(typed) else f" ({display})"
     why = f"Allowed: {spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
-    raise ValueFaultError(shown, why, "Correct the value or its unit" if spec.unit else "Correct the value")
+    raise ValueFaultError(
+        shown, why, "Correct the value or its unit" if spec.unit else "Correct the value"
+    )
 
 
 def _whole(spec: Option, name: str, value: Any) -> int:
@@ -134,9 +140,13 @@ def _name(spec: Option, name: str, value: Any) -> str:
     label = "This version has" if spec.later else "Allowed"
     shown, why = f"{name} = {written(value)}", f"{label}: {', '.join(known)}"
     if value in spec.later:
-        raise ValueFaultError(shown, f'"{value}" comes with a later release. {why}', "Choose one of these")
+        raise ValueFaultError(
+            shown, f'"{value}" comes with a later release. {why}', "Choose one of these"
+        )
     near = difflib.get_close_matches(str(value), known, n=1)
-    raise ValueFaultError(shown, why, f'Did you mean "{near[0]}"?' if near else "Choose one of these")
+    raise ValueFaultError(
+        shown, why, f'Did you mean "{near[0]}"?' if near else "Choose one of these"
+    )
 
 
 def read_value(spec: Option, name: str, value: Any) -> Any:
@@ -157,7 +167,9 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
     wanted = bool if spec.kind == "flag" else str
     if not isinstance(value, wanted):
         remedy = "Write true or false" if wanted is bool else "Write it in quotes"
-        raise ValueFaultError(f"{name} = {written(value)}", f"{name} must be {spec.allowed()}", remedy)
+        raise ValueFaultError(
+            f"{name} = {written(value)}", f"{name} must be {spec.allowed()}", remedy
+        )
     return str(Path(str(value)).absolute()) if spec.kind == "file" else value
 
 

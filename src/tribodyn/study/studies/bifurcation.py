@@ -11,9 +11,9 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
-from tribodyn.study.run.assembly import whole_system
-from tribodyn.study.run.motion import steps_of
-from tribodyn.study.run.tooth_contact import mesh_of
+from tribodyn.study.pipeline.assembly import whole_system
+from tribodyn.study.pipeline.motion import steps_of
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 from tribodyn.study.studies.grid import ends_of
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import section_at
 from tribodyn.study.case.sections import Operation
-from tribodyn.study.case.values import ValueFaultError, Plain, read_value
+from tribodyn.study.case.values import Plain, ValueFaultError, read_value
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case

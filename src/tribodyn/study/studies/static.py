@@ -11,9 +11,9 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.gears import Modification
-from tribodyn.study.case.values import ValueFaultError, Plain, read_value
-from tribodyn.study.run.loaded_teeth import loaded_settings
-from tribodyn.study.run.tooth_contact import model_settings
+from tribodyn.study.case.values import Plain, ValueFaultError, read_value
+from tribodyn.study.pipeline.loaded_teeth import loaded_settings
+from tribodyn.study.pipeline.tooth_contact import model_settings
 from tribodyn.study.studies.grid import pinion_speeds, pinion_torques
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.run.pipeline import run
+from tribodyn.study.pipeline.run import run
 from tribodyn.study.studies.grid import Axis, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.run.save import new_directory
-from tribodyn.study.run.summary_names import SUMMARY
+from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.pipeline.summary_names import SUMMARY
 from tribodyn.study.studies.grid import Axis
 from tribodyn.types import Array
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from tribodyn.study.case.provenance import Assumption, assumptions
-from tribodyn.study.run.assembly import static_error
-from tribodyn.study.run.save import new_directory
+from tribodyn.study.pipeline.assembly import static_error
+from tribodyn.study.pipeline.save import new_directory
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
-    from tribodyn.study.run.damping import Damping
+    from tribodyn.study.pipeline.damping import Damping
 
 
 _PLOT = "plot_"
@@ -65,7 +65,7 @@ class Result:
 
     @cached_property
     def _summary(self) -> dict[str, float]:
-        from tribodyn.study.run.summary import summarize
+        from tribodyn.study.pipeline.summary import summarize
 
         return summarize(self)
 
@@ -110,7 +110,7 @@ class Result:
         -------
         LoadedContact
         """
-        from tribodyn.study.run.loaded_teeth import loaded_contact
+        from tribodyn.study.pipeline.loaded_teeth import loaded_contact
 
         return loaded_contact(self.case)
 
@@ -144,7 +144,7 @@ class Result:
         InputError
             If there is no such style.
         """
-        from tribodyn.study.run.citations import cite
+        from tribodyn.study.pipeline.citations import cite
 
         return cite(self.case, style)
 

@@ -12,7 +12,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples, Response, System
-    from tribodyn.study.run.result import Result
+    from tribodyn.study.pipeline.result import Result
 
 
 #: Distance from an event that tells its two sides apart [mesh cycles].

@@ -13,7 +13,7 @@ from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.foundations import body
 from tribodyn.study.case.provenance import changed_keys, effective
-from tribodyn.study.run.record import (
+from tribodyn.study.pipeline.record import (
     compression,
     first_touch,
     is_steady,

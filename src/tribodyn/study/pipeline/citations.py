@@ -28,7 +28,7 @@ def _library() -> dict[str, dict[str, Any]]:
     import tomllib
     from importlib.resources import files
 
-    text = files("tribodyn.study.run").joinpath("citations.toml").read_text(encoding="utf-8")
+    text = files("tribodyn.study.pipeline").joinpath("citations.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
 

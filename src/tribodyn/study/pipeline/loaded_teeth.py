@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.study.case.derive import placed
-from tribodyn.study.run.tooth_contact import model_settings
+from tribodyn.study.pipeline.tooth_contact import model_settings
 from tribodyn.study.studies.grid import pinion_torques
 
 if TYPE_CHECKING:

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.study.run.damping import damping_of
-from tribodyn.study.run.geometry import geometry
-from tribodyn.study.run.tooth_contact import chosen_options, load_friction_of, mesh_law_of
+from tribodyn.study.pipeline.damping import damping_of
+from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.tooth_contact import chosen_options, load_friction_of, mesh_law_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.case import Case
-    from tribodyn.study.run.damping import Damping
+    from tribodyn.study.pipeline.damping import Damping
 
 
 def static_error(case: Case, phase: Array | float) -> Array:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.study.run.geometry import geometry
-from tribodyn.study.run.record import (
+from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.record import (
     centre_column,
     compression,
     first_touch,
@@ -23,7 +23,7 @@ from tribodyn.study.run.record import (
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.run.result import Result
+    from tribodyn.study.pipeline.result import Result
 
 
 #: Direction in the names of the summary -> letter of the coordinate.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tribodyn.study.case.provenance import effective
-from tribodyn.study.run.geometry import geometry
+from tribodyn.study.pipeline.geometry import geometry
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable

@@ -28,7 +28,7 @@ class SummaryFigure:
 
 
 def _read() -> dict[str, SummaryFigure]:
-    text = files("tribodyn.study.run").joinpath("summary.toml").read_text(encoding="utf-8")
+    text = files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
     figures = {}
     for name, (quantity, meaning) in tomllib.loads(text).items():
         known = QUANTITIES[quantity] if quantity else None

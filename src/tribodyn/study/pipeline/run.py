@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import placed
-from tribodyn.study.run.assembly import system_of
-from tribodyn.study.run.cautions import (
+from tribodyn.study.pipeline.assembly import system_of
+from tribodyn.study.pipeline.cautions import (
     case_cautions,
     friction_cautions,
     mesh_cautions,
     motion_cautions,
     teeth_cautions,
 )
-from tribodyn.study.run.damping import damping_of
-from tribodyn.study.run.motion import motion_of
-from tribodyn.study.run.result import Result
-from tribodyn.study.run.tooth_contact import load_friction_of, mesh_of
+from tribodyn.study.pipeline.damping import damping_of
+from tribodyn.study.pipeline.motion import motion_of
+from tribodyn.study.pipeline.result import Result
+from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
