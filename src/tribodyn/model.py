@@ -13,6 +13,7 @@ import difflib
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache, partial
 from importlib.metadata import entry_points
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -166,7 +167,8 @@ def choice(default: Any, names: Any, *, meaning: str, **more: Any) -> Any:
     known = tuple(names)
     meanings = dict(names) if isinstance(names, Mapping) else {}
     more.setdefault("example", f'"{known[0]}"')
-    return Option("choice", meaning, default, names=lambda: known, meanings=meanings, **more)
+    names = partial(list, known)
+    return Option("choice", meaning, default, names=names, meanings=meanings, **more)
 
 
 def flag(default: bool | None, *, meaning: str, **more: Any) -> Any:
@@ -208,7 +210,9 @@ class Model:
     source: str
     meaning: str
     papers: tuple[str, ...]
+    options: Mapping[str, Any]
     declared: Mapping[str, Option]
+    case_options: Mapping[str, Option]  #: those of them that are keys of the case file
 
     def declare(self, options: Mapping[str, Any]) -> None:
         """Keep the options and their defaults apart."""
@@ -216,6 +220,8 @@ class Model:
         defaults = {n: None if o.required else o.default for n, o in declared.items()}
         object.__setattr__(self, "declared", MappingProxyType(declared))
         object.__setattr__(self, "options", MappingProxyType(defaults))
+        keys = {name: option for name, option in declared.items() if option.in_case}
+        object.__setattr__(self, "case_options", MappingProxyType(keys))
 
     def nearest(self, option: str) -> str:
         """Question for the option that was probably meant; empty if none is near."""
@@ -260,6 +266,7 @@ class Registry(Generic[T]):
         self.part = part
         self._items: dict[str, T] = {}
         self._searched = group is None
+        self.version = 0  #: rises with everything that is registered
 
     def register(self, name: str) -> Callable[[T], T]:
         """Decorate a thing to make it known as ``name``.
@@ -277,6 +284,7 @@ class Registry(Generic[T]):
 
         def keep(item: T) -> T:
             self._items[name] = item
+            self.version += 1
             return item
 
         return keep
@@ -305,7 +313,7 @@ class Registry(Generic[T]):
         def keep(function: Callable[..., Any]) -> Callable[..., Any]:
             if self.model is None:
                 raise TypeError(f"a {self.kind} is registered, not defined")
-            self._items[name] = self.model(name=name, **{self.part: function}, **details)
+            self.register(name)(self.model(name=name, **{self.part: function}, **details))
             return function
 
         return keep
@@ -315,6 +323,7 @@ class Registry(Generic[T]):
             self._searched = True
             for entry in entry_points(group=self.group):
                 self._items.setdefault(entry.name, entry.load())
+            self.version += 1
 
     def names(self) -> list[str]:
         """All names, in order of registration.
@@ -326,6 +335,17 @@ class Registry(Generic[T]):
         if not self._searched:
             self._search()
         return list(self._items)
+
+    def all(self) -> Mapping[str, T]:
+        """All things by name, in order of registration.
+
+        Returns
+        -------
+        mapping of str to object
+        """
+        if not self._searched:
+            self._search()
+        return MappingProxyType(self._items)
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names."""
@@ -368,4 +388,4 @@ def model_choice(
     default: str, registry: Callable[[], Registry[Any]], *, meaning: str, **more: Any
 ) -> Any:
     """Declare the name of a model; the chosen one brings its options into the same table."""
-    return Option("choice", meaning, default, names=Models(registry), **more)
+    return Option("choice", meaning, default, names=Models(cache(registry)), **more)

@@ -276,7 +276,7 @@ class Case(Section, whole=True):
 
 def _values(section: Section, prefix: str) -> Iterator[tuple[str, Any]]:
     held = vars(section)
-    for name in type(section).all_keys():
+    for name in type(section).known().keys:
         value = held.get(name)
         if isinstance(value, Section):
             yield from _values(value, f"{prefix}{name}.")

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from tribodyn.errors import Problem
-from tribodyn.model import Model, Option
+from tribodyn.model import REQUIRED, Model, Option
 from tribodyn.study.case.given import Given
-from tribodyn.study.case.section import section_at
+from tribodyn.study.case.section import Section, section_at
 
 #: The reason that marks a written value as the default of the library that wrote it.
 DEFAULT_MARK = "default"
@@ -58,7 +58,7 @@ def _face_width(given: Given) -> Found:
 
 
 def _size(given: Given) -> Found:
-    pinion, wheel = (given.value(f"gears.{gear}.teeth") for gear in ("pinion", "wheel"))
+    pinion, wheel = (given.get(f"gears.{gear}.teeth") for gear in ("pinion", "wheel"))
     if type(pinion) is int and type(wheel) is int and pinion > wheel:
         what = f"teeth = {pinion} of the pinion and teeth = {wheel} of the wheel"
         why = "The pinion is the smaller gear, whichever drives"
@@ -83,8 +83,8 @@ def _lubricant(given: Given) -> Found:
 
 def _needs(given: Given) -> Found:
     """What the friction law and the film model need to know."""
-    law = given.value("friction.law", "none")
-    film = given.value("film.model", "none")
+    law = given.get("friction.law", "none")
+    film = given.get("film.model", "none")
     tribological = _needs_oil(law)
     users = [f'law = "{law}"'] if tribological else []
     users += [f'film model = "{film}"'] if film != "none" else []
@@ -121,14 +121,14 @@ def _film_of_friction(given: Given) -> Found:
     """What a law that shears the solved film needs besides an oil."""
     from tribodyn.ehl import FILM_MODELS
 
-    law, film = given.value("friction.law", "none"), given.value("film.model", "none")
+    law, film = given.get("friction.law", "none"), given.get("film.model", "none")
     if not _shears_film(law) or film not in FILM_MODELS:
         return
     if not FILM_MODELS[film].method:
         what = f'law = "{law}" and film model = "{film}"'
         why = "That law shears the solved film, and this model gives no pressure"
         yield "friction.law", Problem(what, "", why, 'Set model = "newton" in [film]')
-    heated = [key for key in _HEAT if given.value(f"friction.{key}")]
+    heated = [key for key in _HEAT if given.get(f"friction.{key}")]
     if heated and "lubricant" in given and "lubricant.name" not in given:
         for name in _THERMAL:
             if f"lubricant.{name}" not in given:
@@ -146,26 +146,26 @@ def _dampings(given: Given) -> Found:
 
 def _friction_load(given: Given) -> Found:
     key = "dynamics.friction_load"
-    if given.value(key) == "dynamic" and given.value("friction.law") == "none":
+    if given.get(key) == "dynamic" and given.get("friction.law") == "none":
         what = f"{given.show(key)} without friction"
         why = 'friction.law = "none": nothing follows the load'
         yield key, Problem(what, "", why, "Choose a friction law, or leave the key out")
 
 
 def _solver(given: Given) -> Found:
-    if "solver.cycles" in given and given.value("solver.method", "steady") == "steady":
+    if "solver.cycles" in given and given.get("solver.method", "steady") == "steady":
         what = f'{given.show("solver.cycles")} does not belong to method = "steady"'
         why = "A steady state is found directly, without counting cycles"
         yield "solver.cycles", Problem(what, "", why, 'Remove it, or choose "transient"')
 
 
 def _assumed(given: Given, faulty: set[str]) -> Found:
-    marks = given.value("assumed", {})
+    marks = given.get("assumed", {})
     for key, reason in marks.items() if isinstance(marks, Mapping) else ():
-        absent = key not in given or isinstance(given.value(key), Mapping)
+        absent = key not in given or isinstance(given.get(key), Mapping)
         recorded = isinstance(reason, Mapping) and "value" in reason
         if absent and reason != DEFAULT_MARK and not recorded:
-            known = [k for k in given.keys("") if k not in faulty and k.split(".")[0] not in _ABOUT]
+            known = [k for k in given.typed if k not in faulty and k.split(".")[0] not in _ABOUT]
             near = difflib.get_close_matches(key, known, n=1)
             why = "[assumed] marks values that this case gives"
             remedy = f'Did you mean "{near[0]}"?' if near else f"Give {key}, or remove the mark"
@@ -177,56 +177,48 @@ def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, 
     return {
         key
         for selector, name in choices.items()
-        for key in given.keys(selector.partition(".")[0])
+        for key in given.below(selector.partition(".")[0])
         if key not in changes and key != selector and not _takes(given, selector, name, key)
     }
 
 
-def _model(section: str, given: Given) -> tuple[str, Model | None]:
-    """Key by which a table names its model, and the model."""
-    kind = section_at((section,))
-    assert kind is not None
-    own = kind.fields[kind.selector]
-    named = given.value(f"{section}.{kind.selector}", getattr(own, "default", None))
-    return kind.selector, kind.model_named(named)
+def _section(name: str) -> type[Section]:
+    section = section_at((name,))
+    assert section is not None
+    return section
 
 
-def case_options(section: str, name: str) -> dict[str, Option]:
+def case_options(section: str, name: str) -> Mapping[str, Option]:
     """Options of a model by name that are keys of the case file."""
-    kind = section_at((section,))
-    model = kind.model_named(name) if kind else None
-    return {key: o for key, o in (model.declared if model else {}).items() if o.in_case}
-
-
-def _belongs(section: str, option: str) -> list[str]:
-    """Models of a table that have an option."""
-    kind = section_at((section,))
-    registry = kind.registry() if kind else None
-    return [name for name in registry or () if option in case_options(section, name)]
+    model = _section(section).model_named(name)
+    return model.case_options if model else {}
 
 
 def _takes(given: Given, selector: str, name: str, key: str) -> bool:
     section, _, option = key.rpartition(".")
     if key == "film.stiffness":
-        return given.value(key) in _film_stiffnesses(name)
+        return given.get(key) in _film_stiffnesses(name)
     if selector == "solver.method":
         return name != "steady" or option != "cycles"
-    return not _belongs(section, option) or option in case_options(section, name)
+    return option not in _section(section).known().owners or option in case_options(section, name)
 
 
 def _model_problems(given: Given, section: str, faulty: set[str]) -> Found:
     """Check the options of the model that a table names."""
-    selector, model = _model(section, given)
+    kind = _section(section)
+    selector, known = kind.selector, kind.known()
+    named = given.get(f"{section}.{selector}", kind.fields[selector].default)
+    model = known.models.get(named) if isinstance(named, str) else None
     if model is None or f"{section}.{selector}" in faulty:
         return
-    yield from _foreign(given, section, selector, model.name)
+    yield from _foreign(given, section, selector, model, known.owners)
     if section == "film":
         yield from _film(given, model.name, faulty)
     if section == "stiffness" and model.name in _STIFFNESS_CHECKS:
         yield from _STIFFNESS_CHECKS[model.name](given)
     for name, option in model.declared.items():
         key = f"{section}.{name}"
-        if option.required and key not in given:
+        if option.default is REQUIRED and key not in given:
             yield key, _lacking(section, selector, model, name, option)
 
 
@@ -240,17 +232,19 @@ def _lacking(section: str, selector: str, model: Model, name: str, option: Optio
     return Problem(what, "", "It has no default", remedy)
 
 
-def _foreign(given: Given, section: str, selector: str, name: str) -> Found:
+def _foreign(
+    given: Given, section: str, selector: str, model: Model, owners: Mapping[str, list[str]]
+) -> Found:
     """Options given that the chosen model does not have."""
-    known = case_options(section, name)
+    known = model.case_options
     listing = f"Its options are: {', '.join(known)}" if known else "It has no options"
-    for key in given.keys(section):
+    for key in given.below(section):
         option = key.rpartition(".")[2]
-        owners = _belongs(section, option)
-        if option not in known and owners:
-            what = f'{given.show(key)} does not belong to {selector} = "{name}"'
-            why = case_options(section, owners[0])[option].absent
-            other = f'"{owners[0]}"' if why else f"another {selector}"
+        if option not in known and option in owners:
+            what = f'{given.show(key)} does not belong to {selector} = "{model.name}"'
+            first = owners[option][0]
+            why = case_options(section, first)[option].absent
+            other = f'"{first}"' if why else f"another {selector}"
             yield key, Problem(what, "", why or listing, f"Remove it, or choose {other}")
 
 
@@ -263,7 +257,7 @@ def _film_stiffnesses(name: str) -> tuple[str, ...]:
 def _film(given: Given, name: str, faulty: set[str]) -> Found:
     """Check the options of the film model."""
     key, kinds = "film.stiffness", _film_stiffnesses(name)
-    if given.value(key, "none") not in kinds:
+    if given.get(key, "none") not in kinds:
         why = f"It has: {', '.join(kinds)}"
         remedy = 'Choose one of these, or model = "newton", which has all'
         what = f'{given.show(key)} does not belong to model = "{name}"'
@@ -274,13 +268,13 @@ def _film(given: Given, name: str, faulty: set[str]) -> Found:
 
 def _grid(given: Given) -> Found:
     """Check what nodes, inlet and domain of a solved contact say together."""
-    nodes = given.value("film.nodes", 513)
+    nodes = given.get("film.nodes", 513)
     if nodes - 1 != 1 << (nodes - 1).bit_length() - 1:
         below = 1 << (nodes - 1).bit_length() - 1
         why = "Grids are halved: nodes are a power of two plus one"
         remedy = f"Write nodes = {below + 1} or nodes = {2 * below + 1}"
         yield "film.nodes", Problem(f"nodes = {nodes}", "", why, remedy)
-    starved, key = given.value("film.inlet", "flooded") == "zero", "film.domain"
+    starved, key = given.get("film.inlet", "flooded") == "zero", "film.domain"
     if starved and key not in given:
         why = 'inlet = "zero" starves the contact from the beginning of a stated domain on'
         remedy = "Add domain = [-2.5, 1.5], in Hertzian half widths"
@@ -291,7 +285,7 @@ def _grid(given: Given) -> Found:
         what = f'{given.show(key)} does not belong to inlet = "flooded"'
         why = "A flooded contact has the domain that its film demands"
         yield key, Problem(what, "", why, 'Remove it, or add inlet = "zero"')
-    ends = given.value(key)
+    ends = given.get(key)
     if len(ends) != 2 or not (ends[0] <= -1.5 and ends[1] >= 1.1):
         why = "It is two numbers in Hertzian half widths: -1.5 or less, and 1.1 or more"
         yield key, Problem(given.show(key), "", why, "Write for example domain = [-2.5, 1.5]")
@@ -332,9 +326,9 @@ def _table(given: Given) -> Found:
     if "stiffness.values" not in given:
         why = "A table is two lists of equal length"
         yield _lacks("values", "table", why, 'Add values = ["2e8 N/m", ...]')
-    values = given.value("stiffness.values")
+    values = given.get("stiffness.values")
     for form in forms:
-        abscissa = given.value(form)
+        abscissa = given.get(form)
         if isinstance(values, list) and isinstance(abscissa, list) and len(values) != len(abscissa):
             short = form.rpartition(".")[2]
             what = f"{short} has {len(abscissa)} entries, values has {len(values)}"

@@ -213,7 +213,7 @@ def _key_in(case: Case, problem: Problem) -> str:
         section = getattr(case, place.kind, None)
         if not isinstance(section, Section) or not place.model:
             return ""
-        known = place.name in section.all_keys()
+        known = place.name in section.known().keys
         return f"{place.kind}.{place.name if known else section.selector}"
     argument = _argument(problem)
     if argument is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -32,38 +32,35 @@ def _marks(table: Any) -> Any:
     }
 
 
-class Given:
-    """Read access by dotted keys to what the user gave; never fails on odd shapes."""
+class Given(dict[str, Any]):
+    """What the user gave, by dotted keys: values as typed, and tables; ``data`` has it nested."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
+        super().__init__()
         self.data = data
+        self.typed: tuple[str, ...] = ()  #: keys of values alone
+        pending = [("", data)]
+        for prefix, table in pending:
+            for name, value in table.items():
+                key = f"{prefix}{name}"
+                if isinstance(value, Mapping):
+                    pending.append((f"{key}.", value))
+                else:
+                    self.typed += (key,)
+                    value = value.value if isinstance(value, Plain) else value
+                self[key] = value
 
-    def value(self, key: str, default: Any = None) -> Any:
-        """Value at a dotted key as typed, or ``default``."""
-        node: Any = self.data
-        for part in key.split("."):
-            if not isinstance(node, Mapping) or part not in node:
-                return default
-            node = node[part]
-        return node.value if isinstance(node, Plain) else node
-
-    def __contains__(self, key: str) -> bool:
-        """Tell whether the key was given."""
-        return self.value(key, self) is not self
+    def __reduce__(self) -> Any:
+        """Copy and pickle it by what it was made of."""
+        return type(self), (self.data,)
 
     def show(self, key: str) -> str:
         """Write ``key = value`` as the user typed it."""
-        return f"{key.rpartition('.')[2]} = {written(self.value(key))}"
+        return f"{key.rpartition('.')[2]} = {written(self.get(key))}"
 
-    def keys(self, prefix: str) -> Iterator[str]:
-        """Walk over the dotted keys of all values below ``prefix``."""
-        table = self.value(prefix) if prefix else self.data
-        for name, value in table.items() if isinstance(table, Mapping) else ():
-            key = f"{prefix}.{name}" if prefix else str(name)
-            if isinstance(value, Mapping):
-                yield from self.keys(key)
-            else:
-                yield key
+    def below(self, table: str) -> list[str]:
+        """Dotted keys of all values of a table."""
+        return [key for key in self.typed if key.startswith(f"{table}.")]
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Return a copy with dotted keys set."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.model import Option
+from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.foundations import foundations
@@ -41,25 +41,25 @@ def spec_of(case: Case, key: str) -> Option | None:
     section = section_at(tuple(path))
     if section is None:
         return None
-    model = getattr(case, path[0]).chosen if len(path) == 1 else None
+    model = _model_of(case, path)
     return (model.declared.get(name) if model else None) or section.spec(name)
 
 
-def _model_values(case: Case, name: str, section: Section) -> dict[str, Any]:
+def _model_of(case: Case, path: list[str]) -> Model | None:
+    """The model that a table of the case names."""
+    section = vars(case).get(path[0]) if len(path) == 1 else None
+    return section.chosen if isinstance(section, Section) else None
+
+
+def _model_values(case: Case, section: Section) -> dict[str, Any]:
     """Values in force of the options of all models that a table can name."""
     model, held = section.chosen, vars(section)
-    others = [key for key in type(section).all_keys() if key not in type(section).fields]
-    values = {key: held.get(key) for key in others}
-    if model is None:
-        return values
-    registry = type(section).registry()
-    taken = {key for other in registry or () for key in registry[other].options}  # type: ignore[index]
-    for key in taken - set(model.options):
-        if key in values or key in held:
-            values[key] = None
-    for key, default in model.options.items():
-        if model.declared[key].in_case and held.get(key) is None:
-            values[key] = _bored(case, default) if key == "reference" else default
+    options = model.options if model else {}
+    values = {key: None for key in section.known().owners if key not in options}
+    for key, default in options.items():
+        given = held.get(key)
+        standard = _bored(case, default) if key == "reference" else default
+        values[key] = standard if given is None else given
     return values
 
 
@@ -74,8 +74,9 @@ def effective_values(case: Case) -> dict[str, Any]:
     values = dict(case.values())
     for name, section in vars(case).items():
         if isinstance(section, Section) and section.selector:
-            own = _model_values(case, name, section)
-            values |= {f"{name}.{key}": value for key, value in own.items()}
+            for key, value in _model_values(case, section).items():
+                if f"{name}.{key}" in values:
+                    values[f"{name}.{key}"] = value
     for name in ("mesh_damping", "bearing_damping"):
         if values[f"dynamics.{name}"] is not None:
             values[f"dynamics.{name}_ratio"] = None
@@ -98,7 +99,7 @@ def default_of(case: Case, key: str) -> Any:
         return _TRANSIENT_CYCLES
     if key == "dynamics.mesh_law":
         return mesh_law_of(case)
-    model = getattr(case, path[0]).chosen if len(path) == 1 else None
+    model = _model_of(case, path)
     option = section.fields.get(name) if section else None
     standard = option.default if isinstance(option, Option) and not option.required else None
     if standard is None and model is not None:
@@ -108,14 +109,14 @@ def default_of(case: Case, key: str) -> Any:
 
 def changed_keys(case: Case) -> tuple[str, ...]:
     """Keys whose values differ from those that the case began with."""
-    values, base = effective(case), case.stated.base
+    values, base, given = effective(case), case.stated.base, case.given
     if any(values.get(key) is None for key in base):
         derived = derived_values(case)
         values = {k: derived.get(k) if v is None else v for k, v in values.items()}
     new = {
         key: default_of(case, key)
         for key in values
-        if key in case.given and key not in base and case.assumed.get(key) != DEFAULT_MARK
+        if key in given and key not in base and case.assumed.get(key) != DEFAULT_MARK
     }
     before = {**new, **base}
     return tuple(
@@ -147,11 +148,11 @@ def _derived_from(case: Case, key: str) -> str:
 
 def provenance(case: Case) -> dict[str, str]:
     """Tell the origin of every value in force."""
-    origins, changed = {}, changed_keys(case)
+    origins, changed, given = {}, changed_keys(case), case.given
     for key, value in effective(case).items():
         if key in case.assumed:
             origins[key] = _marked(case, key, value, changed)
-        elif key in case.given:
+        elif key in given:
             origins[key] = "given"
         elif value is not None or _derived_from(case, key):
             origins[key] = DEFAULT_MARK

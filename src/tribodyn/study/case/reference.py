@@ -17,7 +17,7 @@ def case_keys() -> Iterator[tuple[str, Option, str]]:
 
 
 def _walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, Option, str]]:
-    for name, field in section.all_keys().items():
+    for name, field in section.known().keys.items():
         if isinstance(field, Table):
             yield from _walk(field.kind, (*path, name))
         else:
@@ -60,9 +60,8 @@ def _models() -> Iterator[tuple[str, Model]]:
     """All models that a case can name, each with the key that names it."""
     for table, field in Case.fields.items():
         section = field.kind if isinstance(field, Table) else None
-        registry = section.registry() if section else None
-        for name in registry or ():
-            yield f"{table}.{section.selector}", registry[name]  # type: ignore[union-attr,index]
+        for model in section.known().models.values() if section else ():
+            yield f"{table}.{section.selector}", model  # type: ignore[union-attr]
 
 
 def choice_meanings() -> dict[str, str]:

@@ -9,11 +9,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.model import Model, Models, Option, Registry
-from tribodyn.study.case.values import Plain, ValueFaultError, read_value, written
+from tribodyn.model import REQUIRED, Model, Models, Option
+from tribodyn.study.case.values import FaultError, Plain, read_value, written
 
 Found = list[tuple[str, Problem]]
 
@@ -27,10 +27,28 @@ class Table:
     default: str = "required"  #: "required", "empty" for all defaults, or "none"
 
 
+class Known(NamedTuple):
+    """Models that a table may name, all keys that it can have, and the models of each option."""
+
+    models: Mapping[str, Model]
+    keys: Mapping[str, Option | Table]
+    owners: Mapping[str, list[str]]
+
+
+def _known(fields: Mapping[str, Option | Table], models: Mapping[str, Any]) -> Known:
+    keys, owners = dict(fields), {}
+    for name, model in models.items():
+        for key, option in model.case_options.items():
+            keys.setdefault(key, option)
+            owners.setdefault(key, []).append(name)
+    return Known(models, keys, owners)
+
+
 class Section:
     """Base of the tables of a case file; its Options and Tables are class attributes."""
 
     fields: ClassVar[dict[str, Option | Table]] = {}
+    _known: ClassVar[tuple[int, Known]]
     selector: ClassVar[str] = ""  #: key that names a model, which brings its options
     whole: ClassVar[type[Section]]  #: the table that holds all others: the case
 
@@ -50,7 +68,7 @@ class Section:
 
     def __getattr__(self, name: str) -> Any:
         """None for an option that the chosen model does not have."""
-        if not name.startswith("_") and name in type(self).all_keys():
+        if not name.startswith("_") and name in type(self).known().keys:
             return None
         raise AttributeError(f"{type(self).__name__} has no {name}")
 
@@ -79,46 +97,41 @@ class Section:
     def __dir__(self) -> list[str]:
         """Values and what can be done with them."""
         own = {n for n in dir(type(self)) if not n.startswith("_") and not hasattr(Section, n)}
-        return sorted({*own, *type(self).all_keys()})
+        return sorted({*own, *type(self).known().keys})
 
     @classmethod
-    def registry(cls) -> Registry[Any] | None:
-        """Registry of the models that this table chooses from, or None."""
-        names = getattr(cls.fields.get(cls.selector), "names", None)
-        return names.registry() if isinstance(names, Models) else None
-
-    @classmethod
-    def all_keys(cls) -> dict[str, Option | Table]:
-        """All keys that this table can have: its own, then those of all models it may name."""
-        registry = cls.registry()
-        keys = dict(cls.fields)
-        for name in registry or ():
-            declared = getattr(registry[name], "declared", {})  # type: ignore[index]
-            keys |= {k: o for k, o in declared.items() if o.in_case and k not in keys}
-        return keys
+    def known(cls) -> Known:
+        """Models that this table may name and all keys that it can have with them."""
+        names = cls.fields[cls.selector].names if cls.selector else None  # type: ignore[union-attr]
+        if not isinstance(names, Models):
+            return Known({}, cls.fields, {})
+        registry = names.registry()
+        version, known = vars(cls).get("_known", (None, None))
+        if version != registry.version:
+            known = _known(cls.fields, registry.all())
+            cls._known = (registry.version, known)
+        return known  # type: ignore[return-value]
 
     @classmethod
     def model_named(cls, name: Any) -> Model | None:
         """The model of a name, or None if there is no such model."""
-        registry = cls.registry()
-        known = registry is not None and isinstance(name, str) and name in registry
-        return registry[name] if registry is not None and known else None
+        return cls.known().models.get(name) if isinstance(name, str) else None
 
     @property
     def chosen(self) -> Model | None:
         """The model that this table names."""
-        return self.model_named(getattr(self, self.selector)) if self.selector else None
+        return self.model_named(vars(self)[self.selector]) if self.selector else None
 
     @classmethod
     def spec(cls, name: str) -> Option | None:
         """Return the Option of a key, or None for an unknown key or a table."""
-        option = cls.fields.get(name) or cls.all_keys().get(name)
+        option = cls.fields.get(name) or cls.known().keys.get(name)
         return option if isinstance(option, Option) else None
 
     @classmethod
     def specs(cls) -> Iterator[tuple[str, Option]]:
         """Walk over all keys that are no tables, in order."""
-        yield from ((k, o) for k, o in cls.all_keys().items() if isinstance(o, Option))
+        yield from ((k, o) for k, o in cls.known().keys.items() if isinstance(o, Option))
 
     @classmethod
     def read(cls, data: Mapping[str, Any], path: str, found: Found) -> Self:
@@ -138,16 +151,17 @@ def read_fields(cls: type[Section], data: Mapping[str, Any], path: str, found: F
         elif name in data:
             try:
                 values[name] = read_value(field, name, data[name])
-            except ValueFaultError as fault:
+            except FaultError as fault:
                 found.append((key, fault.problem))
         elif name in cls.fields:
-            own = cls.fields[name]
-            values[name] = None if own.required else own.default  # type: ignore[union-attr]
-            if values[name] is None and own.required:  # type: ignore[union-attr]
+            values[name] = cls.fields[name].default
+            if values[name] is REQUIRED:
+                values[name] = None
                 found.append((key, _missing(field, name, path)))
         else:
             values[name] = None
-    found += _foreign(cls, data, options, path)
+    if not options.keys() >= data.keys():
+        found += _foreign(cls, data, options, path)
     return values
 
 
@@ -157,8 +171,7 @@ def _options(cls: type[Section], data: Mapping[str, Any]) -> dict[str, Option | 
         return cls.fields
     named = data.get(cls.selector, cls.fields[cls.selector].default)
     model = cls.model_named(named.value if isinstance(named, Plain) else named)
-    declared = {} if model is None else model.declared
-    return {**cls.fields, **{k: o for k, o in declared.items() if o.in_case}}
+    return cls.fields if model is None else {**cls.fields, **model.case_options}
 
 
 def _read_table(
@@ -183,14 +196,14 @@ def _foreign(
 ) -> Iterator[tuple[str, Problem]]:
     """Faults of keys that are not those of this table under its model."""
     strange = [name for name in data if name not in options]
-    known = cls.all_keys() if strange else {}
+    known = cls.known().keys if strange else {}
     for name in strange:
         key, option = (f"{path}.{name}" if path else name), known.get(name)
         if isinstance(option, Option):
             # That it belongs to another model is told with the other contradictions.
             try:
                 read_value(option, name, data[name])
-            except ValueFaultError as fault:
+            except FaultError as fault:
                 yield key, fault.problem
         else:
             yield key, unknown(tuple(key.split(".")), data[name])
@@ -228,7 +241,7 @@ def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:
     """List the tables that have a key called ``name``."""
     section = section_at(path)
     found = []
-    for key, field in section.all_keys().items() if section else ():
+    for key, field in section.known().keys.items() if section else ():
         if isinstance(field, Table):
             found += _homes(name, (*path, key))
         elif key == name:
@@ -240,7 +253,7 @@ def unknown(path: tuple[str, ...], value: Any) -> Problem:
     """Say that there is no such key, naming the nearest or the table that has it."""
     *table, name = path
     section = section_at(tuple(table))
-    known = list(section.all_keys()) if section else []
+    known = list(section.known().keys) if section else []
     known += [] if table else ["assumed"]
     shown = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
     place = f"[{'.'.join(table)}]" if table else "the top of the file"

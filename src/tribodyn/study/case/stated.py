@@ -15,7 +15,7 @@ from tribodyn.model import Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.given import Given
 from tribodyn.study.case.section import section_at
-from tribodyn.study.case.values import Plain, ValueFaultError, read_value, written
+from tribodyn.study.case.values import FaultError, Plain, read_value, written
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -87,7 +87,7 @@ def _spec_at(key: str, given: Given) -> Option | None:
     section = section_at(tuple(path))
     if section is None:
         return None
-    model = section.model_named(given.value(".".join((*path, section.selector))))
+    model = section.model_named(given.get(".".join((*path, section.selector))))
     return (model.declared.get(name) if model else None) or section.spec(name)
 
 
@@ -102,7 +102,7 @@ def _read(given: Given, table: str, typed: Mapping[str, Any]) -> tuple[dict[str,
             continue
         try:
             values[key] = read_value(spec, key.rpartition(".")[2], value)
-        except ValueFaultError as fault:
+        except FaultError as fault:
             found.append((place, fault.problem))
     return values, found
 
@@ -143,7 +143,7 @@ def settled(
         return Stated(kept, stated.base | recorded | stated.base), stale
     base = {
         key: values[key]
-        for key in given.keys("")
+        for key in given.typed
         if key in values and case.assumed.get(key) != DEFAULT_MARK
     }
     # Another origin stands for the values in force, whatever they were before.

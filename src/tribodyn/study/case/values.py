@@ -26,7 +26,7 @@ class Plain:
     value: Any
 
 
-class ValueFaultError(Exception):
+class FaultError(Exception):
     """What is wrong with one value; its place is not known yet."""
 
     def __init__(self, what: str, why: str = "", remedy: str = "") -> None:
@@ -47,17 +47,17 @@ def written(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _comma(name: str, value: str) -> ValueFaultError | None:
+def _comma(name: str, value: str) -> FaultError | None:
     """Say that a number is written with a decimal point, where it has a comma."""
     if not _COMMA.match(value):
         return None
     point = value.strip().replace(",", ".", 1)
     shown = point if point.replace(".", "", 1).lstrip("+-").isdigit() else f'"{point}"'
     why, remedy = "The decimal sign is a point, not a comma", f"Write {name} = {shown}"
-    return ValueFaultError(f"{name} = {written(value)}", why, remedy)
+    return FaultError(f"{name} = {written(value)}", why, remedy)
 
 
-def _misread(spec: Option, name: str, value: str, told: str) -> ValueFaultError:
+def _misread(spec: Option, name: str, value: str, told: str) -> FaultError:
     """Say why text is no quantity of the field, and what to write."""
     reason, lacks_unit, _ = told.partition("; write for example")
     remedy = f"Write for example {spec.example}"
@@ -69,7 +69,7 @@ def _misread(spec: Option, name: str, value: str, told: str) -> ValueFaultError:
         if turns:
             rpm = 60.0 * float(turns.group(1))
             remedy = f'Write it in rpm: "{rpm:g} rpm" if turns per second are meant'
-    return ValueFaultError(f"{name} = {written(value)}", reason, remedy)
+    return FaultError(f"{name} = {written(value)}", reason, remedy)
 
 
 def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
@@ -79,26 +79,24 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
         try:
             return float(value.to(spec.unit or "dimensionless").magnitude)
         except Exception as error:
-            raise ValueFaultError(
+            raise FaultError(
                 shown, f"{name} is a quantity in {spec.unit or '1'}", str(error)
             ) from None
     if isinstance(value, str):
         if comma := _comma(name, value):
             raise comma
         if not spec.unit:
-            raise ValueFaultError(
-                shown, f"{name} is a pure number, not text", "Write it without quotes"
-            )
+            raise FaultError(shown, f"{name} is a pure number, not text", "Write it without quotes")
         try:
             return units.parse(value, spec.unit)
         except units.UnitProblemError as error:
             raise _misread(spec, name, value, str(error)) from None
     if isinstance(value, bool) or not isinstance(value, numeric.Real):
         kind = "a number with a unit" if spec.unit else "a number"
-        raise ValueFaultError(shown, f"{name} must be {kind}", f"Write for example {spec.example}")
+        raise FaultError(shown, f"{name} must be {kind}", f"Write for example {spec.example}")
     if spec.unit and as_text:
         remedy = f'Write for example {name} = "{value} {spec.display_unit}"'
-        raise ValueFaultError(shown, f"{name} has a dimension and needs a unit, as text", remedy)
+        raise FaultError(shown, f"{name} has a dimension and needs a unit, as text", remedy)
     return float(value)
 
 
@@ -112,7 +110,7 @@ def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
         display = spec.show(value)
         shown += "" if display == str(typed) else f" ({display})"
     why = f"Allowed: {spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
-    raise ValueFaultError(
+    raise FaultError(
         shown, why, "Correct the value or its unit" if spec.unit else "Correct the value"
     )
 
@@ -124,7 +122,7 @@ def _whole(spec: Option, name: str, value: Any) -> int:
         whole = operator.index(value)
     except TypeError:
         remedy = f"Write for example {name} = {spec.example}"
-        raise ValueFaultError(
+        raise FaultError(
             f"{name} = {written(value)}", f"{name} must be a whole number", remedy
         ) from None
     _in_range(spec, name, whole, value)
@@ -140,13 +138,11 @@ def _name(spec: Option, name: str, value: Any) -> str:
     label = "This version has" if spec.later else "Allowed"
     shown, why = f"{name} = {written(value)}", f"{label}: {', '.join(known)}"
     if value in spec.later:
-        raise ValueFaultError(
+        raise FaultError(
             shown, f'"{value}" comes with a later release. {why}', "Choose one of these"
         )
     near = difflib.get_close_matches(str(value), known, n=1)
-    raise ValueFaultError(
-        shown, why, f'Did you mean "{near[0]}"?' if near else "Choose one of these"
-    )
+    raise FaultError(shown, why, f'Did you mean "{near[0]}"?' if near else "Choose one of these")
 
 
 def read_value(spec: Option, name: str, value: Any) -> Any:
@@ -167,16 +163,14 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
     wanted = bool if spec.kind == "flag" else str
     if not isinstance(value, wanted):
         remedy = "Write true or false" if wanted is bool else "Write it in quotes"
-        raise ValueFaultError(
-            f"{name} = {written(value)}", f"{name} must be {spec.allowed()}", remedy
-        )
+        raise FaultError(f"{name} = {written(value)}", f"{name} must be {spec.allowed()}", remedy)
     return str(Path(str(value)).absolute()) if spec.kind == "file" else value
 
 
 def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ...]:
     if isinstance(value, str) or not hasattr(value, "__iter__"):
         remedy = f"Write for example {name} = [{spec.example}]"
-        raise ValueFaultError(f"{name} = {written(value)}", f"{name} must be a list", remedy)
+        raise FaultError(f"{name} = {written(value)}", f"{name} must be a list", remedy)
     result = []
     for position, item in enumerate(value):
         label = f"{name}[{position}]"

@@ -14,7 +14,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import section_at
 from tribodyn.study.case.sections import Operation
-from tribodyn.study.case.values import Plain, ValueFaultError, read_value
+from tribodyn.study.case.values import FaultError, Plain, read_value
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -87,7 +87,7 @@ def _one(case: Case, key: str, value: Any, by: str) -> Any:
         raise InputError(Problem(f'there is no key "{key}"', _place(by)))
     try:
         return read_value(spec, key.rpartition(".")[2], value if by else Plain(value))
-    except ValueFaultError as fault:
+    except FaultError as fault:
         told = fault.problem
         where, remedy = f"{by} {key}".strip(), told.remedy
         if by and spec.unit and isinstance(value, int | float):
@@ -159,7 +159,7 @@ def operation_values(name: str, given: Any, case: Case) -> list[float]:
     spec = Operation.fields[name]
     try:
         return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]
-    except ValueFaultError as fault:
+    except FaultError as fault:
         problem = replace(fault.problem, where=f"argument {name}")
         raise InputError(problem) from None
 

@@ -11,7 +11,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.gears import Modification
-from tribodyn.study.case.values import Plain, ValueFaultError, read_value
+from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.pipeline.loaded_teeth import loaded_settings
 from tribodyn.study.pipeline.tooth_contact import model_settings
 from tribodyn.study.studies.grid import pinion_speeds, pinion_torques
@@ -132,7 +132,7 @@ def _lengths(name: str, given: Any) -> tuple[float, float] | None:
     spec = Modification.fields["tip_relief" if name == "amount" else "tip_relief_length"]
     try:
         low, high = (float(read_value(spec, name, Plain(item))) for item in given)
-    except ValueFaultError as fault:
+    except FaultError as fault:
         raise InputError(replace(fault.problem, where=f"argument {name}")) from None
     return low, high
 
