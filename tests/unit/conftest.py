@@ -17,7 +17,7 @@ from tribodyn.dynamics import FineSamples, Response
 from tribodyn.gear import BasicRack, Material, SpurPair, spur_pair
 from tribodyn.mesh import MeshTable, build
 from tribodyn.study import Case
-from tribodyn.study.provenance import assumptions
+from tribodyn.study.case.provenance import assumptions
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.lubricant.oil import Lubricant
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 #: Temperatures closer than this [K] are the same.
 _SAME_TEMPERATURE = 0.01

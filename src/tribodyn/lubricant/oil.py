@@ -17,7 +17,7 @@ from tribodyn.lubricant.density import (
     dowson_higginson_density,
 )
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: Pressure laws by name, each ``law(pressure, dynamic_viscosity, coefficient)``.

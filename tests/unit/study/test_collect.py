@@ -7,7 +7,7 @@ import warnings
 import pytest
 
 from tribodyn.errors import warn
-from tribodyn.study.collect import collected
+from tribodyn.study.case.collect import collected
 
 
 def test_each_warning_once_in_order() -> None:

@@ -13,8 +13,8 @@ import xarray
 import tribodyn as td
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.study import Sweep
-from tribodyn.study.axes import read_axes
-from tribodyn.study.sweep_result import SweepPoint
+from tribodyn.study.studies.grid import read_axes
+from tribodyn.study.studies.sweep_result import SweepPoint
 
 FIGURE = "rms_mesh_force"
 
@@ -75,7 +75,7 @@ def test_a_value_that_fails_is_told_and_the_others_go_on(case):
 
 
 def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
-    import tribodyn.study.parameter_sweep as module
+    import tribodyn.study.studies.sweep as module
 
     run, count = module.run, []
 

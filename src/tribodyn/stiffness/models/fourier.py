@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
+from tribodyn.model import number, numbers
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.types import Array, Mask
 
@@ -108,6 +109,35 @@ def _model(
     return share_equally(fourier_mesh_stiffness(phase, **options), in_contact)
 
 
+_GUARD = "guards against a wrong unit"
+_OPTIONS = {
+    "mean_stiffness": number(
+        None, 1e3, 1e13, _GUARD, of="mesh_stiffness", meaning="mean of the mesh stiffness"
+    ),
+    "cosine": numbers(
+        -1e13,
+        1e13,
+        _GUARD,
+        default=(),
+        of="mesh_stiffness",
+        meaning="cosine amplitudes of harmonics 1, 2..",
+    ),
+    "sine": numbers(
+        -1e13,
+        1e13,
+        _GUARD,
+        default=(),
+        of="mesh_stiffness",
+        meaning="sine amplitudes of harmonics 1, 2..",
+    ),
+}
+
 MODELS.register("fourier")(
-    StiffnessModel("fourier", _model, {"mean_stiffness": None, "cosine": (), "sine": ()})
+    StiffnessModel(
+        "fourier",
+        _model,
+        _OPTIONS,
+        meaning="mesh stiffness given as a mean and harmonics, shared equally by the pairs",
+        papers=("kahraman-singh",),
+    )
 )

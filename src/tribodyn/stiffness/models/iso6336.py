@@ -217,4 +217,11 @@ def _model(
     return np.where(in_contact, stiffness, 0.0)
 
 
-MODELS.register("iso6336")(StiffnessModel("iso6336", _model, {}))
+MODELS.register("iso6336")(
+    StiffnessModel(
+        "iso6336",
+        _model,
+        meaning="stiffness from the fitted formulas of ISO 6336-1, over the path as a parabola",
+        papers=("iso-6336-1",),
+    )
+)

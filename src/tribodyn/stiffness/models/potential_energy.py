@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ComputationError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.model import MODELS, StiffnessModel
+from tribodyn.stiffness.model import MODELS, StiffnessModel, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
 from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
@@ -250,6 +250,12 @@ def _model(
 
 MODELS.register("potential-energy")(
     StiffnessModel(
-        "potential-energy", _model, {"reference": "bore"}, influence=potential_energy_influence
+        "potential-energy",
+        _model,
+        {"reference": reference_option("bore")},
+        influence=potential_energy_influence,
+        meaning="stiffness from the strain energy of each tooth, its foundation and the Hertzian "
+        "contact",
+        papers=("sainsot", "weber-banaschek"),
     )
 )

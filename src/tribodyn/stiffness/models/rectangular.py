@@ -8,6 +8,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
+from tribodyn.model import number
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.types import Array, Mask
 
@@ -120,10 +121,23 @@ def _model(
     return rectangular_stiffness(in_contact, **options)
 
 
+_RANGE = (None, 1e3, 1e13, "guards against a wrong unit")
+_OPTIONS = {
+    "pair_stiffness": number(*_RANGE, of="pair_stiffness"),
+    "single_pair_stiffness": number(
+        *_RANGE, of="pair_stiffness", meaning="stiffness with one pair in contact"
+    ),
+    "double_pair_stiffness": number(
+        *_RANGE, of="mesh_stiffness", meaning="stiffness with two pairs in contact"
+    ),
+}
+
 MODELS.register("rectangular")(
     StiffnessModel(
         "rectangular",
         _model,
-        {"pair_stiffness": None, "single_pair_stiffness": None, "double_pair_stiffness": None},
+        _OPTIONS,
+        meaning="stiffness that is constant while the number of pairs in contact is",
+        papers=("kahraman-singh",),
     )
 )

@@ -10,6 +10,7 @@ import numpy as np
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
+from tribodyn.model import numbers
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.stiffness.monotone import monotone_cubic
 from tribodyn.types import Array, Mask
@@ -127,6 +128,7 @@ def _model(
     /,
     **options: Any,
 ) -> Array:
+    options = _named_values(options)
     given = {name for name, value in options.items() if value is not None}
     if given == {"phase", "mesh_stiffness"}:
         whole_cycle = np.concatenate(([0.0, 1.0], phase))
@@ -147,6 +149,16 @@ def _model(
     )
 
 
+def _named_values(options: dict[str, Any]) -> dict[str, Any]:
+    """Call bare values by what their abscissa makes of them."""
+    options = dict(options)
+    values = options.pop("values", None)
+    if values is not None:
+        name = "mesh_stiffness" if options.get("phase") is not None else "pair_stiffness"
+        options[name] = values
+    return options
+
+
 def _over_roll_angle(
     pair: SpurPair,
     path: Array,
@@ -165,10 +177,25 @@ def _over_roll_angle(
     return stiffness
 
 
+_STIFFNESS = (0.0, 1e13, "guards against a wrong unit")
+_OPTIONS = {
+    "phase": numbers(
+        0.0, 1.0, "one mesh cycle", of="mesh_phase", meaning="mesh phases of the table"
+    ),
+    "roll_angle": numbers(
+        0.0, 2.0 * np.pi, "less than one turn", of="roll_angle", meaning="roll angles of the table"
+    ),
+    "values": numbers(*_STIFFNESS, of="mesh_stiffness", meaning="stiffness values of the table"),
+    # What the values are called where a program gives them with their abscissa.
+    "mesh_stiffness": numbers(*_STIFFNESS, of="mesh_stiffness", in_case=False),
+    "pair_stiffness": numbers(*_STIFFNESS, of="pair_stiffness", in_case=False),
+}
+
 MODELS.register("table")(
     StiffnessModel(
         "table",
         _model,
-        {"phase": None, "mesh_stiffness": None, "roll_angle": None, "pair_stiffness": None},
+        _OPTIONS,
+        meaning="stiffness given as a table over the mesh phase or the roll angle",
     )
 )
