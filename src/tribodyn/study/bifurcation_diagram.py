@@ -17,8 +17,8 @@ from tribodyn.study.steps import steps_of
 from tribodyn.study.tooth_contact import mesh_of
 
 if TYPE_CHECKING:
-    from tribodyn.analysis.bifurcation_result import Bifurcation
     from tribodyn.dynamics import System
+    from tribodyn.nonlinear.bifurcation_result import Bifurcation
     from tribodyn.study.case import Case
 
 
