@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.march import Compiled
-from tribodyn.dynamics.start import static_start
+from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.dynamics.coordinates import OrbitCoordinates, orbit_coordinates
 from tribodyn.dynamics.ensemble import _fresh_moments
 from tribodyn.dynamics.march import Compiled
-from tribodyn.dynamics.orbit_map import _balance_direction
+from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, orbit_coordinates
+from tribodyn.dynamics.orbits.orbit_map import _balance_direction
 from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight

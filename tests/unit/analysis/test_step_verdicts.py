@@ -8,10 +8,10 @@ import pytest
 from known_systems import hysteresis_system
 from references.backlash_orbits import LOW
 from tribodyn.analysis import lyapunov_exponents, phase_portrait, poincare
-from tribodyn.analysis.poincare_march import alternating_rms, judge_section
-from tribodyn.analysis.verdict import exponent_verdict
 from tribodyn.dynamics import Contact, System, simulate, steady_state
 from tribodyn.errors import InputError
+from tribodyn.nonlinear.poincare_march import alternating_rms, judge_section
+from tribodyn.nonlinear.verdict import exponent_verdict
 
 BEAT = 0.88 / (2.0 * np.pi)
 START = ([1.5], [0.8])

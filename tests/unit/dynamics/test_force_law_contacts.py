@@ -17,8 +17,8 @@ from tribodyn.dynamics import (
     torsional,
 )
 from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.plain import march_plain
-from tribodyn.dynamics.start import static_start
 from tribodyn.errors import InputError
 from tribodyn.mesh import MeshForceLaw, PhaseFunction
 

@@ -25,8 +25,8 @@ from tribodyn.dynamics import (
 )
 from tribodyn.dynamics.load_friction import friction_force, friction_tangent
 from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.plain import march_plain
-from tribodyn.dynamics.start import static_start
 from tribodyn.errors import InputError
 
 AT_REST = (np.zeros(6), np.zeros(6))

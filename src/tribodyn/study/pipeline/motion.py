@@ -37,7 +37,7 @@ def _transient(
     """March from the static equilibrium; a balancing torque is that of the steady state."""
     from tribodyn.dynamics import simulate, steady_state
     from tribodyn.dynamics.march import compile_for
-    from tribodyn.dynamics.start import static_start
+    from tribodyn.dynamics.orbits.start import static_start
 
     cycles = effective(case)["solver.cycles"]
     extra = None

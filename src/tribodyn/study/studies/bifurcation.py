@@ -17,8 +17,8 @@ from tribodyn.study.pipeline.tooth_contact import mesh_of
 from tribodyn.study.studies.grid import ends_of
 
 if TYPE_CHECKING:
-    from tribodyn.analysis.bifurcation_result import Bifurcation
     from tribodyn.dynamics import System
+    from tribodyn.nonlinear.bifurcation_result import Bifurcation
     from tribodyn.study.case.case import Case
 
 

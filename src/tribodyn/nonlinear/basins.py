@@ -1,0 +1,274 @@
+"""Basins of attraction: which motion a start comes to, over a plane of starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.dynamics.march import Compiled, compile_for
+from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.simulate import read_start
+from tribodyn.dynamics.system import System
+from tribodyn.errors import InputError, Problem
+from tribodyn.nonlinear.attractors import Motions, settle
+from tribodyn.nonlinear.basins_attractors import Attractor, Catalogue, Found, multiplier_of
+from tribodyn.nonlinear.basins_result import Basins
+from tribodyn.nonlinear.bifurcation import signal_name
+from tribodyn.nonlinear.verdict import step_verdict
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array, Index, Mask
+
+#: Certified distance to an attractor at which a start has come to it, relative to the state.
+_NEAR = 1e-4
+#: A motion this much smaller than the starts is at rest.
+_REST = 1e-9
+#: Lanes of one block.
+_WIDTH = 64
+#: Ending of the name of a velocity.
+_VELOCITY = "_velocity"
+
+
+def basins(
+    system: System,
+    mesh_frequency: float,
+    *,
+    between: tuple[tuple[float, float], tuple[float, float]],
+    coordinates: tuple[str, str] | None = None,
+    points: tuple[int, int] = (101, 101),
+    start: tuple[ArrayLike, ArrayLike] | None = None,
+    cycles: int = 400,
+    steps: int = 256,
+    signal: int | str = 0,
+    extra_force: ArrayLike | None = None,
+    verdict: bool = True,
+    keep_partial: bool = False,
+    progress: Progress = SILENT,
+) -> Basins:
+    """Find which motion every start of a plane comes to.
+
+    Parameters
+    ----------
+    system : System
+        The structure and its contacts.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    between : two pairs of float
+        Range of each of the two components of the state [m, rad, m/s or rad/s].
+    coordinates : two str, optional
+        The components: the name of a coordinate, or of one followed by ``_velocity``; the first
+        coordinate and its velocity by default.
+    points : two int
+        Values of each.
+    start : (position, velocity), optional
+        What the other components are [m or rad, m/s or rad/s]; the static equilibrium at mean
+        stiffness by default.
+    cycles : int
+        Mesh cycles at most for a start to come near its motion.
+    steps : int
+        Steps per mesh cycle.
+    signal : int or str
+        Contact whose compression rms and contact loss are of, or name of a coordinate.
+    extra_force : (n,) array, optional
+        Constant generalized force on top of the system's [N or N*m].
+    verdict : bool
+        Repeat everything with half the step, and judge.
+    keep_partial : bool
+        Return what is finished when interrupted (Ctrl-C), see ``finished``.
+    progress : Progress
+        Told about the starts.
+
+    Returns
+    -------
+    Basins
+        Attractors with their shares, the largest first.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or the step is too long.
+    KeyboardInterrupt
+        As it came, unless ``keep_partial``.
+
+    Notes
+    -----
+    A motion that repeats only after ``p`` mesh cycles is one attractor, whichever of its ``p``
+    states a start comes to. Motions that do not repeat are told apart by their rms. Boundaries
+    between basins can be fractal: ``changed`` is the part of the starts that another step sends to
+    another motion, which no step makes zero.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> pair = Contact([1.0], stiffness=lambda p: 1.0 + 0.2 * np.cos(2 * np.pi * p), gap=1.0)
+    >>> system = System([[1.0]], [[0.1]], [[0.0]], [0.5], [pair], names=["x"])
+    >>> found = basins(system, 0.14, between=((1.0, 2.0), (0.0, 1.0)), points=(3, 3), steps=64)
+    >>> found.coordinates, [each.period for each in found.attractors]
+    (('x', 'x_velocity'), [1, 1])
+    """
+    compiled = compile_for(system, mesh_frequency, steps)
+    names = coordinates or (system.names[0], system.names[0] + _VELOCITY)
+    columns = _columns(system, names)
+    axes = _axes(between, points, cycles)
+    rest = static_start(compiled) if start is None else read_start(system, start)
+    starts = np.tile(rest, (axes[0].size * axes[1].size, 1))
+    for column, values in zip(columns, np.meshgrid(*axes, indexing="ij"), strict=True):
+        starts[:, column] = values.ravel()
+    force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    name = signal_name(system, signal)
+    least = _REST * float(np.abs(starts[:, : system.size]).max())
+    catalogue = Catalogue(signal if system.contacts else name, max(64, cycles), least)
+    progress.start("Marching the starts", len(starts) * (1 + bool(verdict)))
+    plan = _Plan(float(mesh_frequency), force, cycles, keep_partial, progress)
+    motions = _march(compiled, starts, plan)
+    label = catalogue.label(motions)
+    found = [
+        _attractor(catalogue, n, label[motions.finished] == n, motions, steps)
+        for n in range(len(catalogue.known))
+    ]
+    refined = np.full(label.shape, -3)
+    if verdict and motions.finished.all():
+        finer = compile_for(system, mesh_frequency, 2 * steps)
+        found, refined = _refine(finer, starts, plan, catalogue, found, compiled.step_number)
+    progress.finish()
+    order = sorted(range(len(found)), key=lambda n: -found[n].share)
+    rank = np.argsort(np.array(order, dtype=np.int64))
+    shape = (axes[0].size, axes[1].size)
+    return Basins(
+        coordinates=(names[0], names[1]),
+        units=(_unit(names[0]), _unit(names[1])),
+        first=axes[0],
+        second=axes[1],
+        attractor=_renumbered(label, rank).reshape(shape),
+        attractors=tuple(found[n] for n in order),
+        refined_attractor=_renumbered(refined, rank).reshape(shape),
+        names=tuple(system.names),
+        signal=name,
+        mesh_frequency=float(mesh_frequency),
+        steps=steps,
+        step_number=compiled.step_number,
+        finished=motions.finished.reshape(shape),
+    )
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """What holds for all starts."""
+
+    mesh_frequency: float
+    force: Array
+    cycles: int
+    keep_partial: bool
+    progress: Progress
+
+
+def _refine(
+    finer: Compiled, starts: Array, plan: _Plan, catalogue: Catalogue, found: list[Attractor],
+    step_number: float,
+) -> tuple[list[Attractor], Index]:  # fmt: skip
+    """Repeat everything with half the step: judged attractors, and which one each start finds."""
+    fine = Catalogue(catalogue.signal, catalogue.cycles, catalogue.least)
+    if catalogue.known:
+        begin = np.array([each.state for each in catalogue.known])
+        fine = catalogue.again(_motions(finer, begin, plan), plan.cycles, _NEAR)
+    judged = [
+        _judged(each, other, step_number) for each, other in zip(found, fine.known, strict=True)
+    ]
+    again = _march(finer, starts, plan)
+    if not again.finished.all():
+        return judged, np.full(len(starts), -3)
+    refined = fine.label(again)
+    refined[refined >= len(found)] = -2
+    return judged, refined
+
+
+def _motions(compiled: Compiled, starts: Array, plan: _Plan) -> Motions:
+    count = len(starts)
+    frequency = np.full(count, plan.mesh_frequency)
+    return Motions(compiled, frequency, starts, np.tile(plan.force, (count, 1)))
+
+
+def _march(compiled: Compiled, starts: Array, plan: _Plan) -> Motions:
+    motions = _motions(compiled, starts, plan)
+    try:
+        settle(
+            motions, np.arange(len(starts)), plan.cycles, tolerance=_NEAR, width=_WIDTH,
+            progress=plan.progress,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        if not plan.keep_partial:
+            raise
+    return motions
+
+
+def _attractor(
+    catalogue: Catalogue, number: int, mine: Mask, motions: Motions, steps: int
+) -> Attractor:
+    found = catalogue.known[number]
+    half = found.full.shape[1] // 2
+    multiplier = multiplier_of(found, motions, steps)
+    return Attractor(
+        position=found.full[:, :half],
+        velocity=found.full[:, half:],
+        period=found.period,
+        rms=found.rms,
+        contact_loss_share=found.contact_loss_share,
+        largest_multiplier=multiplier,
+        stable=not multiplier >= 1.0,
+        share=float(np.mean(mine)) if mine.size else 0.0,
+    )
+
+
+def _judged(each: Attractor, other: Found, step_number: float) -> Attractor:
+    word = step_verdict(step_number, each.period, each.rms, other.period, other.rms)
+    return replace(each, verdict=word, refined_period=other.period, refined_rms=other.rms)
+
+
+def _renumbered(label: Index, rank: Index) -> Index:
+    known = label >= 0
+    out = label.copy()
+    out[known] = rank[label[known]]
+    return out
+
+
+def _columns(system: System, names: tuple[str, str]) -> tuple[int, int]:
+    known = [*system.names, *(name + _VELOCITY for name in system.names)]
+    if len(names) != 2 or names[0] == names[1] or not set(names) <= set(known):
+        raise InputError(
+            Problem(
+                what=f"coordinates = {names!r}",
+                where="argument coordinates",
+                why=f"Two different ones of {', '.join(known)}",
+            )
+        )
+    return known.index(names[0]), known.index(names[1])
+
+
+def _axes(
+    between: tuple[tuple[float, float], tuple[float, float]], points: tuple[int, int], cycles: int
+) -> tuple[Array, Array]:
+    ends = np.asarray(between, dtype=float)
+    counts = np.asarray(points)
+    wrong = ends.shape != (2, 2) or counts.shape != (2,)
+    if wrong or not np.all(np.isfinite(ends)) or np.any(counts < 2) or cycles < 1:
+        raise InputError(
+            Problem(
+                what=f"between = {between}, points = {points}, cycles = {cycles}",
+                where="argument between",
+                why="A plane has two ranges of at least two values, and needs a mesh cycle",
+                remedy="Write, for example, between=((-1e-4, 1e-4), (-0.1, 0.1))",
+            )
+        )
+    first, second = (
+        np.linspace(float(low), float(high), int(n))
+        for (low, high), n in zip(ends, counts, strict=True)
+    )
+    return first, second
+
+
+def _unit(name: str) -> str:
+    angle = "theta" in name
+    if name.endswith(_VELOCITY):
+        return "rad/s" if angle else "m/s"
+    return "rad" if angle else "m"

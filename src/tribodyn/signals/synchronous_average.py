@@ -1,0 +1,205 @@
+"""Time-synchronous average: what repeats with the shaft, apart from what does not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.signals.order_map_resampling import angular_resampling, shaft_rotation
+from tribodyn.signals.spectrum_input import checked_rising, checked_signal
+from tribodyn.types import Array
+
+
+@record
+class SynchronousAverage(Record):
+    """Mean revolution of a shaft.
+
+    Parameters
+    ----------
+    angle : (n,) array
+        Angle of the shaft from the first sample [rad].
+    signal : (n,) array
+        Mean over all revolutions, in the unit of the signal.
+    scatter : (n,) array
+        Standard error of the mean at each angle, in the unit of the signal.
+    revolutions : int
+        Number of revolutions averaged.
+    teeth : int
+        Number of teeth on the shaft, the order of the mesh.
+    unit : str
+        Unit of the signal.
+    """
+
+    angle: Array = quantity("angle", unit="rad", axis=True)
+    signal: Array = quantity("angle", unit="@unit")
+    scatter: Array = quantity("angle", unit="@unit")
+    revolutions: int = fact()
+    teeth: int = fact()
+    unit: str = ""
+
+    def __repr__(self) -> str:
+        """One line."""
+        swing = float(np.ptp(self.signal))
+        error = float(np.sqrt(np.mean(self.scatter**2)))
+        return (
+            (
+                f"SynchronousAverage({self.revolutions} revolutions, {self.teeth} teeth, swing "
+                f"{swing:.4g} {self.unit}, standard error {error:.2g} {self.unit})"
+            )
+            .replace(" ,", ",")
+            .replace(" )", ")")
+        )
+
+    def mesh_amplitudes(self, count: int = 5) -> Array:
+        """Amplitudes of the mesh harmonics.
+
+        Parameters
+        ----------
+        count : int
+            Number of harmonics.
+
+        Returns
+        -------
+        (count,) array
+            Peak amplitudes, in the unit of the signal; zero above what is sampled.
+        """
+        lines = 2.0 * np.abs(np.fft.rfft(self.signal)) / self.signal.size
+        orders = self.teeth * np.arange(1, count + 1)
+        held = orders < self.signal.size / 2
+        return np.where(held, lines[np.where(held, orders, 0)], 0.0)
+
+    def residual(self, shaft_orders: int = 2) -> Array:
+        """Mean revolution less its mean, the mesh harmonics and the lowest shaft orders.
+
+        Parameters
+        ----------
+        shaft_orders : int
+            Highest shaft order that is taken out; 0 leaves them.
+
+        Returns
+        -------
+        (n,) array
+            In the unit of the signal.
+        """
+        return self._without(shaft_orders, 0)
+
+    def difference(self, shaft_orders: int = 2) -> Array:
+        """Residual less the first sidebands of all mesh harmonics.
+
+        Parameters
+        ----------
+        shaft_orders : int
+            Highest shaft order that is taken out; 0 leaves them.
+
+        Returns
+        -------
+        (n,) array
+            In the unit of the signal.
+        """
+        return self._without(shaft_orders, 1)
+
+    def _without(self, shaft_orders: int, beside: int) -> Array:
+        lines = np.fft.rfft(self.signal)
+        lines[: shaft_orders + 1] = 0.0
+        for mesh in range(self.teeth, lines.size + beside, self.teeth):
+            lines[max(mesh - beside, 0) : mesh + beside + 1] = 0.0
+        return np.asarray(np.fft.irfft(lines, self.signal.size))
+
+    def _parts(self) -> Parts:
+        parts, units = super()._parts(), self._units("@unit")
+        parts.variables["residual"] = ("angle", self.residual(), units)
+        parts.variables["difference"] = ("angle", self.difference(), units)
+        return parts
+
+
+def time_synchronous_average(
+    signal: Any,
+    time: Any,
+    *,
+    teeth: int,
+    rotation: Any = None,
+    speed: Any = None,
+    mesh_harmonics: int = 5,
+    unit: str = "",
+) -> SynchronousAverage:
+    """Average a signal over the revolutions of a shaft.
+
+    Parameters
+    ----------
+    signal : (n,) array
+        Signal over time, in any unit.
+    time : (n,) array
+        Time of each sample [s].
+    teeth : int
+        Number of teeth of the gear on the shaft.
+    rotation : (n,) array, optional
+        Rotation of the shaft at each sample [rad], counted on without wrap.
+    speed : float or (n,) array, optional
+        Rotational speed [rad/s], instead of the rotation.
+    mesh_harmonics : int
+        Mesh harmonics that must come through.
+    unit : str
+        Unit of the signal, for display.
+
+    Returns
+    -------
+    SynchronousAverage
+
+    Raises
+    ------
+    InputError
+        If the record is not finite, does not rise, holds less than two revolutions or was
+        sampled with less than twice the highest mesh harmonic.
+
+    Notes
+    -----
+    The signal is resampled over the rotation (:func:`tribodyn.analysis.order_map` does the same)
+    and the revolutions are averaged: what does not repeat falls with the square root of their
+    number (S. Braun, Acustica 32 (1975) 69; P. D. McFadden, Mechanical Systems and Signal
+    Processing 1 (1987) 83).
+
+    Examples
+    --------
+    >>> time = np.linspace(0.0, 2.0, 20001)
+    >>> turn = 2 * np.pi * 10.0 * time
+    >>> wave = np.cos(16 * turn) + 0.2 * np.cos(7.3 * turn)
+    >>> made = time_synchronous_average(wave, time, teeth=16, speed=2 * np.pi * 10.0)
+    >>> made.revolutions, round(float(made.mesh_amplitudes(1)[0]), 3)
+    (20, 1.0)
+    """
+    values = checked_signal(signal, 16)
+    moments = checked_rising(time, values.size, "time", "s")
+    require_positive("teeth", teeth)
+    require_positive("mesh_harmonics", mesh_harmonics)
+    angle = shaft_rotation(rotation, speed, moments)
+    highest = teeth * mesh_harmonics + 2
+    per_turn = 2 * int(np.ceil(1.3 * highest))
+    made = angular_resampling(
+        values,
+        moments,
+        angle,
+        samples_per_revolution=per_turn,
+        highest_order=float(highest),
+    )
+    count = made.signal.size // per_turn
+    if count < 2:
+        raise InputError(
+            Problem(
+                what=f"the record holds {made.signal.size / per_turn:.3g} revolutions",
+                where="argument rotation",
+                why="An average needs two whole ones",
+                remedy="Record longer",
+            )
+        )
+    turns = made.signal[: count * per_turn].reshape(count, per_turn)
+    return SynchronousAverage(
+        2.0 * np.pi * np.arange(per_turn) / per_turn,
+        turns.mean(axis=0),
+        turns.std(axis=0, ddof=1) / np.sqrt(count),
+        count,
+        teeth,
+        unit,
+    )
