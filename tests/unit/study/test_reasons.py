@@ -11,10 +11,11 @@ from typing import Any
 import pytest
 
 import tribodyn as td
-from tribodyn.cases.catalogue import case_files
+from tribodyn.cases import case_files
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.report import render_report, write_sweep_report
+from tribodyn.study import read_case
 from tribodyn.study.cautions import case_cautions
 from tribodyn.study.citations import cite
 from tribodyn.study.fields import Spec
@@ -25,7 +26,6 @@ from tribodyn.study.provenance import (
     provenance,
     spec_of,
 )
-from tribodyn.study.read import read_case
 
 WIDTH = "gears.pinion.face_width"
 MARK = re.compile(r'^("[\w.]+") = \{ value = (.*), reason = (".*") \}$', re.MULTILINE)
