@@ -4,6 +4,9 @@ Two references. FZG type A: converged figures, E 206 GPa, nu 0.3, bores 30 mm. O
 triangles on the outline of the whole gear, bore held, load spread as a Hertz pressure of half width
 0.02 modules, whose local compression ``2/(pi E) (ln(2 h/a) - nu/2)`` is taken off; converged to
 0.5 %, and 0.4 % from the figures of FZG type A.
+
+The figures are those of both models, which are neither printed nor part of this repository: mark
+``regression``.
 """
 
 from __future__ import annotations
@@ -25,6 +28,8 @@ from tribodyn.stiffness import (
 )
 from tribodyn.stiffness.teeth.analytic import analytic_influence
 from tribodyn.stiffness.teeth.weber import weber_influence
+
+pytestmark = pytest.mark.regression
 
 WIDTH = 20e-3
 #: One pair carrying 100 N/mm [N/m].

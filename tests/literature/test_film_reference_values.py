@@ -1,4 +1,8 @@
-"""Solved films against another scheme: its figures (tests/references/film_cases.py) and itself."""
+"""Solved films against another scheme: its figures (tests/references/film_cases.py) and itself.
+
+Figures of single grids and of the domain of the source (mark ``regression``) are kept so that a
+change is seen.
+"""
 
 from __future__ import annotations
 
@@ -55,6 +59,7 @@ def test_fine_grid_reaches_the_printed_digits(name):
     assert found.outlet == pytest.approx(outlet, abs=5e-4)
 
 
+@pytest.mark.regression
 @pytest.mark.parametrize(
     ("nodes", "central"), [(257, 0.083989), (513, 0.084919), (1025, 0.085154), (2049, 0.085213)]
 )
@@ -91,6 +96,7 @@ def test_speed_is_half_the_sum_of_the_surface_speeds():
     assert sum_of_speeds.central_film / right.central_film == pytest.approx(1.62, abs=0.03)
 
 
+@pytest.mark.regression
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 @pytest.mark.parametrize(("torque", "loss"), [(50, -0.32), (150, -0.14), (300, -0.07)])
 def test_domain_of_the_source_starves_its_contacts(torque, loss):
@@ -123,6 +129,7 @@ def test_fzg_pair_with_an_inlet_of_a_hundred_half_widths(torque):
     assert found.minimum_film * 1e6 == pytest.approx(known.minimum * unit, rel=1e-3)
 
 
+@pytest.mark.regression
 def test_height_of_the_spike_needs_a_fine_grid():
     """Truth 0.944 of the Hertz pressure; a uniform grid of 257 to 2049 nodes finds 0.63 to 0.81."""
     known = known_film(20.0, 10.0, wetted(moes("M20 L10", 8193)), inlet=-4.5, nodes=700)
