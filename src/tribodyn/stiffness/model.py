@@ -122,11 +122,9 @@ def usable_stiffness(found: Array, in_contact: Mask, model: str) -> Array:
     )
     if not sound:
         raise ComputationError(
-            Problem(
-                what=f'the stiffness model "{model}" gave no usable pair stiffness',
-                where="stiffness of the tooth pairs",
-                why="It must be finite and positive where a pair is in contact, zero elsewhere",
-                remedy="Check the options of the model, or choose another",
-            )
+            f'the stiffness model "{model}" gave no usable pair stiffness',
+            where="stiffness of the tooth pairs",
+            why="It must be finite and positive where a pair is in contact, zero elsewhere",
+            remedy="Check the options of the model, or choose another",
         )
     return stiffness

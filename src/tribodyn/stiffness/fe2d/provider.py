@@ -173,12 +173,10 @@ def fe2d_influence(
     wind_up = wind_up_to_take_off(gear, material, reference)
     if neighbours < 1:
         raise InputError(
-            Problem(
-                what=f"neighbours = {neighbours}",
-                where=Argument("neighbours"),
-                why="Teeth in contact at the same time move one another",
-                remedy="Give 1 or more",
-            )
+            f"neighbours = {neighbours}",
+            where=Argument("neighbours"),
+            why="Teeth in contact at the same time move one another",
+            remedy="Give 1 or more",
         )
     known = max(min(neighbours, (gear.teeth - 1) // 2), 1)
     found = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)

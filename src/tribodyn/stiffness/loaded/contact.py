@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import Argument, InputError, Problem, require_positive
+from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded.load_points import (
     ContactPlaces,
@@ -52,7 +52,7 @@ def compliance_of(
             for gear in (pair.pinion, pair.wheel)
         )
         structure = coupled_compliance(pinion, wheel, places)
-        return Compliance(structure, *local_coefficients(pair, material, places))
+        return Compliance(structure, *local_coefficients(material, places))
     stiffness = model(
         pair, material, places.path, places.on_path, places.phase, total_force, **options
     )
@@ -184,18 +184,22 @@ def mesh_problem(
     return ContactProblem(where, compliance, gaps, widths)
 
 
+def options_of(provider: str, reference: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of a provider with the reference among them, where it has one."""
+    known = reference is not None and "reference" in MODELS[provider].options
+    return {**options, "reference": reference} if known else dict(options)
+
+
 def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
     """Mesh phases over all cycles, from a number for each cycle or as they are given."""
     if not isinstance(phases, int | np.integer):
         return np.atleast_1d(np.asarray(phases, dtype=float))
     if phases < 8:
         raise InputError(
-            Problem(
-                what=f"phases = {phases}",
-                where=Argument("phases"),
-                why="A mesh cycle needs at least 8 phases",
-                remedy="Give for example phases=64",
-            )
+            f"phases = {phases}",
+            where=Argument("phases"),
+            why="A mesh cycle needs at least 8 phases",
+            remedy="Give for example phases=64",
         )
     return np.arange(int(phases) * mesh_cycles) / int(phases)
 
@@ -270,9 +274,7 @@ def loaded_contact(
     """
     torques = np.asarray(torque, dtype=float)
     require_positive("torque", torques, "N*m")
-    chosen = dict(options)
-    if reference is not None and "reference" in MODELS[provider].options:
-        chosen["reference"] = reference
+    chosen = options_of(provider, reference, options)
     given = {
         "provider": provider,
         "phase": phases_of(phases, mesh_period(pair)),

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.gear import Material, SpurGear, SpurPair
+from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.loaded.contact import mesh_problem
 from tribodyn.stiffness.model import MODELS, StiffnessModel
 from tribodyn.stiffness.teeth.influence import GearInfluence
@@ -41,7 +41,7 @@ def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluen
 
 def _pair_stiffness(name: str) -> Callable[..., Array]:
     def function(
-        pair: SpurPair,
+        pair: Any,
         material: Material,
         path: Array,
         in_contact: Mask,

@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.contact import effective_modulus
 from tribodyn.errors import ComputationError, Problem
-from tribodyn.gear import Material, SpurPair
+from tribodyn.gear import Material
 from tribodyn.stiffness.loaded.load_points import FAR, ContactPlaces
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import load_point
@@ -54,9 +54,7 @@ class Compliance:
     logarithm: float  #: coefficient ``B`` [m^2/N]
 
 
-def local_coefficients(
-    pair: SpurPair, material: Material, places: ContactPlaces
-) -> tuple[Array, float]:
+def local_coefficients(material: Material, places: ContactPlaces) -> tuple[Array, float]:
     """Coefficients of the compression after Weber and Banaschek with its Hertzian half width."""
     nu = material.poissons_ratio
     scale = 2.0 * (1.0 - nu**2) / (math.pi * material.youngs_modulus)
@@ -64,6 +62,7 @@ def local_coefficients(
     reduced = radii[0] * radii[1] / (radii[0] + radii[1])
     square = 8.0 * reduced / (math.pi * effective_modulus(material, material))
     total = np.zeros(places.path.shape)
+    pair = places.contact.pair
     for gear, radius in zip((pair.pinion, pair.wheel), radii, strict=True):
         depth = load_point(gear, radius).depth
         total += np.log(2.0 * depth) - 0.5 * np.log(square) - nu / (2.0 * (1.0 - nu))

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, ModelOption, Problem, require_positive
-from tribodyn.gear import Material, SpurPair
+from tribodyn.errors import InputError, ModelOption, require_positive
+from tribodyn.gear import Material
 from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
 from tribodyn.types import Array, Mask
 
@@ -58,23 +58,18 @@ def fourier_mesh_stiffness(
     coefficients[1, : len(sine)] = sine
     if not np.all(np.isfinite(coefficients)):
         raise InputError(
-            Problem(
-                what="a coefficient of the Fourier series is not a finite number",
-                where=ModelOption("stiffness", "fourier", "cosine, sine"),
-                remedy="Give every coefficient in N/m",
-            )
+            "a coefficient of the Fourier series is not a finite number",
+            where=ModelOption("stiffness", "fourier", "cosine, sine"),
+            remedy="Give every coefficient in N/m",
         )
     scan = np.linspace(0.0, 1.0, _POINTS_PER_WAVE * (coefficients.shape[1] + 1))
     least = _series(scan, mean_stiffness, coefficients)
     if least.min() <= 0.0:
         raise InputError(
-            Problem(
-                what=f"the mesh stiffness is {least.min():.4g} N/m at phase "
-                f"{scan[least.argmin()]:.3f}",
-                where=ModelOption("stiffness", "fourier"),
-                why="A mesh in contact has a positive stiffness over the whole cycle",
-                remedy=f"Raise mean_stiffness = {mean_stiffness:g} N/m or lower the coefficients",
-            )
+            f"the mesh stiffness is {least.min():.4g} N/m at phase {scan[least.argmin()]:.3f}",
+            where=ModelOption("stiffness", "fourier"),
+            why="A mesh in contact has a positive stiffness over the whole cycle",
+            remedy=f"Raise mean_stiffness = {mean_stiffness:g} N/m or lower the coefficients",
         )
     return _series(np.asarray(phase, dtype=float), mean_stiffness, coefficients)
 
@@ -88,7 +83,7 @@ def _series(phase: Array, mean_stiffness: float, coefficients: Array) -> Array:
 
 
 def _model(
-    pair: SpurPair,
+    pair: Any,
     material: Material,
     path: Array,
     in_contact: Mask,
@@ -98,12 +93,10 @@ def _model(
 ) -> Array:
     if options["mean_stiffness"] is None:
         raise InputError(
-            Problem(
-                what="mean_stiffness not given",
-                where=ModelOption("stiffness", "fourier"),
-                why="The series needs its mean",
-                remedy='Give for example mean_stiffness = "2.5e8 N/m"',
-            )
+            "mean_stiffness not given",
+            where=ModelOption("stiffness", "fourier"),
+            why="The series needs its mean",
+            remedy='Give for example mean_stiffness = "2.5e8 N/m"',
         )
     return share_equally(fourier_mesh_stiffness(phase, **options), in_contact)
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
-from tribodyn.errors import ComputationError, ModelOption, Problem, require_positive
+from tribodyn.errors import ComputationError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.model import MODELS, StiffnessModel
 from tribodyn.stiffness.teeth.influence import GearInfluence
@@ -227,12 +227,10 @@ def potential_energy_stiffness(
         if change < _TOLERANCE:
             return stiffness
     raise ComputationError(
-        Problem(
-            what=f"the load share still changes by {change:.2g} after {_PASSES} passes",
-            where=ModelOption("stiffness", "potential-energy"),
-            why=f"It must settle to {_TOLERANCE:g}",
-            remedy="Check the load; the local compression formula may be outside its range",
-        )
+        f"the load share still changes by {change:.2g} after {_PASSES} passes",
+        where=ModelOption("stiffness", "potential-energy"),
+        why=f"It must settle to {_TOLERANCE:g}",
+        remedy="Check the load; the local compression formula may be outside its range",
     )
 
 

@@ -21,7 +21,7 @@ from tribodyn.gear import (
     profile_gap,
 )
 from tribodyn.gear.profile_map import LARGEST_AMOUNT
-from tribodyn.stiffness.loaded.contact import NO_OPTIONS, contact_problem, phases_of
+from tribodyn.stiffness.loaded.contact import NO_OPTIONS, contact_problem, options_of, phases_of
 from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.problem import ContactProblem
 from tribodyn.stiffness.model import MODELS
@@ -76,12 +76,10 @@ def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Ar
     fits = weights.shape == given.shape == ordered.shape and np.all(weights >= 0.0)
     if not (fits and 0.0 < weights.sum() < np.inf):
         raise InputError(
-            Problem(
-                what=f"weight = {weights.tolist()}",
-                where=Argument("weight"),
-                why="There is one weight for each torque, none negative and not all zero",
-                remedy=f"Give {given.size} weights for {given.size} different torques",
-            )
+            f"weight = {weights.tolist()}",
+            where=Argument("weight"),
+            why="There is one weight for each torque, none negative and not all zero",
+            remedy=f"Give {given.size} weights for {given.size} different torques",
         )
     spread = np.interp(torques, ordered, weights[np.argsort(given)])
     return torques, spread / spread.sum()
@@ -228,8 +226,7 @@ _MOST, _LEAST = 512, 64
 #: Points of the map from which the search goes on: the best one, and others that lie apart.
 _STARTS = 3
 #: Steps of a simplex; it ends when neither place nor value move by more than these parts.
-_STEPS = 200
-_PLACE, _VALUE = 1e-4, 1e-5
+_SIMPLEX = {"maxfev": 200, "xatol": 1e-4, "fatol": 1e-5}
 
 
 def optimize_tip_relief(
@@ -325,10 +322,13 @@ def optimize_tip_relief(
     check_choices(grid, gears=gears, shape=shape, objective=objective)
     torques, weights = torques_and_weights(torque, weight)
     settings = {
-        "provider": provider, "phase": _phases(pair, phases, slices), "slices": slices,
-        "extended_contact": extended_contact, "material": material or Material(),
-        "options": _options(provider, reference, options),
-    }  # fmt: skip
+        "provider": provider,
+        "phase": _phases(pair, phases, slices),
+        "slices": slices,
+        "extended_contact": extended_contact,
+        "material": material or Material(),
+        "options": options_of(provider, reference, options),
+    }
     bare = with_tip_relief(pair, 0.0, 0.0, gears=gears)
     mesh = relief_mesh(bare, gears, shape, torques, settings)
     deflection = float(mesh.error(0.0, 0.0)[-1].mean())
@@ -372,12 +372,6 @@ def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:
     return phases_of(max(_LEAST, _MOST // work) if phases is None else phases, cycles)
 
 
-def _options(provider: str, reference: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of a provider with the reference among them, where it has one."""
-    known = reference is not None and "reference" in MODELS[provider].options
-    return {**options, "reference": reference} if known else dict(options)
-
-
 def _search(
     value: Callable[[Array], float], axes: list[Array], mapped: Array
 ) -> tuple[tuple[float, float], float]:
@@ -399,10 +393,8 @@ def _search(
             start,
             method="Nelder-Mead",
             bounds=[(0.0, 1.0), (0.0, 1.0)],
-            options={
-                "initial_simplex": simplex, "maxfev": _STEPS, "xatol": _PLACE, "fatol": _VALUE,
-            },
-        )  # fmt: skip
+            options={"initial_simplex": simplex, **_SIMPLEX},
+        )
         place = low + span * np.clip(found.x, 0.0, 1.0)
         reached = value(place)
         if reached < least:
