@@ -139,11 +139,11 @@ class PathOfContact:
         """
         ratio = self.contact_ratio
         pitch_point = self.direction * (self.C - self.A) / self.pair.base_pitch
-        found = [0.0, ratio % 1.0]
+        events = [0.0, ratio % 1.0]
         if 0.0 <= pitch_point < ratio:
-            found.append(pitch_point % 1.0)
+            events.append(pitch_point % 1.0)
         phases = [0.0]
-        for phase in sorted(found):
+        for phase in sorted(events):
             if phase - phases[-1] > _ROUNDING and 1.0 - phase > _ROUNDING:
                 phases.append(phase)
         return tuple(phases)

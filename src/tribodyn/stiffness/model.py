@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,17 @@ from tribodyn.gear import Material, SpurPair
 from tribodyn.registry import Registry
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
+
+
+class MeshState(NamedTuple):
+    """What a model is asked about: the positional arguments of :class:`StiffnessModel`."""
+
+    pair: SpurPair
+    material: Material
+    path: Array  #: distance of each contact from the pinion's base tangent point (n, pairs) [m]
+    in_contact: Mask
+    phase: Array  #: (n,)
+    normal_force: float  #: of all pairs together [N]
 
 
 @dataclass(frozen=True)

@@ -89,8 +89,8 @@ def half_plane_displacement(
     radial = -2.0 * cosine * log - (1.0 - nu) * angle * sine
     around = 2.0 * nu * sine + 2.0 * sine * log + (1.0 - nu) * (sine - angle * cosine)
     inward, sideways = cosine * radial - sine * around, sine * radial + cosine * around
-    found: Array = (inward[..., None] * direction + sideways[..., None] * along) / np.pi
-    return found
+    displacement: Array = (inward[..., None] * direction + sideways[..., None] * along) / np.pi
+    return displacement
 
 
 def remainder_loads(

@@ -80,8 +80,10 @@ def deformed_gear(
     for tooth in shown:
         moved = np.zeros((len(mesh.outline), 2))
         for case, loaded in enumerate(teeth):
-            found = ring.displacement(solution, loaded - tooth)[:, case].reshape(-1, 2)
-            moved += forces[case] / material.youngs_modulus * found[mesh.outline]
+            displacement_of_tooth = ring.displacement(solution, loaded - tooth)[:, case].reshape(
+                -1, 2
+            )
+            moved += forces[case] / material.youngs_modulus * displacement_of_tooth[mesh.outline]
         turn = 2.0 * math.pi * tooth / gear.teeth
         # a clockwise turn of rows
         matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])

@@ -283,9 +283,9 @@ def _numbered(
 ) -> SectorMesh:
     """Join the two grids: the lowest row of the tooth is a part of the top row of the body."""
     under = np.arange(body.shape[0] * body.shape[1]).reshape(body.shape[:2])
-    own = under.size + np.arange(tooth.shape[0] * (tooth.shape[1] - 1))
+    upper = under.size + np.arange(tooth.shape[0] * (tooth.shape[1] - 1))
     foot = under[side_columns : side_columns + tooth.shape[0], :1]
-    grid = np.concatenate([own.reshape(tooth.shape[0], -1), foot], axis=1)
+    grid = np.concatenate([upper.reshape(tooth.shape[0], -1), foot], axis=1)
     outline = np.concatenate(
         [
             under[:side_columns, 0],

@@ -284,10 +284,10 @@ def loaded_contact(
         "slices": slices,
     }
     totals = np.atleast_1d(torques) / pair.pinion.base_radius
-    problem, found = _solved(pair, totals, film_stiffness, given)
+    problem, equilibrium = _solved(pair, totals, film_stiffness, given)
     shape = torques.shape
-    places, pairs = problem.places, found.load.shape[-1]
-    load = found.load.reshape(*shape, *found.load.shape[1:])
+    places, pairs = problem.places, equilibrium.load.shape[-1]
+    load = equilibrium.load.reshape(*shape, *equilibrium.load.shape[1:])
     held = {**MODELS[provider].options, **chosen}.get("reference", "as measured")
     return LoadedContact(
         gear_pair=pair,
@@ -300,12 +300,12 @@ def loaded_contact(
         pinion_curvature_radius=places.pinion_curvature_radius,
         wheel_curvature_radius=places.wheel_curvature_radius,
         gap=problem.gaps.min(axis=1),
-        transmission_error=found.approach.reshape(*shape, places.phase.size),
+        transmission_error=equilibrium.approach.reshape(*shape, places.phase.size),
         normal_force=np.einsum("s,...psn->...pn", problem.widths, load).reshape(
             *shape, places.phase.size, pairs
         ),
         load_per_width=load,
-        mesh_stiffness_tangent=found.tangent.reshape(*shape, places.phase.size),
+        mesh_stiffness_tangent=equilibrium.tangent.reshape(*shape, places.phase.size),
     )
 
 
@@ -314,19 +314,22 @@ def _solved(
 ) -> tuple[ContactProblem, Equilibrium]:
     """One problem for all loads, or one for each where the stiffness itself depends on the load."""
 
-    def solve(some: Array) -> tuple[ContactProblem, Equilibrium]:
-        problem = contact_problem(pair, total_force=float(some[0]), **given)
+    def solve(forces: Array) -> tuple[ContactProblem, Equilibrium]:
+        problem = contact_problem(pair, total_force=float(forces[0]), **given)
         if film_stiffness is not None:
             shape = problem.compliance.local.shape
             problem = problem.with_film(np.broadcast_to(np.asarray(film_stiffness, float), shape))
-        order = np.argsort(some)
-        found = problem.at_loads(some[order])
+        order = np.argsort(forces)
+        equilibrium = problem.at_loads(forces[order])
         back = np.argsort(order)
-        return problem, Equilibrium(*(part[back] for part in found))
+        return problem, Equilibrium(*(column[back] for column in equilibrium))
 
     if MODELS[given["provider"]].influence is not None or totals.size == 1:
         return solve(totals)
     each = [solve(totals[k : k + 1]) for k in range(totals.size)]
     return each[0][0], Equilibrium(
-        *(np.concatenate(parts) for parts in zip(*(found for _, found in each), strict=True))
+        *(
+            np.concatenate(parts)
+            for parts in zip(*(equilibrium for _, equilibrium in each), strict=True)
+        )
     )

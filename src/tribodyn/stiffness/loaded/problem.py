@@ -159,13 +159,17 @@ class ContactProblem:
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
         phases, slices, pairs = self.gaps.shape
-        found = Equilibrium(
+        equilibrium = Equilibrium(
             np.empty((totals.size, phases)),
             np.empty((totals.size, phases, slices, pairs)),
             np.empty((totals.size, phases)),
         )
-        _told(solve_loads(*self._arguments, self.widths, np.asarray(totals, dtype=float), *found))
-        return found
+        _check_status(
+            solve_loads(
+                *self._arguments, self.widths, np.asarray(totals, dtype=float), *equilibrium
+            )
+        )
+        return equilibrium
 
     def at_approach(self, approach: Array) -> tuple[Array, Array]:
         """Force and tangent stiffness at given approaches.
@@ -189,7 +193,7 @@ class ContactProblem:
 
         total, tangent = np.empty(approach.shape), np.empty(approach.shape)
         asked = np.ascontiguousarray(approach, dtype=float)
-        _told(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
+        _check_status(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
         return total, tangent
 
     def tangent_at(self, load_per_width: Array) -> Array:
@@ -234,9 +238,9 @@ class ContactProblem:
         """
         from tribodyn.stiffness.loaded.kernel import pickups
 
-        found = np.empty(self.compliance.local.shape)
-        _told(pickups(*self._arguments, np.ascontiguousarray(most), found))
-        return found
+        approach = np.empty(self.compliance.local.shape)
+        _check_status(pickups(*self._arguments, np.ascontiguousarray(most), approach))
+        return approach
 
     @property
     def _arguments(self) -> tuple[Array, Array, float, Array]:
@@ -244,7 +248,7 @@ class ContactProblem:
         return parts.structure, parts.local, parts.logarithm, np.minimum(self.gaps, FAR)
 
 
-def _told(status: int) -> None:
+def _check_status(status: int) -> None:
     if status:
         what, remedy = _STATUS[status]
         raise ComputationError(Problem(what, "loaded tooth contact", "", remedy))

@@ -99,7 +99,7 @@ _PLACES: dict[str, str] = {
 }
 
 
-def _told(quantity: str) -> dict[str, str]:
+def _labels(quantity: str) -> dict[str, str]:
     known = QUANTITIES[quantity]
     return {"units": known.unit or "1", "long_name": known.meaning}
 
@@ -233,12 +233,12 @@ class LoadedContact(Record):
     def _parts(self) -> Parts:
         parts, several = super()._parts(), ("torque",) * self.torque.ndim
         for name, (dims, quantity) in _ARRAYS.items():
-            parts.variables[name] = ((*several, *dims), getattr(self, name), _told(quantity))
+            parts.variables[name] = ((*several, *dims), getattr(self, name), _labels(quantity))
         for name, quantity in _PLACES.items():
-            parts.variables[name] = (("phase", "pair"), getattr(self, name), _told(quantity))
-        parts.coordinates["phase"] = ("phase", self.phase, _told("mesh_phase"))
+            parts.variables[name] = (("phase", "pair"), getattr(self, name), _labels(quantity))
+        parts.coordinates["phase"] = ("phase", self.phase, _labels("mesh_phase"))
         parts.coordinates["pair"] = ("pair", self.number)
-        parts.coordinates["torque"] = (several, self.torque, _told("torque"))
+        parts.coordinates["torque"] = (several, self.torque, _labels("torque"))
         return parts
 
     def plot(self, **options: Any) -> Any:

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, require_positive
-from tribodyn.gear import Material
-from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
-from tribodyn.types import Array, Mask
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
+from tribodyn.types import Array
 
 #: Points at which the sign of the series is checked, per cycle of its highest harmonic.
 _POINTS_PER_WAVE = 64
@@ -82,15 +81,8 @@ def _series(phase: Array, mean_stiffness: float, coefficients: Array) -> Array:
     return total
 
 
-def _model(
-    pair: Any,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    **options: Any,
-) -> Array:
+def _model(*mesh: Any, **options: Any) -> Array:
+    state = MeshState(*mesh)
     if options["mean_stiffness"] is None:
         raise InputError(
             "mean_stiffness not given",
@@ -98,7 +90,7 @@ def _model(
             why="The series needs its mean",
             remedy='Give for example mean_stiffness = "2.5e8 N/m"',
         )
-    return share_equally(fourier_mesh_stiffness(phase, **options), in_contact)
+    return share_equally(fourier_mesh_stiffness(state.phase, **options), state.in_contact)
 
 
 MODELS.register("fourier")(

@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ComputationError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.model import MODELS, StiffnessModel
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
 from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
@@ -234,16 +234,9 @@ def potential_energy_stiffness(
     )
 
 
-def _model(
-    pair: SpurPair,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    **options: Any,
-) -> Array:
-    return potential_energy_stiffness(pair, material, path, in_contact, normal_force, **options)
+def _model(*mesh: Any, **options: Any) -> Array:
+    pair, material, path, in_contact, _, force = MeshState(*mesh)
+    return potential_energy_stiffness(pair, material, path, in_contact, force, **options)
 
 
 MODELS.register("potential-energy")(

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, require_positive
-from tribodyn.gear import Material
-from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
 from tribodyn.types import Array, Mask
 
 
@@ -102,16 +101,8 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
         )
 
 
-def _model(
-    pair: Any,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    **options: Any,
-) -> Array:
-    return rectangular_stiffness(in_contact, **options)
+def _model(*mesh: Any, **options: Any) -> Array:
+    return rectangular_stiffness(MeshState(*mesh).in_contact, **options)
 
 
 MODELS.register("rectangular")(

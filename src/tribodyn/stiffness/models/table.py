@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.contact import PathOfContact, path_of_contact
+from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
-from tribodyn.gear import Material
-from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
-from tribodyn.types import Array, Mask
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
+from tribodyn.types import Array
 
 #: Roll angles of a table may fall short of A..E by this much [rad] (rounding in print).
 _COVERAGE_TOLERANCE = 1e-6
@@ -117,25 +116,17 @@ def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
     return []
 
 
-def _model(
-    pair: Any,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    /,
-    **options: Any,
-) -> Array:
+def _model(*mesh: Any, **options: Any) -> Array:
+    state = MeshState(*mesh)
     given = {name for name, value in options.items() if value is not None}
     if given == {"phase", "mesh_stiffness"}:
-        whole_cycle = np.concatenate(([0.0, 1.0], phase))
+        whole_cycle = np.concatenate(([0.0, 1.0], state.phase))
         total = tabulated_stiffness(
             options["phase"], options["mesh_stiffness"], whole_cycle, name="phase"
         )
-        return share_equally(total[2:], in_contact)
+        return share_equally(total[2:], state.in_contact)
     if given == {"roll_angle", "pair_stiffness"}:
-        return _over_roll_angle(path_of_contact(pair), path, in_contact, options)
+        return _over_roll_angle(state, options)
     raise InputError(
         f"given: {', '.join(sorted(given)) or 'nothing'}",
         where=ModelOption("stiffness", "table"),
@@ -145,10 +136,9 @@ def _model(
     )
 
 
-def _over_roll_angle(
-    contact: PathOfContact, path: Array, in_contact: Mask, options: dict[str, Any]
-) -> Array:
-    pair, ends = contact.pair, contact.roll_angles
+def _over_roll_angle(state: MeshState, options: dict[str, Any]) -> Array:
+    pair, path, in_contact = state.pair, state.path, state.in_contact
+    ends = path_of_contact(pair).roll_angles
     radius = pair.driving.base_radius
     from_tangent_point = path if pair.driver == "pinion" else pair.line_of_action_length - path
     needed = np.concatenate(([ends["A"], ends["E"]], from_tangent_point[in_contact] / radius))

@@ -91,13 +91,13 @@ def analytic_influence(
     cross = np.zeros((min(neighbours, (gear.teeth - 1) // 2), nodes, nodes))
     for index in range(cross.shape[0]):
         cross[index] = body.influence(index + 1) - wind_up
-    own = beam_to_axis(section, load, material).total
+    self_compliance = beam_to_axis(section, load, material).total
     if foundation == "ring":
-        own = own + np.diag(body.influence(0)) - wind_up
+        self_compliance = self_compliance + np.diag(body.influence(0)) - wind_up
     else:
         parts = tooth_compliance(gear, load, 1.0, material, reference)
-        own = own + parts.foundation + parts.wind_up
-    return GearInfluence(radii, own, cross)
+        self_compliance = self_compliance + parts.foundation + parts.wind_up
+    return GearInfluence(radii, self_compliance, cross)
 
 
 def _body(

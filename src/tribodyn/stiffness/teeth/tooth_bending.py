@@ -162,7 +162,7 @@ def _checked(
     outline: tuple[Array, Array], height: Array | float, face_width: float
 ) -> tuple[Array, Array]:
     require_positive("face_width", face_width, "m")
-    knots, thickness = (np.asarray(part, dtype=float) for part in outline)
+    knots, thickness = (np.asarray(coordinate, dtype=float) for coordinate in outline)
     require_positive("half thickness of the outline", thickness[:-1], "m")
     if np.any(np.diff(knots) <= 0.0):
         raise InputError(

@@ -149,11 +149,11 @@ def weber_influence(
     load = load_point(gear, radii)
     tooth = beam_to_axis(section, load, material)
     widening = 1.0 - material.poissons_ratio**2
-    own = (
+    self_compliance = (
         widening * (tooth.bending + tooth.axial)
         + tooth.shear
         + half_plane_compliance(
             load.load_angle, load.axis_height - foot_height, 2.0 * foot_half_width, material
         )
     )
-    return GearInfluence(radii, own, np.zeros((0, nodes, nodes)))
+    return GearInfluence(radii, self_compliance, np.zeros((0, nodes, nodes)))

@@ -210,22 +210,22 @@ def transmission_error_over_torque(
     size = max(phases, 1) * work * _PAIRS
     count = min(torques.size, 1 + torques.size * size // _AT_ONCE)
     rows = []
-    for part in np.array_split(torques, count):
-        found = loaded_contact(pair, part, **given)
-        secant = found.mesh_stiffness_secant.mean(axis=1)
-        tangent = found.mesh_stiffness_tangent.mean(axis=1)
-        rows.append((found.transmission_error, secant, tangent))
+    for some_torques in np.array_split(torques, count):
+        contact = loaded_contact(pair, some_torques, **given)
+        secant = contact.mesh_stiffness_secant.mean(axis=1)
+        tangent = contact.mesh_stiffness_tangent.mean(axis=1)
+        rows.append((contact.transmission_error, secant, tangent))
     error, secant, tangent = (np.concatenate(column) for column in zip(*rows, strict=True))
     return HarrisMap(
         gear_pair=pair,
-        provider=found.provider,
-        reference=found.reference,
+        provider=contact.provider,
+        reference=contact.reference,
         torque=torques,
-        phase=found.phase,
-        mesh_cycles=found.mesh_cycles,
+        phase=contact.phase,
+        mesh_cycles=contact.mesh_cycles,
         transmission_error=error,
-        unloaded_transmission_error=found.unloaded_transmission_error,
-        harmonics=harmonic_amplitudes(found.phase, error, found.mesh_cycles, orders),
+        unloaded_transmission_error=contact.unloaded_transmission_error,
+        harmonics=harmonic_amplitudes(contact.phase, error, contact.mesh_cycles, orders),
         mean_mesh_stiffness_secant=secant,
         mean_mesh_stiffness_tangent=tangent,
     )

@@ -215,9 +215,11 @@ def relief_mesh(
 ) -> ReliefMesh:
     """Prepare a mesh to be asked for many tip reliefs."""
     total = torque / pair.pinion.base_radius
-    one = MODELS[settings["provider"]].influence is not None
-    totals = [total] if one else [total[k : k + 1] for k in range(total.size)]
-    problems = [contact_problem(pair, total_force=float(part[0]), **settings) for part in totals]
+    whole = MODELS[settings["provider"]].influence is not None
+    totals = [total] if whole else [total[k : k + 1] for k in range(total.size)]
+    problems = [
+        contact_problem(pair, total_force=float(forces[0]), **settings) for forces in totals
+    ]
     return ReliefMesh(pair, gears, shape, problems, totals)
 
 
@@ -388,14 +390,14 @@ def _search(
         start = (np.array([axes[0][row], axes[1][column]]) - low) / span
         toward = np.where(start + step > 1.0, -1.0, 1.0) * step
         simplex = start + np.array([[0.0, 0.0], [toward[0], 0.0], [0.0, toward[1]]])
-        found = minimize(
+        minimum = minimize(
             lambda unit: value(low + span * unit) / mapped.max(),
             start,
             method="Nelder-Mead",
             bounds=[(0.0, 1.0), (0.0, 1.0)],
             options={"initial_simplex": simplex, **_SIMPLEX},
         )
-        place = low + span * np.clip(found.x, 0.0, 1.0)
+        place = low + span * np.clip(minimum.x, 0.0, 1.0)
         reached = value(place)
         if reached < least:
             best, least = place, reached
