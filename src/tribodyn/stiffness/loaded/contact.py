@@ -184,10 +184,25 @@ def mesh_problem(
     return ContactProblem(where, compliance, gaps, widths)
 
 
-def options_of(provider: str, reference: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of a provider with the reference among them, where it has one."""
+def contact_settings(
+    provider: str,
+    phase: Array,
+    extended_contact: bool,
+    reference: str | None,
+    material: Material | None,
+    slices: int | None,
+    options: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Arguments of :func:`contact_problem` but for the pair and its load."""
     known = reference is not None and "reference" in MODELS[provider].options
-    return {**options, "reference": reference} if known else dict(options)
+    return {
+        "provider": provider,
+        "phase": phase,
+        "extended_contact": extended_contact,
+        "material": material or Material(),
+        "options": {**options, "reference": reference} if known else dict(options),
+        "slices": slices,
+    }
 
 
 def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
@@ -274,21 +289,16 @@ def loaded_contact(
     """
     torques = np.asarray(torque, dtype=float)
     require_positive("torque", torques, "N*m")
-    chosen = options_of(provider, reference, options)
-    given = {
-        "provider": provider,
-        "phase": phases_of(phases, mesh_period(pair)),
-        "extended_contact": extended_contact,
-        "material": material or Material(),
-        "options": chosen,
-        "slices": slices,
-    }
+    phase = phases_of(phases, mesh_period(pair))
+    settings = contact_settings(
+        provider, phase, extended_contact, reference, material, slices, options
+    )
     totals = np.atleast_1d(torques) / pair.pinion.base_radius
-    problem, equilibrium = _solved(pair, totals, film_stiffness, given)
+    problem, equilibrium = _solved(pair, totals, film_stiffness, settings)
     shape = torques.shape
     places, pairs = problem.places, equilibrium.load.shape[-1]
     load = equilibrium.load.reshape(*shape, *equilibrium.load.shape[1:])
-    held = {**MODELS[provider].options, **chosen}.get("reference", "as measured")
+    held = {**MODELS[provider].options, **settings["options"]}.get("reference", "as measured")
     return LoadedContact(
         gear_pair=pair,
         provider=provider,
@@ -310,12 +320,12 @@ def loaded_contact(
 
 
 def _solved(
-    pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, given: dict[str, Any]
+    pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, settings: dict[str, Any]
 ) -> tuple[ContactProblem, Equilibrium]:
     """One problem for all loads, or one for each where the stiffness itself depends on the load."""
 
     def solve(forces: Array) -> tuple[ContactProblem, Equilibrium]:
-        problem = contact_problem(pair, total_force=float(forces[0]), **given)
+        problem = contact_problem(pair, total_force=float(forces[0]), **settings)
         if film_stiffness is not None:
             shape = problem.compliance.local.shape
             problem = problem.with_film(np.broadcast_to(np.asarray(film_stiffness, float), shape))
@@ -324,7 +334,7 @@ def _solved(
         back = np.argsort(order)
         return problem, Equilibrium(*(column[back] for column in equilibrium))
 
-    if MODELS[given["provider"]].influence is not None or totals.size == 1:
+    if MODELS[settings["provider"]].influence is not None or totals.size == 1:
         return solve(totals)
     each = [solve(totals[k : k + 1]) for k in range(totals.size)]
     return each[0][0], Equilibrium(

@@ -21,7 +21,12 @@ from tribodyn.gear import (
     profile_gap,
 )
 from tribodyn.gear.profile_map import LARGEST_AMOUNT
-from tribodyn.stiffness.loaded.contact import NO_OPTIONS, contact_problem, options_of, phases_of
+from tribodyn.stiffness.loaded.contact import (
+    NO_OPTIONS,
+    contact_problem,
+    contact_settings,
+    phases_of,
+)
 from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.problem import ContactProblem
 from tribodyn.stiffness.model import MODELS
@@ -323,14 +328,10 @@ def optimize_tip_relief(
     """
     check_choices(grid, gears=gears, shape=shape, objective=objective)
     torques, weights = torques_and_weights(torque, weight)
-    settings = {
-        "provider": provider,
-        "phase": _phases(pair, phases, slices),
-        "slices": slices,
-        "extended_contact": extended_contact,
-        "material": material or Material(),
-        "options": options_of(provider, reference, options),
-    }
+    phase = _phases(pair, phases, slices)
+    settings = contact_settings(
+        provider, phase, extended_contact, reference, material, slices, options
+    )
     bare = with_tip_relief(pair, 0.0, 0.0, gears=gears)
     mesh = relief_mesh(bare, gears, shape, torques, settings)
     deflection = float(mesh.error(0.0, 0.0)[-1].mean())
@@ -358,7 +359,7 @@ def optimize_tip_relief(
         objective_kind=objective,
         objective=least,
         objective_before=measure(before),
-        phase=mesh.problems[0].places.phase,
+        phase=phase,
         transmission_error_before=before,
         transmission_error_after=mesh.error(*best),
         map_amount=axes[0],
