@@ -119,13 +119,26 @@ class TribodynError(Exception):
     ----------
     problems : Problem, str or iterable of Problem
         What is wrong; all faults of one input come in one error.
+    where, why, remedy : str
+        The rest of a :class:`Problem` whose finding is given as a text.
+
+    Examples
+    --------
+    >>> print(InputError("nodes = 3", where=Argument("nodes"), why="At least 4 are needed"))
+    argument nodes: nodes = 3. At least 4 are needed.
     """
 
     exit_code = 1
 
-    def __init__(self, problems: Problem | str | Iterable[Problem]) -> None:
+    def __init__(
+        self,
+        problems: Problem | str | Iterable[Problem],
+        where: Argument | ModelOption | str = "",
+        why: str = "",
+        remedy: str = "",
+    ) -> None:
         if isinstance(problems, str):
-            problems = Problem(problems)
+            problems = Problem(problems, where, why, remedy)
         self.problems: tuple[Problem, ...] = (
             (problems,) if isinstance(problems, Problem) else tuple(problems)
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.types import Array
 
 #: exp(700) is the last decade that a double holds; no liquid comes near it.
@@ -17,14 +17,12 @@ def exponential_growth(exponent: ArrayLike, pressure: ArrayLike, law: str) -> Ar
     exponents = np.asarray(exponent, dtype=float)
     if np.any(exponents > _LARGEST_EXPONENT):
         raise InputError(
-            Problem(
-                what=f"pressure = {np.max(pressure):.6g} Pa",
-                where=Argument("pressure"),
-                why=f"the {law} law raises the viscosity there by more than exp(700), "
-                "far beyond any liquid",
-                remedy="Check the unit of the pressure (Pa) and of the pressure-viscosity "
-                "coefficient (1/Pa), or use the Roelands law",
-            )
+            f"pressure = {np.max(pressure):.6g} Pa",
+            where=Argument("pressure"),
+            why=f"the {law} law raises the viscosity there by more than exp(700), "
+            "far beyond any liquid",
+            remedy="Check the unit of the pressure (Pa) and of the pressure-viscosity "
+            "coefficient (1/Pa), or use the Roelands law",
         )
     return np.asarray(np.exp(exponents))[()]
 
