@@ -7,8 +7,8 @@ import pytest
 
 from tribodyn.ehl import solve_line_contact
 from tribodyn.ehl.roughness import RoughnessProfile
-from tribodyn.ehl.transient import solve_transient_line_contact
-from tribodyn.ehl.transient_result import TransientLineContact
+from tribodyn.ehl.transient.transient import solve_transient_line_contact
+from tribodyn.ehl.transient.transient_result import TransientLineContact
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.lubricant import Lubricant
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import solve_line_contact
-from tribodyn.ehl.transient import solve_transient_line_contact
-from tribodyn.ehl.transient_result import TransientLineContact
+from tribodyn.ehl.transient.transient import solve_transient_line_contact
+from tribodyn.ehl.transient.transient_result import TransientLineContact
 from tribodyn.errors import ComputationError
 from tribodyn.lubricant import Lubricant
 

@@ -9,13 +9,17 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
-from tribodyn.ehl.kernel.coarse import coarse_tangent, no_coarse
-from tribodyn.ehl.kernel.film_sum import film_plan, influence
-from tribodyn.ehl.kernel.krylov import linear_solve, newton_work, prepare
-from tribodyn.ehl.kernel.newton import newton_level
-from tribodyn.ehl.kernel.oil import oil_state
-from tribodyn.ehl.kernel.reynolds import coefficients, mobility
-from tribodyn.ehl.kernel.transfer import refine
+from tribodyn.ehl._kernel.film_sum import film_plan, influence
+from tribodyn.ehl._kernel.linear_solver import (
+    coarse_tangent,
+    linear_solve,
+    newton_work,
+    no_coarse,
+    prepare,
+)
+from tribodyn.ehl._kernel.newton import newton_level
+from tribodyn.ehl._kernel.reynolds import coefficients, mobility, oil_state
+from tribodyn.ehl._kernel.transfer import refine
 from tribodyn.lubricant import Lubricant
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)

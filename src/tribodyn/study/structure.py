@@ -22,7 +22,7 @@ def _friction_laws() -> list[str]:
 
 
 def _shear_models() -> list[str]:
-    from tribodyn.ehl.shear_models import SHEAR_MODELS
+    from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
 
     return list(SHEAR_MODELS)
 
