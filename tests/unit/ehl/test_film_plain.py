@@ -11,8 +11,8 @@ import pytest
 from plain.film import PlainContact, PlainOil, plain_oil
 from plain.film_newton import dry_start, solve_plain
 from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
+from tribodyn.ehl._kernel import film_sum as sums
 from tribodyn.ehl._kernel import reynolds
-from tribodyn.ehl._kernel.film_sum import film_sum as sums
 from tribodyn.errors import ComputationError
 from tribodyn.lubricant import (
     barus_viscosity,

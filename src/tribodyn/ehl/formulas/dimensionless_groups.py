@@ -1,8 +1,11 @@
-"""Dimensionless groups of a line contact: of Dowson and Higginson, and of Moes."""
+"""Dimensionless groups of a line contact, and the arguments that every film formula shares."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import inspect
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,6 +50,94 @@ class Groups(NamedTuple):
         return np.asarray(self.equivalent_radius * np.sqrt(2.0 * self.speed))
 
 
+F = TypeVar("F", bound=Callable[..., Any])
+
+#: What every film formula takes, in this order and in SI: the text of its section ``Parameters``.
+ARGUMENTS = """\
+load_per_width : float or array [N/m]
+    Normal load per face width.
+equivalent_radius : float or array [m]
+    Reduced radius of curvature.
+entrainment_speed : float or array [m/s]
+    HALF the sum of the surface speeds.
+dynamic_viscosity : float or array [Pa*s]
+    Viscosity at ambient pressure.
+pressure_viscosity_coefficient : float or array [1/Pa]
+    Slope of ln(viscosity) over pressure.
+effective_modulus : float or array [Pa]
+    ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``."""
+
+_RETURNS = """\
+float or array [m]
+    Film thickness, of the common shape of the arguments."""
+_RAISES = """\
+InputError
+    If any value is not finite and positive."""
+
+
+class FilmFormula(Protocol):
+    """A formula of six arguments, each a number or an array; see :data:`ARGUMENTS`."""
+
+    def __call__(
+        self,
+        load_per_width: ArrayLike,
+        equivalent_radius: ArrayLike,
+        entrainment_speed: ArrayLike,
+        dynamic_viscosity: ArrayLike,
+        pressure_viscosity_coefficient: ArrayLike,
+        effective_modulus: ArrayLike,
+    ) -> Array:
+        """Film, or what else the formula gives."""
+
+
+def full_text(text: str) -> str:
+    """Docstring of a formula with what all of them share; sections that it has itself stay."""
+    first, _, rest = text.partition("\n\n")
+    for title, lines in (("Raises", _RAISES), ("Returns", _RETURNS), ("Parameters", ARGUMENTS)):
+        if f"{title}\n---" not in rest:
+            rest = f"{title}\n{'-' * len(title)}\n{lines}\n\n{rest}"
+    return f"{first}\n\n{rest}"
+
+
+def shared_arguments(function: F) -> F:
+    """Complete the docstring of a function that takes the six arguments."""
+    function.__doc__ = full_text(inspect.cleandoc(function.__doc__ or ""))
+    return function
+
+
+def film_formula(law: Callable[[Groups], Array]) -> FilmFormula:
+    """Make a law of the dimensionless groups a formula of the six arguments in SI."""
+
+    def value(*arguments: ArrayLike) -> Array:
+        return np.asarray(law(line_contact_groups(*arguments)))[()]
+
+    def formula(
+        load_per_width: ArrayLike,
+        equivalent_radius: ArrayLike,
+        entrainment_speed: ArrayLike,
+        dynamic_viscosity: ArrayLike,
+        pressure_viscosity_coefficient: ArrayLike,
+        effective_modulus: ArrayLike,
+    ) -> Array:
+        return value(
+            load_per_width,
+            equivalent_radius,
+            entrainment_speed,
+            dynamic_viscosity,
+            pressure_viscosity_coefficient,
+            effective_modulus,
+        )
+
+    # With the globals of the law's module: there the search for doctests expects it.
+    public = FunctionType(
+        formula.__code__, law.__globals__, law.__name__, None, formula.__closure__
+    )
+    public.__annotations__, public.__module__ = formula.__annotations__, law.__module__
+    public.__qualname__, public.__doc__ = law.__qualname__, law.__doc__
+    return cast(FilmFormula, shared_arguments(public))
+
+
+@shared_arguments
 def line_contact_groups(
     load_per_width: ArrayLike,
     equivalent_radius: ArrayLike,
@@ -56,21 +147,6 @@ def line_contact_groups(
     effective_modulus: ArrayLike,
 ) -> Groups:
     """Dimensionless groups of a line contact, from checked SI values.
-
-    Parameters
-    ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure.
-    pressure_viscosity_coefficient : float or array [1/Pa]
-        Slope of ln(viscosity) over pressure.
-    effective_modulus : float or array [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
 
     Returns
     -------

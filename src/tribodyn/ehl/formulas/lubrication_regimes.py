@@ -136,5 +136,5 @@ def warn_outside_elastic_piezoviscous(groups: Groups, formula: str) -> None:
         f"material number L down to {np.min(material[outside]):.3g} lie outside, where the "
         "survey diagram of Moes puts another asymptote, and the film can be wrong by more than "
         '20 %. Use the film model "moes", which covers all regimes.',
-        stacklevel=3,
+        stacklevel=6,
     )

@@ -2,48 +2,23 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from tribodyn.ehl.formulas.dimensionless_groups import line_contact_groups
+from tribodyn.ehl.formulas.dimensionless_groups import Groups, film_formula
 from tribodyn.ehl.formulas.lubrication_regimes import warn_outside_elastic_piezoviscous
 from tribodyn.types import Array
 
 
-def dowson_1968_minimum(
-    load_per_width: ArrayLike,
-    equivalent_radius: ArrayLike,
-    entrainment_speed: ArrayLike,
-    dynamic_viscosity: ArrayLike,
-    pressure_viscosity_coefficient: ArrayLike,
-    effective_modulus: ArrayLike,
+def _power_law(
+    name: str, groups: Groups, factor: float, speed: float, material: float, load: float
 ) -> Array:
+    """Film ``R factor U^speed G^material W^load``, with a warning outside of its regime."""
+    warn_outside_elastic_piezoviscous(groups, name)
+    film = factor * groups.speed**speed * groups.material**material * groups.load**load
+    return film * groups.equivalent_radius
+
+
+@film_formula
+def dowson_1968_minimum(groups: Groups) -> Array:
     """Minimum film: ``h/R = 2.65 U^0.7 G^0.54 W^-0.13``.
-
-    Parameters
-    ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure.
-    pressure_viscosity_coefficient : float or array [1/Pa]
-        Slope of ln(viscosity) over pressure.
-    effective_modulus : float or array [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-
-    Returns
-    -------
-    float or array [m]
-        Film thickness, of the common shape of the arguments.
-
-    Raises
-    ------
-    InputError
-        If any value is not finite and positive.
 
     Warns
     -----
@@ -59,53 +34,12 @@ def dowson_1968_minimum(
     >>> round(float(film) * 1e6, 4)
     0.8994
     """
-    groups = line_contact_groups(
-        load_per_width,
-        equivalent_radius,
-        entrainment_speed,
-        dynamic_viscosity,
-        pressure_viscosity_coefficient,
-        effective_modulus,
-    )
-    warn_outside_elastic_piezoviscous(groups, "dowson-1968")
-    film = 2.65 * groups.speed**0.7 * groups.material**0.54 * groups.load**-0.13
-    return np.asarray(film * groups.equivalent_radius)[()]
+    return _power_law("dowson-1968", groups, 2.65, 0.7, 0.54, -0.13)
 
 
-def dowson_toyoda_central(
-    load_per_width: ArrayLike,
-    equivalent_radius: ArrayLike,
-    entrainment_speed: ArrayLike,
-    dynamic_viscosity: ArrayLike,
-    pressure_viscosity_coefficient: ArrayLike,
-    effective_modulus: ArrayLike,
-) -> Array:
+@film_formula
+def dowson_toyoda_central(groups: Groups) -> Array:
     """Central film: ``h/R = 3.06 U^0.69 G^0.56 W^-0.10``.
-
-    Parameters
-    ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure.
-    pressure_viscosity_coefficient : float or array [1/Pa]
-        Slope of ln(viscosity) over pressure.
-    effective_modulus : float or array [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-
-    Returns
-    -------
-    float or array [m]
-        Film thickness, of the common shape of the arguments.
-
-    Raises
-    ------
-    InputError
-        If any value is not finite and positive.
 
     Warns
     -----
@@ -121,53 +55,12 @@ def dowson_toyoda_central(
     >>> round(float(film) * 1e6, 4)
     1.1648
     """
-    groups = line_contact_groups(
-        load_per_width,
-        equivalent_radius,
-        entrainment_speed,
-        dynamic_viscosity,
-        pressure_viscosity_coefficient,
-        effective_modulus,
-    )
-    warn_outside_elastic_piezoviscous(groups, "dowson-toyoda")
-    film = 3.06 * groups.speed**0.69 * groups.material**0.56 * groups.load**-0.1
-    return np.asarray(film * groups.equivalent_radius)[()]
+    return _power_law("dowson-toyoda", groups, 3.06, 0.69, 0.56, -0.1)
 
 
-def pan_hamrock_minimum(
-    load_per_width: ArrayLike,
-    equivalent_radius: ArrayLike,
-    entrainment_speed: ArrayLike,
-    dynamic_viscosity: ArrayLike,
-    pressure_viscosity_coefficient: ArrayLike,
-    effective_modulus: ArrayLike,
-) -> Array:
+@film_formula
+def pan_hamrock_minimum(groups: Groups) -> Array:
     """Minimum film: ``h/R = 1.714 U^0.694 G^0.568 W^-0.128``.
-
-    Parameters
-    ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure.
-    pressure_viscosity_coefficient : float or array [1/Pa]
-        Slope of ln(viscosity) over pressure.
-    effective_modulus : float or array [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-
-    Returns
-    -------
-    float or array [m]
-        Film thickness, of the common shape of the arguments.
-
-    Raises
-    ------
-    InputError
-        If any value is not finite and positive.
 
     Warns
     -----
@@ -183,53 +76,12 @@ def pan_hamrock_minimum(
     >>> round(float(film) * 1e6, 4)
     0.8294
     """
-    groups = line_contact_groups(
-        load_per_width,
-        equivalent_radius,
-        entrainment_speed,
-        dynamic_viscosity,
-        pressure_viscosity_coefficient,
-        effective_modulus,
-    )
-    warn_outside_elastic_piezoviscous(groups, "pan-hamrock")
-    film = 1.714 * groups.speed**0.694 * groups.material**0.568 * groups.load**-0.128
-    return np.asarray(film * groups.equivalent_radius)[()]
+    return _power_law("pan-hamrock", groups, 1.714, 0.694, 0.568, -0.128)
 
 
-def pan_hamrock_central(
-    load_per_width: ArrayLike,
-    equivalent_radius: ArrayLike,
-    entrainment_speed: ArrayLike,
-    dynamic_viscosity: ArrayLike,
-    pressure_viscosity_coefficient: ArrayLike,
-    effective_modulus: ArrayLike,
-) -> Array:
+@film_formula
+def pan_hamrock_central(groups: Groups) -> Array:
     """Central film: ``h/R = 2.922 U^0.692 G^0.470 W^-0.166``.
-
-    Parameters
-    ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure.
-    pressure_viscosity_coefficient : float or array [1/Pa]
-        Slope of ln(viscosity) over pressure.
-    effective_modulus : float or array [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-
-    Returns
-    -------
-    float or array [m]
-        Film thickness, of the common shape of the arguments.
-
-    Raises
-    ------
-    InputError
-        If any value is not finite and positive.
 
     Warns
     -----
@@ -245,14 +97,4 @@ def pan_hamrock_central(
     >>> round(float(film) * 1e6, 4)
     0.9206
     """
-    groups = line_contact_groups(
-        load_per_width,
-        equivalent_radius,
-        entrainment_speed,
-        dynamic_viscosity,
-        pressure_viscosity_coefficient,
-        effective_modulus,
-    )
-    warn_outside_elastic_piezoviscous(groups, "pan-hamrock")
-    film = 2.922 * groups.speed**0.692 * groups.material**0.47 * groups.load**-0.166
-    return np.asarray(film * groups.equivalent_radius)[()]
+    return _power_law("pan-hamrock", groups, 2.922, 0.692, 0.47, -0.166)
