@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numba as nb
 import numpy as np
 
 from tribodyn.ehl._kernel.elementary import BURIED, INNER
-from tribodyn.ehl._kernel.film_sum import film_sum
+from tribodyn.ehl._kernel.film_sum import Grid, film_sum
+from tribodyn.ehl._kernel.newton import Equation, NewtonWork
 from tribodyn.ehl._kernel.reynolds import BARUS, ROELANDS
 from tribodyn.ehl._kernel.transfer import scale_to_load
 from tribodyn.types import Array
@@ -129,36 +128,16 @@ def _thickened(q: float, slope: float) -> float:
 
 @nb.njit(inline="always", **BURIED)
 def cold_start(
-    n: int, start: float, dx: float, lam: float, oil: Array, film: float, load: float,
-    tail: float, shape: Array, K: Array, plan: Array, work: Any, P: Array, H: Array,
-) -> float:  # fmt: skip
-    """Pressure and film to start from without an earlier solution.
+    grid: Grid, start: float, equation: Equation, film: float, work: NewtonWork, P: Array, H: Array
+) -> float:
+    """Fill pressure and film without an earlier solution; the rigid offset.
 
-    Parameters
-    ----------
-    n, start, dx : int, float, float
-        Grid.
-    lam, oil : float, array
-        As for :func:`~tribodyn.ehl._kernel.newton.newton_level`.
-    film : float
-        Estimate of the central film.
-    load, tail, shape, K, plan, work
-        As for :func:`~tribodyn.ehl._kernel.newton.newton_level`.
-    P, H : (n + 1,) arrays
-        Receive pressure and film.
-
-    Returns
-    -------
-    float
-        Rigid offset of the film.
-
-    Notes
-    -----
     Grubin (1949): the oil thickens until the reduced pressure of the inlet wedge nears 1/alpha
     at the edge of the contact; bisected for the film where the oil is piezoviscous. Thick films
     start from rigid cylinders.
     """
-    q = work[0][0]
+    n, dx, lam, oil, tail = grid.n, grid.dx, equation.lam, equation.oil, equation.tail
+    q = work.fields.lneta
     slope = piezoviscosity(oil)
     wedge = film
     if slope > 2.0:
@@ -184,11 +163,11 @@ def cold_start(
             P[i] = max(inside, faded)
     P[n] = 0.0
     k = free_nodes(n, P)
-    scale_to_load(n, dx, k, load, tail, P)
-    film_sum(n, K, plan, P, work[5], H)
+    scale_to_load(n, dx, k, equation.target, tail, P)
+    film_sum(n, grid.influence, grid.plan, P, work.linear.transform, H)
     least = np.inf
     for i in range(n + 1):
-        H[i] += shape[i]
+        H[i] += equation.shape[i]
         if abs(start + i * dx) < max(0.9, dx):
             least = min(least, H[i])
     offset = film - least

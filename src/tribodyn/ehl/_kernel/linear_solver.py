@@ -1,41 +1,95 @@
-"""Linear systems with the tangent."""
+"""Linear systems with the tangent of the discrete contact: GMRES, preconditioned.
+
+The unknowns are the changes of pressure at the nodes 1..k and, where the load is imposed, of the
+rigid offset H0. The influence decays away from the diagonal, so that the tangent cut to a band is
+a good preconditioner. On fine grids it is joined by the tangent on a coarse grid, dense and
+factored once, which catches what the band misses: the smooth part of the elastic deflection. The
+load row is kept exactly in both and holds after every iteration.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
 from tribodyn.ehl._kernel.elementary import BURIED
 from tribodyn.ehl._kernel.factors import band_factor, band_solve, lu_factor, lu_solve
-from tribodyn.ehl._kernel.film_sum import film_plan, film_sum, film_work_size, influence
-from tribodyn.ehl._kernel.reynolds import coefficients, mobility, oil_state
-from tribodyn.types import Array
+from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, make_grid
+from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
+from tribodyn.types import Array, Index
+
+#: Half bandwidth of the preconditioner.
+HALF_BAND = 7
+#: Vectors of the Krylov space before it is restarted, and how often it is.
+BASIS, RESTARTS = 30, 6
+
+
+class CoarseTangent(NamedTuple):
+    """Factors of the tangent on a coarse grid, and vectors for its correction."""
+
+    grid: Grid
+    last: int  #: last free node
+    factors: Array  #: none: no coarse grid
+    pivot: Index
+    right: Array
+    pressure: Array
+    film: Array
+
+
+class LinearWork(NamedTuple):
+    """Tangent, its factored band, and vectors of the linear solver."""
+
+    by_film: Array  #: slopes of the balance over the film at four nodes
+    by_pressure: Array  #: and over the pressure
+    band: Array
+    pivot: Index
+    scale: Array  #: factors of the rows
+    border: Array  #: inverse of the band times the column of the offset
+    pressure: Array  #: a change of the pressure at all nodes
+    film: Array  #: and of the film that it makes
+    correction: Array  #: that of the coarse grid
+    basis: Array  #: Krylov vectors
+    small: Array  #: Hessenberg columns, rotations, right-hand side
+    transform: Array  #: of :func:`film_sum`
 
 
 @nb.njit(**BURIED)
-def no_coarse() -> Any:
+def linear_work(n: int) -> LinearWork:
+    """Arrays of the linear solver on ``n`` intervals."""
+    a = np.zeros((5, n + 2))
+    return LinearWork(
+        np.empty((n + 1, 4)), np.empty((n + 1, 4)), np.empty((n + 1, 4 * HALF_BAND + 1)),
+        np.empty(n + 1, np.int64), a[0], a[1], a[2], a[3], a[4],
+        np.zeros((BASIS + 1, n + 2)), np.empty((BASIS + 4, BASIS + 2)),
+        np.empty(film_work_size(n)),
+    )  # fmt: skip
+
+
+@nb.njit(**BURIED)
+def no_coarse() -> CoarseTangent:
     """No coarse grid."""
-    return (np.empty((0, 0)), np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty((0, 0)))
+    none, zero = np.empty(0), nb.int64(0)
+    grid = Grid(zero, nb.float64(0.0), none, none)
+    return CoarseTangent(grid, zero, np.empty((0, 0)), np.empty(0, np.int64), none, none, none)
 
 
 @nb.njit(**BURIED)
 def coarse_tangent(
     n: int, dx: float, k: int, ratio: int, lam: float, u: float, squeeze: float, imposed: bool,
     oil: Array, P: Array, H: Array,
-) -> Any:  # fmt: skip
+) -> CoarseTangent:  # fmt: skip
     """Factor the tangent on the grid of ``n / ratio`` intervals about a state of the fine grid."""
-    m, wide, last = n // ratio, ratio * dx, k // ratio
-    rows = np.empty((7, m + 2))
+    m, last = n // ratio, k // ratio
+    grid = make_grid(m, ratio * dx)
+    p, h, f = np.empty(m + 2), np.empty(m + 2), make_fields(m)
     for i in range(m + 1):
-        rows[0, i], rows[1, i] = P[ratio * i], H[ratio * i]
-    p, h = rows[0, : m + 1], rows[1, : m + 1]
+        p[i], h[i] = P[ratio * i], H[ratio * i]
     cH, cP = np.empty((m + 1, 4)), np.empty((m + 1, 4))
-    oil_state(m, p, oil, rows[2], rows[3], rows[4], rows[5])
-    mobility(m, h, lam, rows[2], rows[4], rows[6])
-    coefficients(m, wide, lam, u, squeeze, p, h, rows[3], rows[4], rows[5], rows[6], cH, cP)
-    K = influence(m, wide)
+    fill_oil(m, lam, oil, p, h, f)
+    fill_tangent(m, grid.dx, lam, u, squeeze, p, h, f, cH, cP)
+    K = grid.influence
     size = last + 1 if imposed else last
     a, pivot = np.zeros((size, size)), np.empty(m + 2, np.int64)
     for i in range(1, last + 1):
@@ -52,24 +106,23 @@ def coarse_tangent(
                 row[last] += factor
     if imposed:
         for j in range(last):
-            a[last, j] = wide
+            a[last, j] = grid.dx
     if not lu_factor(size, a, pivot):
         return no_coarse()
-    pivot[m + 1] = last
-    return (a, pivot, K, film_plan(m, K), rows)
+    return CoarseTangent(grid, last, a, pivot, np.empty(m + 2), p, h)
 
 
 @nb.njit(inline="always", **BURIED)
-def correct(
-    n: int, dx: float, k: int, imposed: bool, cH: Array, cP: Array, scale: Array, target: float,
-    coarse: Any, work: Array, z: Array, x: Array,
+def _correct(
+    fine: Grid, k: int, imposed: bool, target: float, coarse: CoarseTangent, work: LinearWork,
+    z: Array,
 ) -> float:  # fmt: skip
-    """Coarse correction ``x`` of the scaled rows ``z``, which keep what it leaves over."""
-    a, pivot, K, plan, rows = coarse
-    m = K.size - 1
-    ratio, last = n // m, pivot[m + 1]
+    """Coarse correction of the scaled rows ``z``, which keep what it leaves over; its load."""
+    cH, cP, scale, x = work.by_film, work.by_pressure, work.scale, work.correction
+    r, p, h = coarse.right, coarse.pressure, coarse.film
+    m, last = coarse.grid.n, coarse.last
+    ratio = fine.n // m
     inverse = 1.0 / ratio
-    r, p, h = rows[0], rows[1], rows[2]
     # Transposed interpolation of the unscaled rows.
     for i in range(m + 1):
         r[i] = 0.0
@@ -83,13 +136,13 @@ def correct(
         r[i] = r[i + 1]
     if imposed:
         r[last] = target
-    lu_solve(last + 1 if imposed else last, a, pivot, r)
+    lu_solve(last + 1 if imposed else last, coarse.factors, coarse.pivot, r)
     p[0] = 0.0
     for i in range(last):
         p[i + 1] = r[i]
     for i in range(last + 1, m + 1):
         p[i] = 0.0
-    film_sum(m, K, plan, p, work, h)
+    film_sum(m, coarse.grid.influence, coarse.grid.plan, p, work.transform, h)
     offset = r[last] if imposed else 0.0
     for i in range(m + 1):
         h[i] += offset
@@ -115,47 +168,20 @@ def correct(
         p0, p1, p2 = p1, p2, p3
     if imposed:
         x[k] = offset
-    return dx * total
-
-
-#: Half bandwidth of the preconditioner.
-HALF_BAND = 7
-#: Vectors of the Krylov space before it is restarted, and how often it is.
-BASIS, RESTARTS = 30, 6
-# Rows of the scratch array: the first eight belong to Newton's method; scale of the rows, band
-# inverse of the column of H0, a vector on all nodes and its film, room; three more of Newton's
-# method; then the Krylov vectors.
-_SCALE, _BORDER, _VECTOR, _RISE, _ROOM = 8, 9, 10, 11, 12
-_FIRST = 16
+    return fine.dx * total
 
 
 @nb.njit(**BURIED)
-def newton_work(n: int) -> Any:
-    """Room for :func:`~tribodyn.ehl._kernel.newton.newton_level` on ``n`` intervals."""
-    return (
-        np.zeros((_FIRST + BASIS + 1, n + 2)),
-        np.empty((n + 1, 4)),
-        np.empty((n + 1, 4)),
-        np.empty((n + 1, 4 * HALF_BAND + 1)),
-        np.empty(n + 1, np.int64),
-        np.empty(film_work_size(n)),
-        np.empty((BASIS + 4, BASIS + 2)),
-    )
-
-
-@nb.njit(**BURIED)
-def prepare(
-    n: int, dx: float, k: int, imposed: bool, K: Array, cH: Array, cP: Array, work: Any
-) -> bool:
+def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
     """Scale the rows of the tangent and factor its band; False if that is singular."""
-    rows, band, pivot = work[0], work[3], work[4]
-    scale, border = rows[_SCALE], rows[_BORDER]
-    w = HALF_BAND
+    cH, cP, band, pivot = work.by_film, work.by_pressure, work.band, work.pivot
+    scale, border = work.scale, work.border
+    K, w = grid.influence, HALF_BAND
     # Influence of the node in column c on the film at the node i-2+s, the same in every row.
     near = np.empty((4, 2 * w + 1))
     for s in range(4):
         for c in range(2 * w + 1):
-            near[s, c] = K[min(abs(w - c + s - 2), n)]
+            near[s, c] = K[min(abs(w - c + s - 2), grid.n)]
     for i in range(1, k + 1):
         a = band[i - 1]
         h0, h1, h2, h3 = cH[i, 0], cH[i, 1], cH[i, 2], cH[i, 3]
@@ -180,52 +206,54 @@ def prepare(
         total = 0.0
         for i in range(k):
             total += border[i]
-        border[k] = dx * total
+        border[k] = grid.dx * total
         return border[k] != 0.0 and np.isfinite(border[k])
     return True
 
 
 @nb.njit(inline="always", **BURIED)
 def _precondition(
-    n: int, dx: float, k: int, imposed: bool, cH: Array, cP: Array, target: float, coarse: Any,
-    work: Any, z: Array,
+    grid: Grid, k: int, imposed: bool, target: float, coarse: CoarseTangent, work: LinearWork,
+    z: Array,
 ) -> None:  # fmt: skip
     """Overwrite scaled rows 1..k by the correction; ``target`` is its share of the load."""
-    rows = work[0]
-    border, room = rows[_BORDER], rows[_ROOM]
-    if coarse[0].size > 0:
-        target -= correct(n, dx, k, imposed, cH, cP, rows[_SCALE], target, coarse, work[5], z, room)
-    band_solve(k, HALF_BAND, work[3], work[4], z)
+    border, correction = work.border, work.correction
+    if coarse.factors.size > 0:
+        target -= _correct(grid, k, imposed, target, coarse, work, z)
+    band_solve(k, HALF_BAND, work.band, work.pivot, z)
     if imposed:
         total = 0.0
         for i in range(k):
             total += z[i]
-        offset = (dx * total - target) / border[k]
+        offset = (grid.dx * total - target) / border[k]
         for i in range(k):
             z[i] -= offset * border[i]
         z[k] = offset
-    if coarse[0].size > 0:
+    if coarse.factors.size > 0:
         for i in range(k + 1 if imposed else k):
-            z[i] += room[i]
+            z[i] += correction[i]
+
+
+@nb.njit(**BURIED)
+def film_change(grid: Grid, k: int, first: float, x: Array, work: LinearWork) -> None:
+    """Film of a change of the pressures: that of node 0, then ``x`` at the nodes 1..k."""
+    p = work.pressure
+    p[0] = first
+    for i in range(k):
+        p[i + 1] = x[i]
+    for i in range(k + 1, grid.n + 1):
+        p[i] = 0.0
+    film_sum(grid.n, grid.influence, grid.plan, p, work.transform, work.film)
 
 
 @nb.njit(inline="always", **BURIED)
-def _apply(
-    n: int, k: int, imposed: bool, K: Array, plan: Array, cH: Array, cP: Array, work: Any,
-    x: Array, y: Array,
-) -> None:  # fmt: skip
+def _apply(grid: Grid, k: int, imposed: bool, work: LinearWork, x: Array, y: Array) -> None:
     """Rows 1..k of the tangent times ``x``, scaled."""
-    rows = work[0]
-    p, h, scale = rows[_VECTOR], rows[_RISE], rows[_SCALE]
-    p[0] = 0.0
-    for i in range(k):
-        p[i + 1] = x[i]
-    for i in range(k + 1, n + 1):
-        p[i] = 0.0
-    film_sum(n, K, plan, p, work[5], h)
+    cH, cP, p, h, scale = work.by_film, work.by_pressure, work.pressure, work.film, work.scale
+    film_change(grid, k, 0.0, x, work)
     if imposed:
         offset = x[k]
-        for i in range(n + 1):
+        for i in range(grid.n + 1):
             h[i] += offset
     y[0] = scale[0] * (
         cH[1, 1] * h[0] + cH[1, 2] * h[1] + cH[1, 3] * h[2] + cP[1, 2] * p[1] + cP[1, 3] * p[2]
@@ -239,44 +267,17 @@ def _apply(
 
 @nb.njit(**BURIED)
 def linear_solve(
-    n: int, dx: float, k: int, imposed: bool, K: Array, plan: Array, cH: Array, cP: Array,
-    tolerance: float, coarse: Any, work: Any, rhs: Array, x: Array,
+    grid: Grid, k: int, imposed: bool, tolerance: float, coarse: CoarseTangent, work: LinearWork,
+    rhs: Array, x: Array,
 ) -> int:  # fmt: skip
-    """Solve ``J x = rhs`` by GMRES after :func:`prepare`.
+    """Solve ``J x = rhs`` by GMRES after :func:`prepare`; products, negative where it fails.
 
-    Parameters
-    ----------
-    n, dx : int, float
-        Grid.
-    k : int
-        Last free node.
-    imposed : bool
-        Whether the offset is an unknown and the load a row.
-    K, plan : array
-        Influence, see :mod:`tribodyn.ehl._kernel.film_sum`.
-    cH, cP : (n + 1, 4) arrays
-        Tangent.
-    tolerance : float
-        Norm of the preconditioned residual over that of the first correction.
-    coarse : tuple
-        Tangent of a coarse grid, see :mod:`tribodyn.ehl._kernel.linear_solver`.
-    work : tuple
-        From :func:`newton_work`.
-    rhs, x : (n + 2,) arrays
-        Right-hand side, rows 1..k of the mass balance first, then the load row; solution, the
-        pressures at the nodes 1..k first, then the offset.
-
-    Returns
-    -------
-    int
-        Products with the tangent, negative if the tolerance is not reached.
-
-    Notes
-    -----
-    Saad and Schultz, GMRES, 1986; classical Gram-Schmidt, done twice.
+    ``rhs`` has the rows 1..k of the mass balance first, then the load row; ``x`` receives the
+    pressures at the nodes 1..k, then the offset. The tolerance is the norm of the preconditioned
+    residual over that of the first correction. Classical Gram-Schmidt, done twice.
+    Source: Saad and Schultz, GMRES, 1986.
     """
-    rows, small = work[0], work[6]
-    scale, room = rows[_SCALE], rows[_ROOM]
+    scale, basis, small, shares = work.scale, work.basis, work.small, work.correction
     # Hessenberg columns in small[:, j]; rotations, right-hand side.
     cosine, sine, g = small[BASIS + 1], small[BASIS + 2], small[BASIS + 3]
     size = k + 1 if imposed else k
@@ -284,16 +285,16 @@ def linear_solve(
     for _ in range(RESTARTS * (BASIS + 1)):
         # The first correction, which alone meets the load row; then the residual where a space
         # begins, or the product with its last vector.
-        v = rows[_FIRST + used] if begun else x
+        v = basis[used] if begun else x
         if begun:
-            old = x if used == 0 else rows[_FIRST + used - 1]
-            _apply(n, k, imposed, K, plan, cH, cP, work, old, v)
+            old = x if used == 0 else basis[used - 1]
+            _apply(grid, k, imposed, work, old, v)
             products += 1
         if used == 0:
             for i in range(k):
                 v[i] = scale[i] * rhs[i] - (v[i] if begun else 0.0)
         target = 0.0 if begun else rhs[k]
-        _precondition(n, dx, k, imposed, cH, cP, target, coarse, work, v)
+        _precondition(grid, k, imposed, target, coarse, work, v)
         if not begun:
             begun = True
             for i in range(size):
@@ -307,12 +308,12 @@ def linear_solve(
             small[i, j] = 0.0
         for _twice in range(2):
             for m in range(used):
-                older, share = rows[_FIRST + m], 0.0
+                older, share = basis[m], 0.0
                 for i in range(size):
                     share += older[i] * v[i]
-                room[m] = share
+                shares[m] = share
             for m in range(used):
-                older, share = rows[_FIRST + m], room[m]
+                older, share = basis[m], shares[m]
                 for i in range(size):
                     v[i] -= share * older[i]
                 small[m, j] += share
@@ -345,10 +346,10 @@ def linear_solve(
             for i in range(used - 1, -1, -1):
                 value = g[i]
                 for m in range(i + 1, used):
-                    value -= small[i, m] * room[m]
-                room[i] = value / small[i, i]
+                    value -= small[i, m] * shares[m]
+                shares[i] = value / small[i, i]
             for m in range(used):
-                older, share = rows[_FIRST + m], room[m]
+                older, share = basis[m], shares[m]
                 for i in range(size):
                     x[i] += share * older[i]
             if left <= goal:

@@ -8,28 +8,25 @@ integration. The rigid offset of the film is changed on the coarsest grid alone.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
 
 from tribodyn.compiled import source_digest
 from tribodyn.ehl._kernel.elementary import INNER, JIT
-from tribodyn.ehl._kernel.film_sum import film_plan, film_sum, film_work_size, influence
+from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.multigrid_levels import (
-    BALANCE,
-    DLNETA,
-    DRHO,
-    EPS,
-    FLUX,
     LEFT,
-    RHO,
     RIGHT,
+    Level,
+    LevelWork,
     add_correction,
-    balance,
-    coarsest_work,
-    evaluate,
+    fill_balance,
+    fill_film,
+    fill_level_tangent,
     inject,
+    level_work,
     mean_gap,
     near_influence,
     relax,
@@ -37,24 +34,19 @@ from tribodyn.ehl._kernel.multigrid_levels import (
     solve_coarsest,
 )
 from tribodyn.ehl._kernel.newton import CONVERGED, NOT_FINITE, ROUNDED, STALLED
-from tribodyn.ehl._kernel.reynolds import coefficients
+from tribodyn.ehl._kernel.steady import SteadyContact
 from tribodyn.ehl._kernel.transfer import central, cut_negative, extend, refine
 from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
 _SOURCES = (
-    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "newton",
-    "multigrid_levels", "multigrid",
+    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "inlet",
+    "newton", "steady", "multigrid_levels", "multigrid",
 )  # fmt: skip
 
 #: Columns of the record of cycles: intervals, change of pressure, flux error, load error, least
 #: residual of the cavity per length, last free node.
 RECORD = 6
-
-# Rows of the field over all grids.
-_P, _H, _INJECTED, _TARGET, _EXCESS, _SHAPE, _K = 0, 1, 2, 3, 4, 5, 6
-# Further rows of the scratch array.
-_DIPOLE, _DELTA, _BEFORE = 8, 9, 10
 
 #: A node is a dipole where its mobility is below this part of the squared length of the grid.
 _STIFF = 1e-3
@@ -70,40 +62,94 @@ _PATIENCE = 12
 _ROUNDING = 1e-13
 
 
+class MultigridLimits(NamedTuple):
+    """When the cycles end."""
+
+    pressure: float  #: greatest relative change of the pressure in a cycle at convergence
+    flux: float  #: greatest flux error at convergence
+    load: float  #: greatest load error at convergence
+    cycles: int  #: at most, on one grid
+
+
+class Cycled(NamedTuple):
+    """How the cycles ended; pressure, film and gap are in their arrays."""
+
+    status: int
+    offset: float  #: rigid offset of the film
+    free: int  #: last node with pressure
+    cycles: int  #: on the last grid
+    change: float
+    flux_error: float
+    intervals: int  #: of the last grid
+    grids: int  #: that were solved
+    lines: int  #: of the record
+
+
+class Grids(NamedTuple):
+    """All grids, the finest first, each row one after the other; see :class:`Level`."""
+
+    n: int  #: intervals of the finest grid
+    width: float  #: of the domain
+    first: Index  #: where the nodes of each grid begin
+    plan: Index  #: where its plan begins
+    P: Array
+    H: Array
+    injected: Array
+    target: Array
+    excess: Array
+    shape: Array
+    influence: Array
+    plans: Array
+    near: Array
+    free: Index  #: last free node of each grid
+    load: Array  #: load that each grid carries
+
+
 @nb.njit(**INNER)
-def _make_grids(n: int, count: int, start: float, end: float, profile: Array) -> Any:
-    """All grids, the finest first: where they begin in the arrays, field, plans, influences."""
+def _level(grids: Grids, g: int) -> Level:
+    """Views of one grid."""
+    a, b, n = grids.first[g], grids.first[g + 1], grids.n >> g
+    plan = grids.plans[grids.plan[g] : grids.plan[g + 1]]
+    return Level(
+        Grid(n, grids.width / n, grids.influence[a:b], plan), grids.P[a:b], grids.H[a:b],
+        grids.injected[a:b], grids.target[a:b], grids.excess[a:b], grids.shape[a:b],
+        grids.near[g],
+    )  # fmt: skip
+
+
+@nb.njit(**INNER)
+def _make_grids(n: int, count: int, contact: SteadyContact) -> Grids:
+    """All grids with their influence, plans and undeformed gaps."""
+    start, width = contact.start, contact.end - contact.start
     offset, begin = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
     for g in range(count):
         m = n >> g
         offset[g + 1] = offset[g] + m + 1
-        # The size of a plan, from the room of its film sums: see film_sum.py.
+        # The size of a plan, from that of the arrays of its film sums: see film_sum.py.
         half = film_work_size(m) // 4
         begin[g + 1] = begin[g] + (6 * half + 2 if half > 0 else 0)
-    field = np.zeros((7, offset[count]))
-    plans = np.empty(begin[count])
-    near = np.empty((count, 2, 4, LEFT + RIGHT + 1))
+    a = np.zeros((7, offset[count]))
+    grids = Grids(
+        n, width, offset, begin, a[0], a[1], a[2], a[3], a[4], a[5], a[6],
+        np.empty(begin[count]), np.empty((count, 2, 4, LEFT + RIGHT + 1)),
+        np.zeros(count, np.int64), np.zeros(count),
+    )  # fmt: skip
     for g in range(count):
-        m = n >> g
-        dx = (end - start) / m
-        K = influence(m, dx)
-        plan = film_plan(m, K)
-        for i in range(m + 1):
-            field[_K, offset[g] + i] = K[i]
-        for i in range(plan.size):
-            plans[begin[g] + i] = plan[i]
-        near_influence(dx, near[g])
-        heights = field[_SHAPE, offset[g] : offset[g + 1]]
+        level = _level(grids, g)
+        m, dx = level.grid.n, level.grid.dx
+        level.grid.influence[:] = influence(m, dx)
+        level.grid.plan[:] = film_plan(m, level.grid.influence)
+        near_influence(dx, level.near)
         if g == 0:
-            for i in range(n + 1):
-                heights[i] = profile[i]
+            level.shape[:] = contact.profile
         else:
-            mean_gap(m, field[_SHAPE, offset[g - 1] : offset[g]], heights)
+            mean_gap(m, _level(grids, g - 1).shape, level.shape)
     for g in range(count):
-        for i in range((n >> g) + 1):
-            x = start + i * ((end - start) / (n >> g))
-            field[_SHAPE, offset[g] + i] += 0.5 * x * x
-    return offset, begin, field, plans, near
+        level = _level(grids, g)
+        for i in range(level.grid.n + 1):
+            x = start + i * level.grid.dx
+            level.shape[i] += 0.5 * x * x
+    return grids
 
 
 @nb.njit(**INNER)
@@ -120,98 +166,74 @@ def _move_outlet(n: int, free: int, streak: int, P: Array, G: Array) -> tuple[in
 
 
 @nb.njit(**INNER)
-def _descend(
-    g: int, m: int, k: int, dx: float, lam: float, oil: Array, grids: Any, rows: Array,
-    room: Array, free: Index, numbers: Array,
-) -> None:  # fmt: skip
+def _descend(grids: Grids, g: int, work: LevelWork) -> None:
     """Pose the problem of the next coarser grid: there the state of this one is injected."""
-    offset, begin, field, plans = grids[0], grids[1], grids[2], grids[3]
-    a, b, c = offset[g], offset[g + 1], offset[g + 2]
-    P, H, right = field[_P, a:b], field[_H, a:b], field[_TARGET, a:b]
-    p, h, target, excess = field[_P, b:c], field[_H, b:c], field[_TARGET, b:c], field[_EXCESS, b:c]
-    half, wide, G = m // 2, 2.0 * dx, rows[BALANCE]
-    free[g + 1] = k // 2
+    fine, coarse = _level(grids, g), _level(grids, g + 1)
+    m, k, dx, wide = fine.grid.n, grids.free[g], fine.grid.dx, coarse.grid.dx
+    P, p, h, G = fine.P, coarse.P, coarse.H, work.fields.G
+    half = m // 2
+    grids.free[g + 1] = k // 2
     inject(half, P, p)
-    inject(half, P, field[_INJECTED, b:c])
+    inject(half, P, coarse.injected)
     carried = 0.5 * (wide - dx) * P[0]
     for i in range(1, m):
         carried -= dx * P[i]
     for i in range(1, half):
         carried += wide * p[i]
-    numbers[2 + g + 1] = numbers[2 + g] + carried
-    film_sum(half, field[_K, b:c], plans[begin[g + 1] : begin[g + 2]], p, room, h)
+    grids.load[g + 1] = grids.load[g] + carried
+    film_sum(half, coarse.grid.influence, coarse.grid.plan, p, work.transform, h)
     for i in range(half + 1):
-        excess[i] = H[2 * i] - (h[i] + numbers[0] + field[_SHAPE, b + i])
-        h[i] = H[2 * i]
-    restrict_defect(half, k, right, G, target)
-    balance(half, wide, lam, oil, rows, p, h)
+        coarse.excess[i] = fine.H[2 * i] - (h[i] + work.offset[0] + coarse.shape[i])
+        h[i] = fine.H[2 * i]
+    restrict_defect(half, k, fine.target, G, coarse.target)
+    fill_balance(coarse, work)
     for i in range(1, half):
-        target[i] += G[i]
+        coarse.target[i] += G[i]
 
 
 @nb.njit(**INNER)
-def _cycle(
-    top: int, n: int, start: float, end: float, lam: float, oil: Array, load: float, grids: Any,
-    rows: Array, room: Array, cH: Array, cP: Array, band: Array, work: Any, free: Index,
-    numbers: Array,
-) -> int:  # fmt: skip
+def _cycle(top: int, load: float, grids: Grids, work: LevelWork, streak: Index) -> int:
     """One V cycle on and below the grid ``top``, whose film and residual are known."""
-    offset, begin, field, plans, near = grids
-    last, least = offset.size - 2, _STIFF * (end - start) ** 2
-    numbers[2 + top] = load
+    last, least = grids.free.size - 1, _STIFF * grids.width**2
+    grids.load[top] = load
     for step in range(2 * (last - top) + 1):
         upwards = step > last - top
         g = 2 * last - top - step if upwards else top + step
-        m = n >> g
-        dx = (end - start) / m
-        a, b, k = offset[g], offset[g + 1], free[g]
-        P, H, K, right = field[_P, a:b], field[_H, a:b], field[_K, a:b], field[_TARGET, a:b]
-        shape, excess, plan = (
-            field[_SHAPE, a:b],
-            field[_EXCESS, a:b],
-            plans[begin[g] : begin[g + 1]],
-        )
+        level, k = _level(grids, g), grids.free[g]
         if g == last:
-            status = solve_coarsest(
-                m, k, dx, lam, oil, numbers[2 + g], shape, excess, right, K, plan, rows, room, cH,
-                cP, work, P, H, numbers,
-            )  # fmt: skip
+            status = solve_coarsest(level, k, grids.load[g], work)
             if status != CONVERGED:
                 return status
             continue
         if upwards:
-            c = offset[g + 2]
-            add_correction(m // 2, k, field[_P, b:c], field[_INJECTED, b:c], P)
+            coarse = _level(grids, g + 1)
+            add_correction(level.grid.n // 2, k, coarse.P, coarse.injected, level.P)
             if g == top:
                 for i in range(1, k + 1):
-                    P[i] = max(P[i], 0.0)
+                    level.P[i] = max(level.P[i], 0.0)
         # After the sweep again: for the coarser grid or, on the finest, for the next cycle.
         for swept in range(2):
             if swept == 1 or upwards:
-                evaluate(m, dx, lam, oil, numbers[0], shape, excess, K, plan, rows, room, P, H)
+                fill_film(level, work.offset[0], work)
             if swept == 1:
                 break
-            coefficients(
-                m, dx, lam, 1.0, 0.0, P, H, rows[DLNETA], rows[RHO], rows[DRHO], rows[EPS], cH, cP
-            )
-            relax(
-                k, least, _DAMPING, _CAP, near[g], cH, cP, rows[EPS], rows[BALANCE], right,
-                rows[_DIPOLE], rows[_DELTA], band, P,
-            )  # fmt: skip
+            fill_level_tangent(level, work)
+            relax(level, k, least, _DAMPING, _CAP, work)
             if g == top:
-                k, streak = _move_outlet(m, k, int(numbers[1]), P, rows[BALANCE])
-                free[g], numbers[1] = k, streak
+                k, streak[0] = _move_outlet(level.grid.n, k, streak[0], level.P, work.fields.G)
+                grids.free[g] = k
             elif upwards:
                 break
         if not upwards:
-            _descend(g, m, k, dx, lam, oil, grids, rows, room, free, numbers)
+            _descend(grids, g, work)
     return CONVERGED
 
 
 @nb.njit(**INNER)
-def _check(n: int, dx: float, k: int, load: float, rows: Array, P: Array, line: Array) -> None:
+def _check(level: Level, k: int, load: float, work: LevelWork, line: Array) -> None:
     """Fill a line of the record: change, flux, load, cavity, outlet."""
-    F, G, before = rows[FLUX], rows[BALANCE], rows[_BEFORE]
+    n, dx, P = level.grid.n, level.grid.dx, level.P
+    F, G, before = work.fields.F, work.fields.G, work.before
     change, total, mean, flux, cavity = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(n + 1):
         change += abs(P[i] - before[i])
@@ -229,111 +251,78 @@ def _check(n: int, dx: float, k: int, load: float, rows: Array, P: Array, line: 
 def _build(digest: str) -> Any:
     @nb.njit(cache=True, **JIT)
     def multigrid_solve(
-        n: int,
-        count: int,
-        first: int,
-        start: float,
-        end: float,
-        lam: float,
-        oil: Array,
-        load: float,
-        tail: float,
-        profile: Array,
-        limits: Array,
-        film_tolerance: float,
-        P: Array,
-        H: Array,
-        shape: Array,
-        state: Array,
-        films: Array,
-        record: Array,
-    ) -> int:
-        """Solve a steady contact by full multigrid."""
+        n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
+        film_tolerance: float, offset: float, free: int, P: Array, H: Array, shape: Array,
+        films: Array, record: Array,
+    ) -> Cycled:  # fmt: skip
+        """Solve a steady contact by full multigrid, from a pressure on the grid ``first``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        offset, begin, field, plans, near = _make_grids(n, count, start, end, profile)
-        grids = (offset, begin, field, plans, near)
-        last = count - 1
-        rows = np.zeros((11, n + 2))
-        room = np.empty(film_work_size(n))
-        cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))
-        band = np.empty((n, LEFT + RIGHT + 1))
-        work = coarsest_work(n >> last)
-        free, numbers = np.zeros(count, np.int64), np.zeros(count + 2)
-        line = np.zeros(RECORD)
-        g = np.int64(0)
+        grids = _make_grids(n, count, contact)
+        last, load = count - 1, contact.load
+        work = level_work(n, n >> last, contact.lam, contact.oil)
+        streak, line = np.zeros(1, np.int64), np.zeros(RECORD)
+        g = nb.int64(0)
         while n >> g > first:
             g += 1
-        for i in range((n >> g) + 1):
-            field[_P, offset[g] + i] = P[i]
-        free[g], numbers[0] = int(state[1]), state[0]
-        used, lines, status = 0, 0, CONVERGED
+        level = _level(grids, g)
+        for i in range(level.grid.n + 1):
+            level.P[i] = P[i]
+        grids.free[g], work.offset[0] = free, offset
+        used, lines, status = nb.int64(0), nb.int64(0), nb.int64(CONVERGED)
         while True:
-            m = n >> g
-            dx = (end - start) / m
-            a, b = offset[g], offset[g + 1]
-            p, h, gap, excess = (
-                field[_P, a:b],
-                field[_H, a:b],
-                field[_SHAPE, a:b],
-                field[_EXCESS, a:b],
-            )
+            level = _level(grids, g)
+            m = level.grid.n
             for i in range(m + 1):
-                excess[i] = field[_TARGET, a + i] = 0.0
-            work[5][0] = 0
-            best, since, cycles = np.inf, 0, 0
-            evaluate(
-                m, dx, lam, oil, numbers[0], gap, excess, field[_K, a:b],
-                plans[begin[g] : begin[g + 1]], rows, room, p, h,
-            )  # fmt: skip
+                level.excess[i] = level.target[i] = 0.0
+            work.coarsest.kept[0] = 0
+            best, since, cycles = np.inf, nb.int64(0), nb.int64(0)
+            fill_film(level, work.offset[0], work)
             while g < last:
                 for i in range(m + 1):
-                    rows[_BEFORE, i] = p[i]
-                k = free[g]
-                status = _cycle(
-                    g, n, start, end, lam, oil, load, grids, rows, room, cH, cP, band, work, free,
-                    numbers,
-                )  # fmt: skip
+                    work.before[i] = level.P[i]
+                k = grids.free[g]
+                status = nb.int64(_cycle(g, load, grids, work, streak))
                 if status != CONVERGED:
                     break
                 cycles += 1
-                _check(m, dx, free[g], load, rows, p, line)
+                _check(level, grids.free[g], load, work, line)
                 if lines < record.shape[0]:
-                    for c in range(RECORD):
-                        record[lines, c] = line[c]
+                    record[lines] = line
                     lines += 1
                 change, flux = line[1], line[2]
-                still = free[g] == k and line[3] < limits[2] and line[4] >= _CAVITY
+                still = grids.free[g] == k and line[3] < limits.load and line[4] >= _CAVITY
                 if not np.isfinite(change + flux):
-                    status = NOT_FINITE
-                elif still and change < limits[0] and flux < limits[1]:
+                    status = nb.int64(NOT_FINITE)
+                elif still and change < limits.pressure and flux < limits.flux:
                     break
                 elif g > 0 and film_tolerance == 0.0:
                     if cycles >= _PASSING_CYCLES or (
-                        change < limits[0] and flux < max(limits[1], _PASSING_FLUX)
+                        change < limits.pressure and flux < max(limits.flux, _PASSING_FLUX)
                     ):
                         break
                 elif still and change < _ROUNDING:
-                    status = ROUNDED
+                    status = nb.int64(ROUNDED)
                 else:
                     best, since = (change, 0) if change < best else (best, since + 1)
-                    if cycles >= limits[3] or since >= _PATIENCE:
-                        status = STALLED
+                    if cycles >= limits.cycles or since >= _PATIENCE:
+                        status = nb.int64(STALLED)
                 if status != CONVERGED:
                     break
-            state[0], state[1], state[2], state[3] = numbers[0], free[g], cycles, line[1]
-            state[4], state[5], state[6], state[7] = line[2], m, used + 1, lines
-            films[used] = central(m, start, dx, h)
+            films[used] = central(m, contact.start, level.grid.dx, level.H)
             error = abs(films[used] - films[used - 1]) / 3.0 if used > 0 else np.inf
             if status != CONVERGED or g == 0 or error < film_tolerance * films[used]:
                 break
             used += 1
             g -= 1
-            free[g] = refine(
-                m, dx, p, free[g + 1], load, tail, field[_P, offset[g] : offset[g + 1]]
-            )
+            grids.free[g] = refine(
+                m, level.grid.dx, level.P, grids.free[g + 1], load, contact.tail,
+                _level(grids, g).P,
+            )  # fmt: skip
         for i in range(m + 1):
-            P[i], H[i], shape[i] = p[i], h[i], gap[i]
-        return status
+            P[i], H[i], shape[i] = level.P[i], level.H[i], level.shape[i]
+        return Cycled(
+            status, work.offset[0], grids.free[g], cycles, line[1], line[2], m, used + 1, lines
+        )
 
     return multigrid_solve
 

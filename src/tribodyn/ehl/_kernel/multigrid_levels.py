@@ -1,18 +1,128 @@
-"""What a V cycle does on one grid."""
+"""What a V cycle of full multigrid does on one of its grids.
+
+Relaxation is distributive and by lines: one banded solve over all free nodes. Where the oil is
+stiff a change of the pressure at one node bends the film everywhere, so that a band cannot hold
+its effect. There a node takes its change half from each of its neighbours: the film of such a
+dipole fades with the square of the distance. The coarsest grid is solved for pressure and rigid
+offset under the load by dense factors.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
 from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.ehl._kernel.factors import lu_factor, lu_solve
-from tribodyn.ehl._kernel.film_sum import film_sum, influence
+from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.newton import CONVERGED, GAP, SINGULAR
-from tribodyn.ehl._kernel.reynolds import coefficients, mobility, oil_state, residual
-from tribodyn.types import Array
+from tribodyn.ehl._kernel.reynolds import (
+    Fields,
+    fill_oil,
+    fill_tangent,
+    make_fields,
+    residual,
+)
+from tribodyn.types import Array, Index
+
+#: Intervals to which a change of the pressure bends the film within the sweep.
+NEAR = 5
+#: Half bandwidths: the residual of a node has the films of i-2 to i+1.
+LEFT, RIGHT = NEAR + 2, NEAR + 1
+_WIDTH = LEFT + RIGHT + 1
+
+
+#: Steps on the coarsest grid at most, greatest change in a step, and part of the first correction
+#: that ends them.
+_STEPS, _CAP, _ENOUGH = 12, 0.2, 1e-2
+#: Factor by which a step with old factors has to shrink, lest they are made anew.
+_SHRINK = 0.2
+
+
+class Level(NamedTuple):
+    """One grid of the cycle."""
+
+    grid: Grid
+    P: Array
+    H: Array
+    injected: Array  #: pressure that came from the finer grid
+    target: Array  #: residual to be reached
+    excess: Array  #: film beyond that of the pressure, from the finer grid
+    shape: Array  #: gap of the undeformed bodies
+    near: Array  #: films of a node and of a dipole, of :func:`near_influence`
+
+
+class CoarsestWork(NamedTuple):
+    """Factors of the tangent on the coarsest grid, and vectors of its solve."""
+
+    factors: Array
+    pivot: Index
+    scale: Array
+    delta: Array
+    pressure: Array
+    kept: Index  #: free nodes for which the factors hold, zero for none
+
+
+class LevelWork(NamedTuple):
+    """Arrays that the grids of a cycle use in turn, and what they share."""
+
+    lam: float
+    oil: Array
+    fields: Fields
+    none: Array  #: no history
+    by_film: Array  #: tangent
+    by_pressure: Array
+    transform: Array  #: of the film sum
+    band: Array
+    dipole: Array
+    delta: Array
+    before: Array  #: pressure before the cycle
+    offset: Array  #: rigid offset of the film, one number
+    coarsest: CoarsestWork
+
+
+@nb.njit(**INNER)
+def level_work(n: int, coarsest: int, lam: float, oil: Array) -> LevelWork:
+    """Arrays for the finest grid of ``n`` intervals and the coarsest one."""
+    a, m = np.zeros((4, n + 2)), coarsest + 1
+    dense = CoarsestWork(
+        np.empty((m, m)), np.empty(m, np.int64), np.empty(m), np.empty(m), np.empty(m),
+        np.zeros(1, np.int64),
+    )  # fmt: skip
+    return LevelWork(
+        lam, oil, make_fields(n), a[0], np.empty((n + 1, 4)), np.empty((n + 1, 4)),
+        np.empty(film_work_size(n)), np.empty((n, LEFT + RIGHT + 1)), a[1], a[2], a[3],
+        np.zeros(1), dense,
+    )  # fmt: skip
+
+
+@nb.njit(**INNER)
+def fill_film(level: Level, offset: float, work: LevelWork) -> None:
+    """Film, oil, mobility, fluxes and residual of the pressure of a grid."""
+    grid, H = level.grid, level.H
+    film_sum(grid.n, grid.influence, grid.plan, level.P, work.transform, H)
+    for i in range(grid.n + 1):
+        H[i] += offset + level.shape[i] + level.excess[i]
+    fill_balance(level, work)
+
+
+@nb.njit(**INNER)
+def fill_balance(level: Level, work: LevelWork) -> None:
+    """Oil, mobility, fluxes and residual of pressure and film of a grid."""
+    n, f = level.grid.n, work.fields
+    fill_oil(n, work.lam, work.oil, level.P, level.H, f)
+    residual(n, level.grid.dx, 1.0, 0.0, work.none, level.P, level.H, f.rho, f.eps, f.F, f.G)
+
+
+@nb.njit(**INNER)
+def fill_level_tangent(level: Level, work: LevelWork) -> None:
+    """Tangent about pressure and film of a grid."""
+    fill_tangent(
+        level.grid.n, level.grid.dx, work.lam, 1.0, 0.0, level.P, level.H, work.fields,
+        work.by_film, work.by_pressure,
+    )  # fmt: skip
 
 
 @nb.njit(**INNER)
@@ -56,13 +166,6 @@ def add_correction(m: int, k: int, P: Array, injected: Array, fine: Array) -> No
         if 2 * i + 1 <= k:
             fine[2 * i + 1] += 0.5 * (before + after)
         before = after
-
-
-#: Intervals to which a change of the pressure bends the film within the sweep.
-NEAR = 5
-#: Half bandwidths: the residual of a node has the films of i-2 to i+1.
-LEFT, RIGHT = NEAR + 2, NEAR + 1
-_WIDTH = LEFT + RIGHT + 1
 
 
 @nb.njit(**INNER)
@@ -131,14 +234,13 @@ def solve_band(k: int, band: Array, x: Array) -> None:
 
 
 @nb.njit(**INNER)
-def relax(
-    k: int, least: float, damping: float, cap: float, near: Array, cH: Array, cP: Array,
-    eps: Array, G: Array, right: Array, dipole: Array, delta: Array, band: Array, P: Array,
-) -> float:  # fmt: skip
-    """One sweep: pressures that meet the residual within the band."""
+def relax(level: Level, k: int, least: float, damping: float, cap: float, work: LevelWork) -> float:
+    """One sweep: pressures that meet the residual within the band; the greatest change."""
+    P, G, eps, right = level.P, work.fields.G, work.fields.eps, level.target
+    dipole, delta, band = work.dipole, work.delta, work.band
     for j in range(k + 2):
         dipole[j] = 1.0 if 2 <= j < k and eps[j] < least else 0.0
-    assemble_band(k, dipole, near, cH, cP, band)
+    assemble_band(k, dipole, level.near, work.by_film, work.by_pressure, band)
     x = delta[1:]
     for i in range(1, k + 1):
         delta[i] = right[i] - G[i]
@@ -157,47 +259,11 @@ def relax(
     return step * largest
 
 
-# Rows of the scratch array.
-LNETA, DLNETA, RHO, DRHO, EPS, FLUX, BALANCE, NOUGHT = 0, 1, 2, 3, 4, 5, 6, 7
-#: Steps at most, greatest change in a step, and part of the first correction that ends them.
-_STEPS, _CAP, _ENOUGH = 12, 0.2, 1e-2
-#: Factor by which a step with old factors has to shrink, lest they are made anew.
-_SHRINK = 0.2
-
-
 @nb.njit(**INNER)
-def evaluate(
-    n: int, dx: float, lam: float, oil: Array, offset: float, shape: Array, excess: Array,
-    K: Array, plan: Array, rows: Array, room: Array, P: Array, H: Array,
-) -> None:  # fmt: skip
-    """Film, oil, mobility, fluxes and residual of a pressure on one grid."""
-    film_sum(n, K, plan, P, room, H)
-    for i in range(n + 1):
-        H[i] += offset + shape[i] + excess[i]
-    balance(n, dx, lam, oil, rows, P, H)
-
-
-@nb.njit(**INNER)
-def balance(n: int, dx: float, lam: float, oil: Array, rows: Array, P: Array, H: Array) -> None:
-    """Oil, mobility, fluxes and residual of a pressure and a film; see :func:`evaluate`."""
-    oil_state(n, P, oil, rows[LNETA], rows[DLNETA], rows[RHO], rows[DRHO])
-    mobility(n, H, lam, rows[LNETA], rows[RHO], rows[EPS])
-    residual(n, dx, 1.0, 0.0, rows[NOUGHT], P, H, rows[RHO], rows[EPS], rows[FLUX], rows[BALANCE])
-
-
-@nb.njit(**INNER)
-def coarsest_work(n: int) -> Any:
-    """Room of :func:`solve_coarsest`: factors, row exchanges, row scales, correction, film."""
-    return (
-        np.empty((n + 1, n + 1)), np.empty(n + 1, np.int64), np.empty(n + 1), np.empty(n + 1),
-        np.empty(n + 1), np.zeros(2, np.int64),
-    )  # fmt: skip
-
-
-@nb.njit(**INNER)
-def _factor(k: int, K: Array, cH: Array, cP: Array, work: Any) -> bool:
+def _factor(k: int, level: Level, work: LevelWork) -> bool:
     """Factor the tangent with the offset as last unknown and the load as last row."""
-    a, pivot, scale = work[0], work[1], work[2]
+    K, cH, cP = level.grid.influence, work.by_film, work.by_pressure
+    a, pivot, scale = work.coarsest.factors, work.coarsest.pivot, work.coarsest.scale
     for i in range(1, k + 1):
         row = a[i - 1]
         h0, h1, h2, h3 = cH[i, 0], cH[i, 1], cH[i, 2], cH[i, 3]
@@ -224,44 +290,39 @@ def _factor(k: int, K: Array, cH: Array, cP: Array, work: Any) -> bool:
 
 
 @nb.njit(**INNER)
-def solve_coarsest(
-    n: int, k: int, dx: float, lam: float, oil: Array, load: float, shape: Array, excess: Array,
-    right: Array, K: Array, plan: Array, rows: Array, room: Array, cH: Array, cP: Array,
-    work: Any, P: Array, H: Array, state: Array,
-) -> int:  # fmt: skip
+def solve_coarsest(level: Level, k: int, load: float, work: LevelWork) -> int:
     """Newton's method for pressure and offset at fixed free nodes; factors kept while useful."""
-    a, pivot, scale, delta, film, kept = work
+    n, dx, P, H, right = level.grid.n, level.grid.dx, level.P, level.H, level.target
+    dense, offset, G = work.coarsest, work.offset, work.fields.G
+    scale, delta, before, kept = dense.scale, dense.delta, dense.pressure, dense.kept
     first, last = -1.0, -1.0
     for _ in range(_STEPS):
         if kept[0] != k:
-            coefficients(
-                n, dx, lam, 1.0, 0.0, P, H, rows[DLNETA], rows[RHO], rows[DRHO], rows[EPS], cH, cP
-            )
+            fill_level_tangent(level, work)
             kept[0] = 0
-            if not _factor(k, K, cH, cP, work):
+            if not _factor(k, level, work):
                 return SINGULAR
             kept[0] = k
-            kept[1] += 1
         total = 0.5 * P[0]
         for i in range(1, n):
             total += P[i]
         for i in range(1, k + 1):
-            delta[i - 1] = scale[i] * (right[i] - rows[BALANCE][i])
+            delta[i - 1] = scale[i] * (right[i] - G[i])
         delta[k] = load / dx - total
-        lu_solve(k + 1, a, pivot, delta)
+        lu_solve(k + 1, dense.factors, dense.pivot, delta)
         size, least = 0.0, H[0]
         for i in range(k + 1):
             size = max(size, abs(delta[i]))
         for i in range(n + 1):
             least = min(least, H[i])
-            film[i] = P[i]
+            before[i] = P[i]
         step = 1.0 if size <= _CAP else _CAP / size
-        before, is_open = state[0], False
+        rigid, is_open = offset[0], False
         for _trial in range(8):
             for i in range(1, k + 1):
-                P[i] = film[i] + step * delta[i - 1]
-            state[0] = before + step * delta[k]
-            evaluate(n, dx, lam, oil, state[0], shape, excess, K, plan, rows, room, P, H)
+                P[i] = before[i] + step * delta[i - 1]
+            offset[0] = rigid + step * delta[k]
+            fill_film(level, offset[0], work)
             thinnest = H[0]
             for i in range(n + 1):
                 thinnest = min(thinnest, H[i])

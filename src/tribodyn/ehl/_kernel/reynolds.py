@@ -1,10 +1,20 @@
-"""The discrete contact: oil, fluxes, residual and exact tangent of the Reynolds equation."""
+"""The discrete contact: oil, fluxes, residual and exact tangent of the Reynolds equation.
+
+Second-order upstream Couette flux, central Poiseuille flux, conservative; a squeeze term of any
+backward formula enters as ``squeeze * rho H`` minus a history. Nodes 0..n.
+
+``oil`` holds six numbers: the law (0 isoviscous, 1 Barus, 2 Roelands), ``a``, ``p_r``, ``z``,
+``d_1`` and ``d_2``. Pressures are in units of the Hertz pressure.
+"""
 
 from __future__ import annotations
 
-import numba as nb
+from typing import NamedTuple
 
-from tribodyn.ehl._kernel.elementary import INNER, exp_, log_
+import numba as nb
+import numpy as np
+
+from tribodyn.ehl._kernel.elementary import BURIED, INNER, exp_, log_
 from tribodyn.types import Array
 
 ISOVISCOUS, BARUS, ROELANDS = 0.0, 1.0, 2.0
@@ -119,3 +129,38 @@ def coefficients(
         cP[i, 1] = wa * drho[a] * H[a] + pa * left - mean_left
         cP[i, 2] = wo * drho[o] * H[o] + po * (left - right) + mean_left + mean_right
         cP[i, 3] = -pb * right - mean_right
+
+
+class Fields(NamedTuple):
+    """What follows from pressure and film at the nodes, and its balance."""
+
+    lneta: Array  #: logarithm of the viscosity ratio
+    dlneta: Array  #: its slope over the pressure
+    rho: Array  #: density ratio
+    drho: Array  #: its slope over the pressure
+    eps: Array  #: mobility
+    F: Array  #: flux through the face behind each node
+    G: Array  #: residual of the mass balance
+
+
+@nb.njit(**BURIED)
+def make_fields(n: int) -> Fields:
+    """Fields of a grid of ``n`` intervals, not yet filled."""
+    a = np.zeros((7, n + 2))
+    return Fields(a[0], a[1], a[2], a[3], a[4], a[5], a[6])
+
+
+@nb.njit(**BURIED)
+def fill_oil(n: int, lam: float, oil: Array, P: Array, H: Array, f: Fields) -> None:
+    """Oil and mobility of a pressure and a film."""
+    oil_state(n, P, oil, f.lneta, f.dlneta, f.rho, f.drho)
+    mobility(n, H, lam, f.lneta, f.rho, f.eps)
+
+
+@nb.njit(**BURIED)
+def fill_tangent(
+    n: int, dx: float, lam: float, u: float, squeeze: float, P: Array, H: Array, f: Fields,
+    cH: Array, cP: Array,
+) -> None:  # fmt: skip
+    """Tangent about fields that are filled; see :func:`coefficients`."""
+    coefficients(n, dx, lam, u, squeeze, P, H, f.dlneta, f.rho, f.drho, f.eps, cH, cP)

@@ -1,26 +1,111 @@
-"""The contact over time from Python."""
+"""The contact over time from Python: the squeeze term by a backward formula of second order.
+
+Inputs are rows of a table over time, linear in between. The steps are those of the table; one that
+fails is halved. The first step is of first order, which keeps the second order of the whole.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
 
 from tribodyn.compiled import source_digest
 from tribodyn.ehl._kernel.elementary import BURIED, JIT
-from tribodyn.ehl._kernel.film_sum import film_plan, influence
+from tribodyn.ehl._kernel.film_sum import Grid, film_plan, influence
 from tribodyn.ehl._kernel.inlet import flooded_inlet
-from tribodyn.ehl._kernel.instant import instant_work, solve_instant
-from tribodyn.ehl._kernel.newton import CONVERGED, ROUNDED
+from tribodyn.ehl._kernel.linear_solver import no_coarse
+from tribodyn.ehl._kernel.newton import (
+    CONVERGED,
+    ROUNDED,
+    Equation,
+    Limits,
+    NewtonWork,
+    newton_level,
+    newton_work,
+)
 from tribodyn.ehl._kernel.reynolds import oil_state
 from tribodyn.ehl._kernel.transfer import central
 from tribodyn.types import Array
 
+#: Every file whose code ends up in the compiled kernel.
+_SOURCES = (
+    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "inlet",
+    "newton", "transient",
+)  # fmt: skip
+
+# What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
+
+#: Columns of the table of inputs: load over that of the reference, offset, speed over that of the
+#: reference, reference radius over radius, distances travelled by the two surfaces, factor of
+#: the heights of both.
+LOAD, OFFSET, SPEED, CURVATURE, FIRST_SHIFT, SECOND_SHIFT, HEIGHT = 0, 1, 2, 3, 4, 5, 6
+#: Columns of the table.
+INPUTS = 7
+#: Columns of the record: offset, sum of the pressures, load with that of the inlet, central and
+#: minimum film, last free node, Newton steps, flux error, parts of the step, highest pressure,
+#: share of the load in the last sixteenth of the grid, nodes of cavities before the outlet.
+RECORD = 12
+#: Load of the reference, in b p_h.
+_FULL = 0.5 * np.pi
+#: Flux error that is accepted where rounding keeps it above its tolerance.
+_ROUNDED_FLUX = 1e-4
+
+
+class Profiles(NamedTuple):
+    """Heights of both surfaces; none where fewer than four."""
+
+    first: Array
+    second: Array
+    ends: Array  #: of each surface: first position, spacing, whether periodic
+
+
+class TransientContact(NamedTuple):
+    """A contact over time in the scales of its widest dry contact."""
+
+    n: int  #: intervals
+    start: float  #: first position, in half widths
+    dx: float
+    depth: float  #: distance at which the deflection is zero
+    lam: float  #: factor of the viscous flux
+    oil: Array
+    imposed: bool  #: whether the load is imposed, or the offset
+    flooded: bool  #: whether the inlet before the first node is full of oil
+    profiles: Profiles
+    limits: Limits
+
+
+class Instant(NamedTuple):
+    """What one instant hands to the next beside pressure and film."""
+
+    offset: float
+    free: int  #: last node with pressure
+    load: float  #: with that of the inlet
+    steps: int  #: of Newton's method
+    flux_error: float
+
+
+class _Setting(NamedTuple):
+    """What stays over all instants: the grid, and arrays that each of them fills."""
+
+    grid: Grid
+    shape: Array  #: gap of the undeformed bodies
+    history: Array  #: what the squeeze term takes over
+    work: NewtonWork
+
 
 @nb.njit(**BURIED)
-def add_profile(
+def _setting(contact: TransientContact) -> _Setting:
+    n = contact.n
+    kernel = influence(n, contact.dx) + contact.dx * np.log(contact.depth) / np.pi
+    grid = Grid(n, contact.dx, kernel, film_plan(n, kernel))
+    return _Setting(grid, np.empty(n + 1), np.zeros(n + 1), newton_work(n))
+
+
+@nb.njit(**BURIED)
+def _add_profile(
     n: int, start: float, dx: float, shift: float, factor: float, heights: Array, first: float,
     spacing: float, periodic: bool, shape: Array,
 ) -> None:  # fmt: skip
@@ -48,34 +133,17 @@ def add_profile(
         )
 
 
-# What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
-
-#: Columns of the table of inputs: load over that of the reference, offset, speed over that of the
-#: reference, reference radius over radius, distances travelled by the two surfaces, factor of
-#: the heights of both.
-LOAD, OFFSET, SPEED, CURVATURE, FIRST_SHIFT, SECOND_SHIFT, HEIGHT = 0, 1, 2, 3, 4, 5, 6
-#: Columns of the table.
-INPUTS = 7
-#: Columns of the record: offset, sum of the pressures, load with that of the inlet, central and
-#: minimum film, last free node, Newton steps, flux error, parts of the step, highest pressure,
-#: share of the load in the last sixteenth of the grid, nodes of cavities before the outlet.
-RECORD = 12
-#: Load of the reference, in b p_h.
-_FULL = 0.5 * np.pi
-#: Flux error that is accepted where rounding keeps it above its tolerance.
-_ROUNDED_FLUX = 1e-4
-
-
 @nb.njit(**BURIED)
-def _gap(n: int, start: float, dx: float, row: Array, rough: Any, shape: Array) -> None:
+def _fill_gap(contact: TransientContact, row: Array, shape: Array) -> None:
     """Gap of the undeformed bodies at one instant."""
+    n, start, dx, profiles = contact.n, contact.start, contact.dx, contact.profiles
     for i in range(n + 1):
         x = start + i * dx
         shape[i] = 0.5 * row[CURVATURE] * x * x
-    ends = rough[2]
+    ends = profiles.ends
     for side in range(2):
-        heights = rough[0] if side == 0 else rough[1]
-        add_profile(
+        heights = profiles.first if side == 0 else profiles.second
+        _add_profile(
             n, start, dx, row[FIRST_SHIFT + side], row[HEIGHT], heights, ends[side, 0],
             ends[side, 1], ends[side, 2] > 0.0, shape,
         )  # fmt: skip
@@ -98,56 +166,40 @@ def _inlet(
 
 @nb.njit(inline="always", **BURIED)
 def _solve(
-    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
-    imposed: bool, flooded: bool, row: Array, film: float, load: float, squeeze: float,
-    history: Array, shape: Array, work: Any, P: Array, H: Array, cavity: Array, state: Array,
-) -> int:  # fmt: skip
-    """Solve one instant; ``state[5]`` receives the load with that of the inlet."""
+    contact: TransientContact, setting: _Setting, row: Array, film: float, squeeze: float,
+    state: Instant, load: float, P: Array, H: Array, cavity: Array,
+) -> tuple[int, Instant]:  # fmt: skip
+    """Solve one instant from a state nearby: its status and what it hands on."""
+    lam, speed, imposed = contact.lam, row[SPEED], contact.imposed
     carried = row[LOAD] if imposed else load / _FULL
-    tail, outside = _inlet(start, film, carried, lam, flooded, row)
-    given = _FULL * row[LOAD] - outside if imposed else row[OFFSET]
-    status = solve_instant(
-        n, dx, lam, row[SPEED], squeeze, given, imposed, tail, oil, shape, history, K,
-        plan, limits, work, P, H, cavity, state,
+    tail, outside = _inlet(contact.start, film, carried, lam, contact.flooded, row)
+    target = _FULL * row[LOAD] - outside if imposed else row[OFFSET]
+    equation = Equation(
+        lam, contact.oil, speed, squeeze, setting.history, setting.shape, tail, imposed, target
+    )
+    solved = newton_level(
+        setting.grid, equation, contact.limits, state.offset, state.free, P, H, cavity,
+        no_coarse(), setting.work,
     )  # fmt: skip
-    state[5] += outside
-    if status == ROUNDED and state[4] < _ROUNDED_FLUX:
-        status = CONVERGED
-    return status
+    status = solved.status
+    if status == ROUNDED and solved.flux_error < _ROUNDED_FLUX:
+        status = nb.int64(CONVERGED)
+    return status, Instant(
+        solved.offset, solved.free, solved.load + outside, solved.steps, solved.flux_error
+    )
 
 
 @nb.njit(inline="always", **BURIED)
-def _settle(
-    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
-    imposed: bool, flooded: bool, row: Array, rough: Any, shape: Array, history: Array, work: Any,
-    P: Array, H: Array, cavity: Array, state: Array,
-) -> int:  # fmt: skip
-    """Steady state under the inputs of one row, from a state nearby."""
-    _gap(n, start, dx, row, rough, shape)
-    film, status = central(n, start, dx, H), CONVERGED
-    for _ in range(40):
-        status = _solve(
-            n, start, dx, lam, oil, K, plan, limits, imposed, flooded, row, film, state[5], 0.0,
-            history, shape, work, P, H, cavity, state,
-        )  # fmt: skip
-        before, film = film, central(n, start, dx, H)
-        if status != CONVERGED or not flooded or abs(film - before) < 1e-13 * abs(film):
-            break
-    return status
-
-
-@nb.njit(inline="always", **BURIED)
-def carry(
-    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
-    imposed: bool, flooded: bool, ratio: float, table: Array, rough: Any, work: Any, P: Array,
-    H: Array, state: Array,
-) -> int:  # fmt: skip
+def _carry(
+    contact: TransientContact, setting: _Setting, ratio: float, table: Array, P: Array, H: Array,
+    state: Instant,
+) -> tuple[int, Instant]:  # fmt: skip
     """Carry a steady state, in place, from the inputs of the first row to those of the last."""
-    first, last, now = table[0], table[table.shape[0] - 1], np.empty(table.shape[1])
-    shape, history, cavity = np.empty(n + 1), np.zeros(n + 1), np.zeros(n + 1)
-    p, h, trial = np.empty(n + 1), np.empty(n + 1), np.empty(state.size)
+    n, start, dx = contact.n, contact.start, contact.dx
+    first, last, row = table[0], table[table.shape[0] - 1], np.empty(table.shape[1])
+    p, h, cavity = np.empty(n + 1), np.empty(n + 1), np.zeros(n + 1)
     furthest = 0.0
-    for c in range(now.size):
+    for c in range(row.size):
         if c in (LOAD, SPEED, CURVATURE) and first[c] > 0.0 and last[c] > 0.0:
             furthest = max(furthest, abs(np.log(last[c] / first[c])))
     largest = 1.0 / max(1.0, np.ceil(furthest / np.log(ratio)))
@@ -156,33 +208,40 @@ def carry(
         reached = done + part
         if reached > 1.0 - 1e-9:
             reached = 1.0
-        for c in range(now.size):
-            now[c] = first[c] + reached * (last[c] - first[c])
+        for c in range(row.size):
+            row[c] = first[c] + reached * (last[c] - first[c])
             if c in (LOAD, SPEED, CURVATURE) and first[c] > 0.0:
-                now[c] = first[c] * (last[c] / first[c]) ** reached
-        p[:], h[:], trial[:] = P, H, state
-        status = _settle(
-            n, start, dx, lam, oil, K, plan, limits, imposed, flooded, now, rough, shape, history,
-            work, p, h, cavity, trial,
-        )  # fmt: skip
+                row[c] = first[c] * (last[c] / first[c]) ** reached
+        p[:], h[:] = P, H
+        _fill_gap(contact, row, setting.shape)
+        trial, film = state, central(n, start, dx, h)
+        status = nb.int64(CONVERGED)
+        # The inlet follows the film that it feeds.
+        for _ in range(40):
+            status, trial = _solve(
+                contact, setting, row, film, 0.0, trial, trial.load, p, h, cavity
+            )
+            before, film = film, central(n, start, dx, h)
+            if status != CONVERGED or not contact.flooded or abs(film - before) < 1e-13 * abs(film):
+                break
         if status != CONVERGED:
             cavity[:] = 0.0
             part *= 0.5
             if part < 1e-3:
-                return status
+                return status, state
             continue
-        P[:], H[:], state[:] = p, h, trial
-        done = reached
-        part = min(2.0 * part, largest)
-    return CONVERGED
+        P[:], H[:] = p, h
+        state, done, part = trial, reached, min(2.0 * part, largest)
+    return nb.int64(CONVERGED), state
 
 
 @nb.njit(**BURIED)
 def _keep(
-    n: int, start: float, dx: float, P: Array, H: Array, cavity: Array, state: Array, parts: int,
-    record: Array,
+    contact: TransientContact, P: Array, H: Array, cavity: Array, state: Instant, steps: int,
+    parts: int, record: Array,
 ) -> None:  # fmt: skip
-    k = int(state[1])
+    """Fill a line of the record."""
+    n, dx, k = contact.n, contact.dx, state.free
     total, highest, late = 0.0, 0.0, 0.0
     for i in range(k + 1):
         total += P[i]
@@ -192,45 +251,45 @@ def _keep(
     least = H[0]
     for i in range(min(k + 2, n + 1)):
         least = min(least, H[i])
-    record[0], record[1], record[2] = state[0], dx * total, state[5]
-    record[3], record[4] = central(n, start, dx, H), least
-    record[5], record[6], record[7] = state[1], state[2], state[4]
+    record[0], record[1], record[2] = state.offset, dx * total, state.load
+    record[3], record[4] = central(n, contact.start, dx, H), least
+    record[5], record[6], record[7] = k, steps, state.flux_error
     record[8], record[9] = parts, highest
     record[10] = late / total if total > 0.0 else 0.0
     record[11] = np.sum(cavity)
 
 
 @nb.njit(inline="always", **BURIED)
-def march(
-    n: int, start: float, dx: float, lam: float, oil: Array, K: Array, plan: Array, limits: Array,
-    imposed: bool, flooded: bool, time: Array, table: Array, rough: Any, halvings: int, every: int,
-    work: Any, P: Array, H: Array, state: Array, records: Array, pressures: Array, films: Array,
-) -> tuple[int, int]:  # fmt: skip
-    """March a contact over time, from the state of the first instant."""
+def _follow(
+    contact: TransientContact, setting: _Setting, time: Array, table: Array, halvings: int,
+    every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array, films: Array,
+) -> tuple[int, int, Instant]:  # fmt: skip
+    """Follow a contact over time, from the state of the first instant."""
+    n, start, dx, oil = contact.n, contact.start, contact.dx, contact.oil
+    history = setting.history
     cavity, broken = np.zeros(n + 1), np.zeros(n + 1)
-    shape, history = np.empty(n + 1), np.empty(n + 1)
     lneta, dlneta, rho, drho = np.empty((4, n + 1))
     before, earlier = np.empty(n + 1), np.empty(n + 1)
-    p, h, trial = np.empty(n + 1), np.empty(n + 1), np.empty(state.size)
+    p, h = np.empty(n + 1), np.empty(n + 1)
     row = np.empty(table.shape[1])
     oil_state(n, P, oil, lneta, dlneta, rho, drho)
     for i in range(n + 1):
         before[i] = rho[i] * H[i]
     film, film_before = central(n, start, dx, H), 0.0
-    load, load_before = state[5], 0.0
+    load, load_before = state.load, 0.0
     last = 0.0
-    _keep(n, start, dx, P, H, cavity, state, 0, records[0])
+    _keep(contact, P, H, cavity, state, state.steps, nb.int64(0), records[0])
     if every > 0:
         pressures[0], films[0] = P, H
     for m in range(1, time.size):
         whole = time[m] - time[m - 1]
-        done, part, parts, steps = 0.0, 1.0, 0, 0.0
+        done, part, parts, steps = 0.0, 1.0, nb.int64(0), nb.int64(0)
         while done < 1.0:
             width = part * whole
             reached = done + part
             for c in range(row.size):
                 row[c] = table[m - 1, c] + reached * (table[m, c] - table[m - 1, c])
-            _gap(n, start, dx, row, rough, shape)
+            _fill_gap(contact, row, setting.shape)
             if last == 0.0:
                 squeeze, expected, expected_load = dx / width, film, load
                 for i in range(n + 1):
@@ -243,64 +302,50 @@ def march(
                     history[i] = near * before[i] - far * earlier[i]
                 expected = film + r * (film - film_before)
                 expected_load = load + r * (load - load_before)
-            p[:], h[:], broken[:], trial[:] = P, H, cavity, state
-            status = _solve(
-                n, start, dx, lam, oil, K, plan, limits, imposed, flooded, row, expected,
-                expected_load, squeeze, history, shape, work, p, h, broken, trial,
-            )  # fmt: skip
+            p[:], h[:], broken[:] = P, H, cavity
+            status, trial = _solve(
+                contact, setting, row, expected, squeeze, state, expected_load, p, h, broken
+            )
             if status != CONVERGED:
                 part *= 0.5
                 if part < 0.5**halvings:
-                    return status, m
+                    return status, m, state
                 continue
-            P[:], H[:], cavity[:], state[:] = p, h, broken, trial
+            P[:], H[:], cavity[:] = p, h, broken
+            state = trial
             oil_state(n, P, oil, lneta, dlneta, rho, drho)
             for i in range(n + 1):
                 earlier[i] = before[i]
                 before[i] = rho[i] * H[i]
             film_before, film = film, central(n, start, dx, H)
-            load_before, load = load, state[5]
+            load_before, load = load, state.load
             last, done = width, reached
             parts += 1
-            steps += state[2]
-        state[2] = steps
-        _keep(n, start, dx, P, H, cavity, state, parts, records[m])
+            steps += state.steps
+        _keep(contact, P, H, cavity, state, steps, parts, records[m])
         if every > 0 and m % every == 0:
             pressures[m // every], films[m // every] = P, H
-    return CONVERGED, time.size - 1
+    return nb.int64(CONVERGED), time.size - 1, state
 
 
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "inlet",
-    "newton", "instant", "transient",
-)  # fmt: skip
-
-
-def _build_march(digest: str) -> Any:
+def _build(digest: str) -> Any:
     @nb.njit(cache=True, **JIT)
-    def march_contact(
-        n: int, start: float, dx: float, reference: float, lam: float, oil: Array, limits: Array,
-        imposed: bool, flooded: bool, ratio: float, time: Array, table: Array, rough: Any,
-        halvings: int, every: int, P: Array, H: Array, state: Array, records: Array,
-        pressures: Array, films: Array,
-    ) -> tuple[int, int]:  # fmt: skip
-        """March a contact over time, or carry a steady one to other inputs."""
+    def follow_contact(
+        contact: TransientContact, ratio: float, time: Array, table: Array, halvings: int,
+        every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array,
+        films: Array,
+    ) -> tuple[int, int, Instant]:  # fmt: skip
+        """Follow a contact over time or, without any, carry a steady one to other inputs."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        K = influence(n, dx) + dx * np.log(reference) / np.pi
-        plan, work = film_plan(n, K), instant_work(n)
+        setting = _setting(contact)
         if time.size == 0:
-            status = carry(
-                n, start, dx, lam, oil, K, plan, limits, imposed, flooded, ratio, table, rough,
-                work, P, H, state,
-            )  # fmt: skip
-            return status, 0
-        return march(
-            n, start, dx, lam, oil, K, plan, limits, imposed, flooded, time, table, rough,
-            halvings, every, work, P, H, state, records, pressures, films,
-        )  # fmt: skip
+            status, reached = _carry(contact, setting, ratio, table, P, H, state)
+            return status, nb.int64(0), reached
+        return _follow(
+            contact, setting, time, table, halvings, every, P, H, state, records, pressures, films
+        )
 
-    return march_contact
+    return follow_contact
 
 
-march_contact = _build_march(source_digest(Path(__file__).parent, _SOURCES))
+follow_contact = _build(source_digest(Path(__file__).parent, _SOURCES))

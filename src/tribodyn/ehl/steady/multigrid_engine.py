@@ -7,8 +7,16 @@ from types import MappingProxyType
 
 import numpy as np
 
-from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
-from tribodyn.ehl.steady.newton_engine import first_intervals, resample
+from tribodyn.ehl.steady.contact_problem import ContactProblem, Outcome
+from tribodyn.ehl.steady.newton_engine import (
+    CAP,
+    LINEAR,
+    STEPS,
+    first_intervals,
+    state_on_grid,
+    steady_contact,
+    warm_start,
+)
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array, Index
 
@@ -28,8 +36,6 @@ FIVE_LEVELS = MappingProxyType(
 
 #: Intervals of the coarsest grid: as chosen here, and the fewest and most that one may ask for.
 _USUAL, _FEWEST, _MOST = 64, 32, 256
-#: Newton steps of the start, tolerance of its linear solver, greatest change in a step.
-_STEPS, _LINEAR, _NEWTON_CAP = 40, 3e-2, 0.3
 #: Tolerance of the load, cycles on the last grid, and lines of the record.
 _LOAD, _CYCLES, _LINES = 1e-6, 60, 400
 #: Tolerances of pressure and flux at the start.
@@ -96,86 +102,69 @@ def multigrid_engine(problem: ContactProblem) -> Outcome:
 
 def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
     """Solve a steady contact by full multigrid, with the record of its cycles."""
-    from tribodyn.ehl._kernel.multigrid import RECORD, multigrid_solve
+    from tribodyn.ehl._kernel.multigrid import RECORD, MultigridLimits, multigrid_solve
 
     n = problem.nodes - 1
-    count = count_grids(n, problem.levels)
-    record = np.zeros((_LINES, RECORD))
+    count, record = count_grids(n, problem.levels), np.zeros((_LINES, RECORD))
     if count < 2:
         message = f"multigrid: {n} intervals cannot be halved to {_FEWEST} or more"
         return Outcome(False, None, 0, (), message), _cycles(record[:0])
-    P, H, shape = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
-    state, films = np.zeros(8), np.zeros(20)
-    first, message = _start(problem, n >> (count - 1), P, H, state)
+    P, H, shape, films = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1), np.zeros(20)
+    first, offset, free, message = _start(problem, n >> (count - 1), P, H)
     if message:
         return Outcome(False, None, 0, (), message), _cycles(record[:0])
-    limits = np.array([problem.tolerance, problem.flux_tolerance, _LOAD, _CYCLES])
-    profile = np.zeros(n + 1) if problem.profile is None else problem.profile
-    start, end = problem.domain
-    status = multigrid_solve(
-        n, count, first, start, end, problem.lam, problem.oil, problem.load, problem.tail, profile,
-        limits, problem.film_tolerance, P, H, shape, state, films, record,
+    limits = MultigridLimits(problem.tolerance, problem.flux_tolerance, _LOAD, _CYCLES)
+    ended = multigrid_solve(
+        n, count, first, steady_contact(problem), limits, problem.film_tolerance, offset, free, P,
+        H, shape, films, record,
     )  # fmt: skip
-    m, grids = int(state[5]), int(state[6])
-    if status != 0:
-        reason = _REASONS[status].format(cycles=int(state[2]), change=state[3], flux=state[4])
-        message = f"multigrid from {first} intervals: {reason} on {m} intervals"
+    if ended.status != 0:
+        reason = _REASONS[ended.status].format(
+            cycles=ended.cycles, change=ended.change, flux=ended.flux_error
+        )
+        message = f"multigrid from {first} intervals: {reason} on {ended.intervals} intervals"
     outcome = Outcome(
-        converged=status == 0,
-        grid=_record(problem, m, P, H, shape, state),
-        iterations=int(state[2]),
-        films=tuple(float(film) for film in films[: grids if status == 0 else grids - 1]),
+        converged=ended.status == 0,
+        grid=state_on_grid(problem, ended.intervals, P, H, shape, ended),
+        iterations=ended.cycles,
+        films=tuple(films[: ended.grids if ended.status == 0 else ended.grids - 1].tolist()),
         message=message,
     )
-    return outcome, _cycles(record[: int(state[7])])
+    return outcome, _cycles(record[: ended.lines])
 
 
 def _start(
-    problem: ContactProblem, coarsest: int, P: Array, H: Array, state: Array
-) -> tuple[int, str]:
-    """Fill pressure and state on a first grid; its intervals, and what went wrong."""
+    problem: ContactProblem, coarsest: int, P: Array, H: Array
+) -> tuple[int, float, int, str]:
+    """Fill the pressure of a first grid: its intervals, offset, last free node, complaint."""
+    from tribodyn.ehl._kernel.newton import Limits
     from tribodyn.ehl._kernel.steady import newton_solve
 
     n, warm = problem.nodes - 1, problem.start is not None
-    m = max(first_intervals(problem), coarsest)
+    m, offset, free = max(first_intervals(problem), coarsest), 0.0, 0
     if problem.start is not None:
-        grid = problem.start
-        m = max(m, grid.n) if n % grid.n == 0 else m
-        state[0], state[1] = _resampled(problem, grid, m, P)
+        m = max(m, problem.start.n) if n % problem.start.n == 0 else m
+        offset, free = warm_start(problem, problem.start, m, P)
         if m > coarsest:
-            return m, ""
-    start, end = problem.domain
+            return m, offset, free, ""
     while True:
         last = m == n or problem.film_tolerance > 0.0
-        limits = np.array(
-            [
-                problem.tolerance if last else max(problem.tolerance, _PASSING),
-                problem.flux_tolerance if last else max(problem.flux_tolerance, _PASSING_FLUX),
-                _STEPS, _LINEAR, _NEWTON_CAP, 0.0,
-            ]
+        limits = Limits(
+            problem.tolerance if last else max(problem.tolerance, _PASSING),
+            problem.flux_tolerance if last else max(problem.flux_tolerance, _PASSING_FLUX),
+            STEPS, LINEAR, CAP,
         )  # fmt: skip
-        found, films = np.zeros(12), np.zeros(20)
-        found[:2] = state[:2]
-        status = newton_solve(
-            m, m, warm, start, end, problem.lam, problem.oil, problem.film, problem.load,
-            problem.tail, _mean_heights(problem, n // m), limits, 0.0, P, H, found, films,
+        solved, *_ = newton_solve(
+            m, m, warm, steady_contact(problem, n // m), limits, 0.0, offset, free, P, H,
+            np.zeros(20),
         )  # fmt: skip
-        state[:2] = found[:2]
-        if status == 0:
-            return m, ""
+        offset, free = solved.offset, solved.free
+        if solved.status == 0:
+            return m, offset, free, ""
         if m == n or warm:
-            return m, f"multigrid: no start by Newton's method on {m} intervals"
+            complaint = f"multigrid: no start by Newton's method on {m} intervals"
+            return m, offset, free, complaint
         m *= 2
-
-
-def _mean_heights(problem: ContactProblem, factor: int) -> Array:
-    """Profile on the grid ``factor`` times as wide: the mean under a hat about every node."""
-    if problem.profile is None:
-        return np.zeros((problem.nodes - 1) // factor + 1)
-    hat = 1.0 - np.abs(np.arange(1 - factor, factor)) / factor
-    weight = np.convolve(np.ones(problem.nodes), hat, mode="same")
-    mean = np.convolve(problem.profile, hat, mode="same") / weight
-    return np.ascontiguousarray(mean[::factor])
 
 
 def _cycles(record: Array) -> Cycles:
@@ -187,28 +176,3 @@ def _cycles(record: Array) -> Cycles:
         cavity_residual=record[:, 4].copy(),
         free=record[:, 5].astype(np.int64),
     )
-
-
-def _record(
-    problem: ContactProblem, m: int, P: Array, H: Array, shape: Array, state: Array
-) -> DiscreteContact:
-    start, end = problem.domain
-    dx = (end - start) / m
-    return DiscreteContact(
-        n=m, dx=dx, X=np.asarray(start + dx * np.arange(m + 1)), P=P[: m + 1].copy(),
-        H=H[: m + 1].copy(), H0=float(state[0]), lam=problem.lam, oil=problem.oil,
-        free=int(state[1]), load=problem.load, tail=problem.tail, shape=shape[: m + 1].copy(),
-    )  # fmt: skip
-
-
-def _resampled(
-    problem: ContactProblem, grid: DiscreteContact, first: int, P: Array
-) -> tuple[float, int]:
-    """Fill ``P`` on the first grid from an earlier solution; offset and last free node."""
-    start, end = problem.domain
-    values, free = resample(grid, np.linspace(start, end, first + 1))
-    dx = (end - start) / first
-    values[0] = problem.tail
-    values[1:] *= (problem.load - 0.5 * problem.tail * dx) / (dx * float(np.sum(values[1:])))
-    P[: first + 1] = values
-    return grid.H0, free

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
@@ -11,9 +13,9 @@ from tribodyn.types import Array
 #: goes with the film to the power 2/3, between rigid bodies with its root.
 _LEAST, _RESOLVED, _RESOLVED_RIGID = 64, 0.7, 0.35
 #: Newton steps on a grid, and tolerance of the linear solver.
-_STEPS, _LINEAR, _LINEAR_TIGHT = 40, 3e-2, 1e-2
+STEPS, LINEAR, _LINEAR_TIGHT = 40, 3e-2, 1e-2
 #: Greatest change of a nodal pressure in a step, in Hertz pressures.
-_CAP = 0.3
+CAP = 0.3
 
 _REASONS = {
     1: "not converged in {steps} Newton steps",
@@ -40,87 +42,93 @@ def first_intervals(problem: ContactProblem) -> int:
 
 def newton_engine(problem: ContactProblem) -> Outcome:
     """Solve a steady contact by multilevel Newton-Krylov."""
+    from tribodyn.ehl._kernel.newton import Limits
     from tribodyn.ehl._kernel.steady import newton_solve
 
-    n = problem.nodes - 1
-    first = first_intervals(problem)
-    start, end = problem.domain
-    P, H = np.zeros(n + 1), np.zeros(n + 1)
-    state, films = np.zeros(12), np.zeros(20)
-    warm = problem.start is not None
+    n, first = problem.nodes - 1, first_intervals(problem)
+    P, H, films = np.zeros(n + 1), np.zeros(n + 1), np.zeros(20)
+    offset, free, warm = 0.0, 0, problem.start is not None
     if problem.start is not None:
-        grid = problem.start
-        first = max(first, grid.n) if n % grid.n == 0 else first
-        state[0], state[1] = _warm_start(problem, grid, first, P)
+        first = max(first, problem.start.n) if n % problem.start.n == 0 else first
+        offset, free = warm_start(problem, problem.start, first, P)
     tight = min(problem.tolerance, 0.1 * problem.flux_tolerance) < 1e-6
-    limits = np.array(
-        [
-            problem.tolerance,
-            problem.flux_tolerance,
-            _STEPS,
-            _LINEAR_TIGHT if tight else _LINEAR,
-            _CAP,
-            0.0,
-        ]
-    )
-    profile = np.zeros(n + 1) if problem.profile is None else problem.profile
-    status = newton_solve(
-        n, first, warm, start, end, problem.lam, problem.oil, problem.film, problem.load,
-        problem.tail, profile, limits, problem.film_tolerance, P, H, state, films,
+    linear = _LINEAR_TIGHT if tight else LINEAR
+    limits = Limits(problem.tolerance, problem.flux_tolerance, STEPS, linear, CAP)
+    solved, m, first, grids = newton_solve(
+        n, first, warm, steady_contact(problem), limits, problem.film_tolerance, offset, free, P,
+        H, films,
     )  # fmt: skip
-    m, grids = int(state[8]), int(state[10])
     message = ""
-    if status != 0:
-        reason = _REASONS[status].format(steps=int(state[2]), flux=state[4])
-        message = f"newton from {int(state[9])} intervals: {reason} on {m} intervals"
-    found = films[: grids if status == 0 else grids - 1]
+    if solved.status != 0:
+        reason = _REASONS[solved.status].format(steps=solved.steps, flux=solved.flux_error)
+        message = f"newton from {first} intervals: {reason} on {m} intervals"
+    shape = 0.5 * positions(problem, m) ** 2 + mean_heights(problem, n // m)
     return Outcome(
-        converged=status == 0,
-        grid=_record(problem, m, P, H, state, profile),
-        iterations=int(state[2]),
-        films=tuple(float(film) for film in found),
+        converged=solved.status == 0,
+        grid=state_on_grid(problem, m, P, H, shape, solved),
+        iterations=solved.steps,
+        films=tuple(films[: grids if solved.status == 0 else grids - 1].tolist()),
         message=message,
     )
 
 
-def _record(
-    problem: ContactProblem, m: int, P: Array, H: Array, state: Array, profile: Array
-) -> DiscreteContact:
+def steady_contact(problem: ContactProblem, factor: int = 1) -> Any:
+    """Contact for the kernels, with the profile on the grid ``factor`` times as wide."""
+    from tribodyn.ehl._kernel.steady import SteadyContact
+
     start, end = problem.domain
-    dx = (end - start) / m
-    X = np.asarray(start + dx * np.arange(m + 1))
-    factor = (problem.nodes - 1) // m
-    heights = profile
-    if factor > 1:
-        # As the compiled solver takes a profile on a coarser grid: its local mean.
-        hat = 1.0 - np.abs(np.arange(1 - factor, factor)) / factor
-        weight = np.convolve(np.ones_like(profile), hat, mode="same")
-        heights = (np.convolve(profile, hat, mode="same") / weight)[::factor]
+    return SteadyContact(
+        start, end, problem.lam, problem.oil, problem.film, problem.load, problem.tail,
+        mean_heights(problem, factor),
+    )  # fmt: skip
+
+
+def mean_heights(problem: ContactProblem, factor: int) -> Array:
+    """Profile on the grid ``factor`` times as wide: the mean under a hat about every node."""
+    if problem.profile is None:
+        return np.zeros((problem.nodes - 1) // factor + 1)
+    if factor == 1:
+        return problem.profile
+    hat = 1.0 - np.abs(np.arange(1 - factor, factor)) / factor
+    weight = np.convolve(np.ones(problem.nodes), hat, mode="same")
+    mean = np.convolve(problem.profile, hat, mode="same") / weight
+    return np.ascontiguousarray(mean[::factor])
+
+
+def positions(problem: ContactProblem, m: int) -> Array:
+    """Nodes of the grid of ``m`` intervals, in half widths."""
+    start, end = problem.domain
+    return np.asarray(start + (end - start) / m * np.arange(m + 1))
+
+
+def state_on_grid(
+    problem: ContactProblem, m: int, P: Array, H: Array, shape: Array, solved: Any
+) -> DiscreteContact:
+    """State on the grid of ``m`` intervals on which an engine ended."""
+    start, end = problem.domain
     return DiscreteContact(
-        n=m, dx=dx, X=X, P=P[: m + 1].copy(), H=H[: m + 1].copy(), H0=float(state[0]),
-        lam=problem.lam, oil=problem.oil, free=int(state[1]), load=problem.load,
-        tail=problem.tail, shape=0.5 * X**2 + heights,
+        n=m, dx=(end - start) / m, X=positions(problem, m), P=P[: m + 1].copy(),
+        H=H[: m + 1].copy(), H0=solved.offset, lam=problem.lam, oil=problem.oil,
+        free=solved.free, load=problem.load, tail=problem.tail, shape=shape[: m + 1].copy(),
     )  # fmt: skip
 
 
 def resample(grid: DiscreteContact, X: Array) -> tuple[Array, int]:
-    """Pressure of a solution at other positions."""
+    """Pressure of a solution at other positions, and its last node."""
     P = np.interp(X, grid.X, grid.P, left=0.0, right=0.0)
     P[-1] = 0.0
     positive = np.flatnonzero(P[:-1] > 0.0)
     return P, int(positive[-1]) if positive.size else 2
 
 
-def _warm_start(
+def warm_start(
     problem: ContactProblem, grid: DiscreteContact, first: int, P: Array
 ) -> tuple[float, int]:
     """Fill ``P`` on the first grid from an earlier solution; offset and last free node."""
     start, end = problem.domain
-    X = np.linspace(start, end, first + 1)
-    values, free = resample(grid, X)
+    values, free = resample(grid, np.linspace(start, end, first + 1))
+    dx = (end - start) / first
     values[0] = problem.tail
-    total = float(np.sum(values[1:])) * (end - start) / first
-    share = problem.load - 0.5 * problem.tail * (end - start) / first
-    values[1:] *= share / total
+    values[1:] *= (problem.load - 0.5 * problem.tail * dx) / (dx * float(np.sum(values[1:])))
     P[: first + 1] = values
     return grid.H0, free

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -269,13 +270,13 @@ REASONS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class State:
     """State of the contact at one instant, dimensionless."""
 
     P: Array
     H: Array
-    numbers: Array  #: offset, last free node and further numbers of the kernel
+    instant: Any  #: offset, last free node and load, as the kernel hands them on
 
 
 #: Greatest factor of load, speed or curvature from one steady state to the next of the start.
@@ -283,7 +284,7 @@ _RATIO = 1.25
 
 
 @dataclass(frozen=True, eq=False)
-class TransientContact:
+class MovingContact:
     """A transient contact in its dimensionless form."""
 
     inputs: TransientInputs  #: checked series
@@ -296,7 +297,7 @@ class TransientContact:
     law: str  #: viscosity law
     compressible: bool  #: whether the density rises with pressure
     length: float  #: distance at which the deflection is zero [m]
-    limits: Array  #: limits of the solver, see :func:`tribodyn.ehl._kernel.newton.newton_level`
+    tolerance: float  #: relative change of the pressure, and flux error, at convergence
 
     @property
     def dx(self) -> float:
@@ -357,19 +358,22 @@ class TransientContact:
             table[:, OFFSET] = -inputs.approach / scale.film
         return table
 
-    def rough(self) -> tuple[Array, Array, Array]:
-        """Heights of both surfaces for the kernel."""
-        ends = np.zeros((2, 3))
-        heights = [np.zeros(0), np.zeros(0)]
+    def kernel_contact(self, imposed: bool, depth: float) -> Any:
+        """Contact for the kernel, with the load or the offset imposed."""
+        from tribodyn.ehl._kernel.newton import Limits
+        from tribodyn.ehl._kernel.transient import Profiles, TransientContact
+
+        b, ends, heights = self.scale.half_width, np.zeros((2, 3)), [np.zeros(0), np.zeros(0)]
         for side, profile in enumerate(self.inputs.profiles):
             if profile is not None:
                 heights[side] = -profile.height / self.scale.film
-                ends[side] = (
-                    profile.position[0] / self.scale.half_width,
-                    profile.spacing / self.scale.half_width,
-                    float(profile.beyond == "periodic"),
-                )
-        return heights[0], heights[1], ends
+                periodic = float(profile.beyond == "periodic")
+                ends[side] = profile.position[0] / b, profile.spacing / b, periodic
+        return TransientContact(
+            self.nodes - 1, self.domain[0], self.dx, float(depth), self.numbers.lam,
+            self.numbers.oil, imposed, self.flooded, Profiles(heights[0], heights[1], ends),
+            Limits(self.tolerance, self.tolerance, 40, 1e-3, 0.3),
+        )  # fmt: skip
 
     def check_roughness(self) -> None:
         """Warn of waves that the grid does not resolve."""
@@ -401,14 +405,16 @@ class TransientContact:
         if not imposed:
             # The offset counts the deflection from another distance than the kernel's own, b.
             shift = self.dx * float(np.sum(state.P)) * np.log(self.depth) / np.pi
-            state.numbers[0] -= shift
+            state.instant = state.instant._replace(offset=state.instant.offset - shift)
             first = row.copy()
-            first[1] = state.numbers[0]
+            first[1] = state.instant.offset
             self._carry(state, first, row, False, self.depth)
         return state
 
     def unloaded(self) -> State:
         """Film at rest in the open gap of the first instant."""
+        from tribodyn.ehl._kernel.transient import Instant
+
         if self.inputs.approach is None:
             raise InputError(
                 Problem(
@@ -434,13 +440,13 @@ class TransientContact:
                     remedy='Begin earlier, or take start = "steady"',
                 )
             )
-        numbers = np.zeros(8)
         width = min(0.5 * np.sqrt(2.0 * row[1] / row[3]), 0.9 * self.domain[1])
-        numbers[0], numbers[1] = row[1], np.floor((width - self.domain[0]) / self.dx)
-        return State(np.zeros(n + 1), H, numbers)
+        last = int((width - self.domain[0]) / self.dx)
+        return State(np.zeros(n + 1), H, Instant(float(row[1]), last, 0.0, 0, 0.0))
 
     def _reference_state(self) -> State:
         """Steady state of the widest dry contact at the speed of the first instant."""
+        from tribodyn.ehl._kernel.transient import Instant
         from tribodyn.ehl.steady.line_contact import solve_line_contact
 
         solution = solve_line_contact(
@@ -456,19 +462,17 @@ class TransientContact:
             compressible=self.compressible,
         )
         grid = solution._grid
-        numbers = np.zeros(8)
-        numbers[0], numbers[1], numbers[5] = grid.H0, grid.free, 0.5 * np.pi
-        return State(grid.P.copy(), grid.H.copy(), numbers)
+        instant = Instant(grid.H0, grid.free, 0.5 * np.pi, 0, 0.0)
+        return State(grid.P.copy(), grid.H.copy(), instant)
 
     def _carry(self, state: State, first: Array, row: Array, imposed: bool, depth: float) -> None:
         """Carry a steady state from one set of inputs to another, in place."""
-        from tribodyn.ehl._kernel.transient import march_contact
+        from tribodyn.ehl._kernel.transient import follow_contact
 
         none = np.zeros((0, 0))
-        status, _ = march_contact(
-            self.nodes - 1, self.domain[0], self.dx, depth, self.numbers.lam, self.numbers.oil,
-            self.limits, imposed, self.flooded, _RATIO, np.zeros(0), np.stack((first, row)),
-            self.rough(), 0, 0, state.P, state.H, state.numbers, none, none, none,
+        status, _, state.instant = follow_contact(
+            self.kernel_contact(imposed, depth), _RATIO, np.zeros(0), np.stack((first, row)), 0, 0,
+            state.P, state.H, state.instant, none, none, none,
         )  # fmt: skip
         if status != 0:
             inputs = self.inputs

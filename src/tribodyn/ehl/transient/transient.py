@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.transient.moving_contact import (
     REASONS,
+    MovingContact,
     Series,
-    TransientContact,
     flooded_domain,
     read_inputs,
     reference_scale,
@@ -155,28 +155,27 @@ def solve_transient_line_contact(
         )
     length = float(np.max(inputs.radius)) if reference_length is None else reference_length
     require_positive("reference_length", length, "m")
-    contact = TransientContact(
+    contact = MovingContact(
         inputs=inputs, scale=scale, lubricant=lubricant, modulus=effective_modulus, nodes=nodes,
         domain=(float(extent[0]), float(extent[1])), inlet=inlet, law=viscosity_law,
-        compressible=compressible, length=length,
-        limits=np.array([tolerance, tolerance, 40.0, 1e-3, 0.3, 0.0]),
+        compressible=compressible, length=length, tolerance=tolerance,
     )  # fmt: skip
     return _extended(contact, start, step_halvings, keep_every, domain == "auto")
 
 
 def _extended(
-    contact: TransientContact, start: str, step_halvings: int, keep_every: int, automatic: bool
+    contact: MovingContact, start: str, step_halvings: int, keep_every: int, automatic: bool
 ) -> TransientLineContact:
     """March, on a longer grid where the film turns out to reach over the end of this one."""
     for _ in range(_EXTENSIONS if automatic else 0):
         contact.check_roughness()
-        result, late = _march(contact, start, step_halvings, keep_every)
+        result, late = _follow(contact, start, step_halvings, keep_every)
         if late < _LATE_LOAD:
             return result
         # A film that is squeezed out reaches further than a steady one.
         contact = replace(contact, domain=(contact.domain[0], 1.5 * contact.domain[1]))
     contact.check_roughness()
-    result, late = _march(contact, start, step_halvings, keep_every)
+    result, late = _follow(contact, start, step_halvings, keep_every)
     if late >= _LATE_LOAD:
         warn(
             "transient-outlet",
@@ -213,11 +212,11 @@ def _require_options(
             )
 
 
-def _march(
-    contact: TransientContact, start: str, step_halvings: int, keep_every: int
+def _follow(
+    contact: MovingContact, start: str, step_halvings: int, keep_every: int
 ) -> tuple[TransientLineContact, float]:
     """Result, and the greatest share of the load near the last node."""
-    from tribodyn.ehl._kernel.transient import RECORD, march_contact
+    from tribodyn.ehl._kernel.transient import RECORD, follow_contact
 
     inputs = contact.inputs
     imposed = inputs.approach is None
@@ -226,11 +225,10 @@ def _march(
     records = np.zeros((m, RECORD))
     kept = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, np.int64)
     pressures, films = np.zeros((2, kept.size, n + 1))
-    status, instant = march_contact(
-        n, contact.domain[0], contact.dx, 1.0 if imposed else contact.depth,
-        contact.numbers.lam, contact.numbers.oil, contact.limits, imposed, contact.flooded, 1.25,
-        contact.time, contact.table(), contact.rough(), step_halvings, keep_every, state.P,
-        state.H, state.numbers, records, pressures, films,
+    status, instant, _ = follow_contact(
+        contact.kernel_contact(imposed, 1.0 if imposed else contact.depth), 1.25, contact.time,
+        contact.table(), step_halvings, keep_every, state.P, state.H, state.instant, records,
+        pressures, films,
     )  # fmt: skip
     if status != 0:
         raise _failure(contact, status, instant, step_halvings)
@@ -239,7 +237,7 @@ def _march(
 
 
 def _failure(
-    contact: TransientContact, status: int, instant: int, step_halvings: int
+    contact: MovingContact, status: int, instant: int, step_halvings: int
 ) -> ComputationError:
     inputs = contact.inputs
     given = (
@@ -262,7 +260,7 @@ def _failure(
 
 
 def _result(
-    contact: TransientContact, records: Array, kept: Index, pressures: Array, films: Array
+    contact: MovingContact, records: Array, kept: Index, pressures: Array, films: Array
 ) -> TransientLineContact:
     inputs, scale = contact.inputs, contact.scale
     offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = (
