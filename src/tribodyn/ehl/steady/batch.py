@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -15,15 +12,12 @@ from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
+from tribodyn.parallel import run_blocks
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
-
-
-#: Contacts handed to the threads ahead of the one that is collected.
-_AHEAD = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,14 +146,11 @@ def solve_line_contacts(
     >>> (films.central_film * 1e6).round(2)
     array([1.14, 1.02])
     """
+    options = SolverOptions.among(locals())
     require_positive("length", length, "m")
     shape, columns = _broadcast(load_per_width, equivalent_radius, entrainment_speed)
-    options = SolverOptions(
-        nodes=nodes, method=method, domain=domain, inlet=inlet, tolerance=tolerance,
-        flux_tolerance=flux_tolerance, film_tolerance=film_tolerance,
-    )  # fmt: skip
 
-    def one(index: int) -> tuple[list[float], LineContactSolution | None]:
+    def solve(index: int) -> tuple[list[float], LineContactSolution | None]:
         load, radius, speed = (float(column[index]) for column in columns)
         try:
             case = si_case(
@@ -176,7 +167,7 @@ def solve_line_contacts(
     size = columns[0].size
     table, solutions = np.empty((8, size)), np.empty(size, dtype=object)
     progress.start("Solving oil films", size)
-    for index, (row, solution) in enumerate(_in_threads(one, size, threads)):
+    for index, (row, solution) in enumerate(run_blocks(solve, range(size), threads)):
         table[:, index], solutions[index] = row, solution
         progress.advance()
     progress.finish()
@@ -259,27 +250,3 @@ def _at(problem: Problem, index: int, shape: tuple[int, ...], columns: list[Arra
         why=problem.why,
         remedy=problem.remedy,
     )
-
-
-def _in_threads(one: Any, size: int, threads: int | None) -> Iterator[Any]:
-    """Results in order; an interrupt or an error leaves no work behind."""
-    threads = min(threads or os.cpu_count() or 1, size)
-    if threads <= 1:
-        for index in range(size):
-            yield one(index)
-        return
-    pool = ThreadPoolExecutor(threads)
-    waiting: dict[int, Future[Any]] = {}
-    try:
-        submitted = 0
-        for index in range(size):
-            while submitted < size and submitted < index + _AHEAD:
-                waiting[submitted] = pool.submit(one, submitted)
-                submitted += 1
-            future = waiting.pop(index)
-            while not future.done():
-                # A wait with an end lets Ctrl-C through on every system.
-                wait([future], timeout=0.2, return_when=FIRST_COMPLETED)
-            yield future.result()
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +40,12 @@ class SolverOptions:
     levels: int | None = None  #: number of grids
     start: LineContactSolution | None = None  #: solution to start from
     profile: Profile | None = None  #: heights that are added to the gap
+
+    @classmethod
+    def among(cls, arguments: Mapping[str, Any]) -> SolverOptions:
+        """Options among the arguments of a function, by their names."""
+        names = {each.name for each in fields(cls)}
+        return cls(**{name: value for name, value in arguments.items() if name in names})
 
 
 def solve_line_contact(
@@ -132,10 +138,7 @@ def solve_line_contact(
     >>> round(contact.central_film * 1e6, 3), round(contact.hertz_pressure * 1e-9, 4)
     (1.024, 0.8043)
     """
-    options = SolverOptions(
-        nodes, method, domain, inlet, tolerance, flux_tolerance, film_tolerance, levels, start,
-        profile,
-    )  # fmt: skip
+    options = SolverOptions.among(locals())
     case = si_case(
         load_per_width, equivalent_radius, entrainment_speed, lubricant, effective_modulus,
         viscosity_law, compressible,
@@ -222,10 +225,7 @@ def solve_line_contact_moes(
     >>> round(contact.central_film, 5), round(contact.central_film_extrapolated, 4)
     (0.08492, 0.0852)
     """
-    options = SolverOptions(
-        nodes, method, domain, inlet, tolerance, flux_tolerance, film_tolerance, levels, start,
-        profile,
-    )  # fmt: skip
+    options = SolverOptions.among(locals())
     case = moes_case(
         M, L, pressure_viscosity_index, pressure_viscosity_coefficient, viscosity_law, compressible
     )

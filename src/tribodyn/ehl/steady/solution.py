@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,16 +14,15 @@ from tribodyn.ehl.steady.grid import Domain, regime_name
 from tribodyn.ehl.steady.rescue import Solved
 from tribodyn.ehl.stiffness.film_stiffness import film_stiffness
 from tribodyn.ehl.stiffness.frequency import frequency_response
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
-
     from tribodyn.lubricant import Lubricant
 
 
-@dataclass(frozen=True, eq=False)
-class LineContactSolution:
+@record
+class LineContactSolution(Record):
     """Pressure and film of a lubricated line contact, steady and isothermal.
 
     A contact given by the numbers of Moes has the position in half widths b, pressures in Hertz
@@ -97,38 +95,38 @@ class LineContactSolution:
         Whether the density rises with pressure.
     """
 
-    position: Array = field(repr=False)
-    pressure: Array = field(repr=False)
-    film: Array = field(repr=False)
-    central_film: float
-    minimum_film: float
-    hertz_pressure: float
-    half_width: float
-    outlet: float
-    spike_pressure: float | None
-    spike_position: float | None
-    flux_error: float
-    load_error: float
-    cavity_residual: float
-    iterations: int
-    nodes: int
+    position: Array = quantity("position", unit="m", axis=True)
+    pressure: Array = quantity("position", unit="Pa")
+    film: Array = quantity("position", unit="m")
+    central_film: float = fact()
+    minimum_film: float = fact()
+    hertz_pressure: float = fact()
+    half_width: float = fact()
+    outlet: float = fact()
+    spike_pressure: float | None = fact()
+    spike_position: float | None = fact()
+    flux_error: float = fact()
+    load_error: float = fact()
+    cavity_residual: float = fact()
+    iterations: int = fact()
+    nodes: int = fact()
     domain: tuple[float, float]
-    inlet: str
-    method: str
-    regime: str
-    central_film_error: float | None
-    central_film_extrapolated: float | None
+    inlet: str = fact()
+    method: str = fact()
+    regime: str = fact()
+    central_film_error: float | None = fact()
+    central_film_extrapolated: float | None = fact()
     attempts: tuple[str, ...]
-    moes_load: float
-    moes_viscosity: float
-    load_per_width: float
-    equivalent_radius: float
-    entrainment_speed: float
-    effective_modulus: float
-    lubricant: Lubricant | None = field(repr=False)
-    viscosity_law: str
+    moes_load: float = fact()
+    moes_viscosity: float = fact()
+    load_per_width: float = fact()
+    equivalent_radius: float = fact()
+    entrainment_speed: float = fact()
+    effective_modulus: float = fact()
+    lubricant: Lubricant | None
+    viscosity_law: str = fact()
     compressible: bool
-    _grid: DiscreteContact = field(repr=False)
+    _grid: DiscreteContact
 
     @property
     def film_unit(self) -> float:
@@ -193,32 +191,25 @@ class LineContactSolution:
         """
         return frequency_response(self, frequencies, length)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set.
+    def _units(self, unit: str | None) -> dict[str, str]:
+        """Units; none for a contact given by the numbers of Moes."""
+        return {"units": ""} if self.lubricant is None else super()._units(unit)
 
-        Returns
-        -------
-        xarray.Dataset
-            Dimension ``position``; scalars are attributes.
-        """
-        import xarray
+    def _parts(self) -> Parts:
+        """Pressure and film with viscosity and density, and the facts that are known."""
+        parts = super()._parts()
+        for name in ("viscosity", "density"):
+            parts.variables[name] = ("position", getattr(self, name), {"units": ""})
+        known = {name: value for name, value in parts.attributes.items() if value is not None}
+        return parts._replace(attributes=known)
 
-        names = {"pressure": "Pa", "film": "m", "viscosity": "", "density": ""}
-        plain = self.lubricant is None
-        variables = {
-            name: ("position", getattr(self, name), {"units": "" if plain else unit})
-            for name, unit in names.items()
-        }
-        attributes = {
-            name: value
-            for name, value in vars(self).items()
-            if isinstance(value, str | int | float) and not isinstance(value, bool)
-        }
-        position = ("position", self.position, {"units": "" if plain else "m"})
-        return xarray.Dataset(variables, coords={"position": position}, attrs=attributes)
-
-    def plot(self) -> Any:
+    def plot(self, **options: Any) -> Any:
         """Draw pressure and film over the position.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
 
         Returns
         -------
@@ -227,7 +218,7 @@ class LineContactSolution:
         # The one step upward of the layers: a result draws itself.
         from tribodyn.plot.line_contact import line_contact
 
-        return line_contact(self)
+        return line_contact(self, **options)
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""

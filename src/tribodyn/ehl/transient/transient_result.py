@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
-if TYPE_CHECKING:
-    import xarray
 
-
-@dataclass(frozen=True, eq=False)
-class TransientLineContact:
+@record
+class TransientLineContact(Record):
     """Film and load of a lubricated line contact over time, isothermal.
 
     Parameters
@@ -68,83 +65,48 @@ class TransientLineContact:
         ``"flooded"`` or ``"zero"``.
     """
 
-    time: Array = field(repr=False)
-    central_film: Array = field(repr=False)
-    minimum_film: Array = field(repr=False)
-    load_per_width: Array = field(repr=False)
-    approach: Array = field(repr=False)
-    maximum_pressure: Array = field(repr=False)
-    outlet: Array = field(repr=False)
-    equivalent_radius: Array = field(repr=False)
-    entrainment_speed: Array = field(repr=False)
-    position: Array = field(repr=False)
-    kept: Index = field(repr=False)
-    pressure: Array = field(repr=False)
-    film: Array = field(repr=False)
-    iterations: Index = field(repr=False)
-    parts: Index = field(repr=False)
-    balance_error: Array = field(repr=False)
-    ruptured: Array = field(repr=False)
-    half_width: float
-    hertz_pressure: float
+    time: Array = quantity("time", unit="s", axis=True)
+    central_film: Array = quantity("time", unit="m")
+    minimum_film: Array = quantity("time", unit="m")
+    load_per_width: Array = quantity("time", unit="N/m")
+    approach: Array = quantity("time", unit="m")
+    maximum_pressure: Array = quantity("time", unit="Pa")
+    outlet: Array = quantity("time", unit="m")
+    equivalent_radius: Array = quantity("time", unit="m")
+    entrainment_speed: Array = quantity("time", unit="m/s")
+    position: Array = quantity("position", unit="m", axis=True)
+    kept: Index
+    pressure: Array = quantity("kept_time", "position", unit="Pa")
+    film: Array = quantity("kept_time", "position", unit="m")
+    iterations: Index = quantity("time", unit="1")
+    parts: Index = quantity("time", unit="1")
+    balance_error: Array = quantity("time", unit="1")
+    ruptured: Array = quantity("time", unit="m")
+    half_width: float = fact()
+    hertz_pressure: float = fact()
     domain: tuple[float, float]
-    reference_length: float
-    impose: str
-    inlet: str
+    reference_length: float = fact()
+    impose: str = fact()
+    inlet: str = fact()
 
     @property
     def kept_time(self) -> Array:
         """Instants whose pressure and film are kept [s]."""
         return np.asarray(self.time[self.kept])
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the series as an :class:`xarray.Dataset` with units.
+    def _parts(self) -> Parts:
+        """Series over time, with the instants whose pressure and film are kept."""
+        parts = super()._parts()
+        parts.coordinates["kept_time"] = ("kept_time", self.kept_time, {"units": "s"})
+        return parts
 
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``time``, ``kept_time`` and ``position``.
-        """
-        import xarray
-
-        series = {
-            "central_film": "m",
-            "minimum_film": "m",
-            "load_per_width": "N/m",
-            "approach": "m",
-            "maximum_pressure": "Pa",
-            "outlet": "m",
-            "equivalent_radius": "m",
-            "entrainment_speed": "m/s",
-            "iterations": "1",
-            "parts": "1",
-            "balance_error": "1",
-            "ruptured": "m",
-        }
-        fields = {"pressure": "Pa", "film": "m"}
-        data: dict[str, Any] = {
-            name: ("time", getattr(self, name), {"units": unit}) for name, unit in series.items()
-        }
-        data |= {
-            name: (("kept_time", "position"), getattr(self, name), {"units": unit})
-            for name, unit in fields.items()
-        }
-        coords = {
-            "time": ("time", self.time, {"units": "s"}),
-            "kept_time": ("kept_time", self.kept_time, {"units": "s"}),
-            "position": ("position", self.position, {"units": "m"}),
-        }
-        attributes = {
-            "half_width": self.half_width,
-            "hertz_pressure": self.hertz_pressure,
-            "reference_length": self.reference_length,
-            "impose": self.impose,
-            "inlet": self.inlet,
-        }
-        return xarray.Dataset(data, coords, attributes)
-
-    def plot(self) -> Any:
+    def plot(self, **options: Any) -> Any:
         """Draw films and load over time.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
 
         Returns
         -------
@@ -153,7 +115,7 @@ class TransientLineContact:
         # The one step upward of the layers: a result draws itself.
         from tribodyn.plot.film_dynamics import film_transient
 
-        return film_transient(self)
+        return film_transient(self, **options)
 
     def __repr__(self) -> str:
         """One line with the figures that tell series apart."""
