@@ -1,4 +1,4 @@
-"""Which of the four regimes a line contact lies in, after the survey diagram of Moes."""
+"""Asymptotes of the film in the survey diagram of Moes (1965), over his numbers M and L."""
 
 from __future__ import annotations
 
@@ -14,113 +14,27 @@ _RIGID_SHARE = 1.0 / 1.5
 
 
 def rigid_isoviscous(load: Array) -> Array:
-    """Film where neither the bodies yield nor the oil thickens.
-
-    Parameters
-    ----------
-    load : array
-        Load number M of Moes.
-
-    Returns
-    -------
-    array
-        ``H_Moes = 3/M``. Source: Moes (1965), after Martin and Guembel.
-
-    Examples
-    --------
-    >>> float(rigid_isoviscous(np.array(0.1)))
-    30.0
-    """
+    """Film ``H_Moes = 3/M``: neither the bodies yield nor the oil thickens (Martin, Guembel)."""
     return np.asarray(3.0 / load)
 
 
 def elastic_isoviscous(load: Array) -> Array:
-    """Film where the bodies yield and the oil does not thicken.
-
-    Parameters
-    ----------
-    load : array
-        Load number M of Moes.
-
-    Returns
-    -------
-    array
-        ``H_Moes = 2.621 M^(-1/5)``, 5 % above the numerical asymptote. Source: Moes (1965),
-        after Herrebrugh.
-
-    Examples
-    --------
-    >>> float(elastic_isoviscous(np.array(1.0)))
-    2.621
-    """
+    """Film ``2.621 M^(-1/5)``: the bodies yield (Herrebrugh); 5 % above its exact asymptote."""
     return np.asarray(2.621 * load**-0.2)
 
 
 def rigid_piezoviscous(material: Array) -> Array:
-    """Film where the oil thickens and the bodies do not yield.
-
-    Parameters
-    ----------
-    material : array
-        Material number L of Moes.
-
-    Returns
-    -------
-    array
-        ``H_Moes = 1.287 L^(2/3)``. Source: Moes (1965), after Blok.
-
-    Examples
-    --------
-    >>> round(float(rigid_piezoviscous(np.array(8.0))), 3)
-    5.148
-    """
+    """Film ``1.287 L^(2/3)``: the oil thickens (Blok)."""
     return np.asarray(1.287 * material ** (2.0 / 3.0))
 
 
 def elastic_piezoviscous(load: Array, material: Array) -> Array:
-    """Film where the bodies yield and the oil thickens: the regime of gears.
-
-    Parameters
-    ----------
-    load, material : array
-        Load number M and material number L of Moes.
-
-    Returns
-    -------
-    array
-        ``H_Moes = 1.311 M^(-1/8) L^(3/4)``. Source: Moes (1965), after Grubin.
-
-    Examples
-    --------
-    >>> float(elastic_piezoviscous(np.array(1.0), np.array(16.0)))
-    10.488
-    """
+    """Film ``1.311 M^(-1/8) L^(3/4)``: both, the regime of gears (Grubin)."""
     return np.asarray(1.311 * load**-0.125 * material**0.75)
 
 
 def warn_outside_elastic_piezoviscous(groups: Groups, formula: str) -> None:
-    """Warn once if a formula of the elastic-piezoviscous regime is used clearly outside of it.
-
-    Parameters
-    ----------
-    groups : Groups
-        Groups of the contacts.
-    formula : str
-        Name of the formula, for the message.
-
-    Warns
-    -----
-    ModelWarning
-        Code ``film-range``: where an isoviscous asymptote gives the greater film, or the rigid
-        one less than two thirds of the elastic one.
-
-    Source: survey diagram of Moes (1965).
-
-    Examples
-    --------
-    >>> groups = Groups(np.array(1e-11), np.array(5000.0), np.array(1e-4), np.array(0.01))
-    >>> warn_outside_elastic_piezoviscous(groups, "dowson-1968")
-    """
+    """Warn once (``film-range``) where the survey diagram puts the contact clearly elsewhere."""
     load, material = groups.moes_load, groups.moes_material
     elastic = elastic_piezoviscous(load, material)
     rigid = rigid_piezoviscous(material)

@@ -42,28 +42,7 @@ def moes_numbers(
     lubricant: Lubricant,
     effective_modulus: float,
 ) -> tuple[float, float]:
-    """Numbers M and L of Moes of a contact in SI.
-
-    Parameters
-    ----------
-    load_per_width : float [N/m]
-        Normal load per face width.
-    equivalent_radius : float [m]
-        Reduced radius of curvature.
-    entrainment_speed : float [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        Oil at the temperature of the inlet.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-
-    Returns
-    -------
-    tuple of float
-        ``M = w/(E'R) (2U)^(-1/2)`` and ``L = alpha E' (2U)^(1/4)`` with ``U = eta0 u_e/(E'R)``.
-
-    Source: Moes (1965).
-    """
+    """Numbers ``M = w/(E'R) (2U)^(-1/2)``, ``L = alpha E' (2U)^(1/4)`` of Moes (1965), from SI."""
     stiffness = effective_modulus * equivalent_radius
     speed = lubricant.dynamic_viscosity * entrainment_speed / stiffness
     load = load_per_width / stiffness / math.sqrt(2.0 * speed)
@@ -80,34 +59,7 @@ def contact_scales(
     viscosity_law: str,
     compressible: bool,
 ) -> ContactScales:
-    """Numbers of the equations from those of Moes.
-
-    Parameters
-    ----------
-    M, L : float
-        Numbers of Moes.
-    hertz_pressure : float [Pa]
-        Maximum pressure of the dry contact.
-    pressure_viscosity_coefficient : float [1/Pa]
-        Slope of ln(viscosity) over pressure at ambient pressure.
-    pressure_viscosity_index : float
-        Index z of Roelands.
-    viscosity_law : str
-        Name in :data:`LAWS`.
-    compressible : bool
-        Whether the density rises with pressure.
-
-    Returns
-    -------
-    ContactScales
-
-    Raises
-    ------
-    InputError
-        If the law is unknown.
-
-    Source: Roelands (1966); Dowson and Higginson (1966).
-    """
+    """Numbers of the equations from those of Moes; oil of Roelands, Dowson and Higginson (1966)."""
     if viscosity_law not in LAWS:
         raise InputError(
             Problem(

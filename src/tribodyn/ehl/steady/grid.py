@@ -49,20 +49,7 @@ def _asymptotes(M: float, L: float) -> dict[str, float]:
 
 
 def regime_name(M: float, L: float) -> str:
-    """Regime whose asymptote gives the film.
-
-    Parameters
-    ----------
-    M, L : float
-        Numbers of Moes.
-
-    Returns
-    -------
-    str
-        ``"elastic-piezoviscous"`` and so on.
-
-    Source: survey diagram of Moes (1965).
-    """
+    """Regime of the survey diagram of Moes (1965) whose asymptote gives the film."""
     film = _asymptotes(M, L)
     thin = max("rigid-isoviscous", "elastic-isoviscous", key=film.__getitem__)
     thick = min("rigid-piezoviscous", "elastic-piezoviscous", key=film.__getitem__)
@@ -70,22 +57,7 @@ def regime_name(M: float, L: float) -> str:
 
 
 def estimate_film(M: float, L: float, density_ratio: float) -> float:
-    """Central film ``H = h R/b^2`` by the formula of Moes, for domain and start.
-
-    Parameters
-    ----------
-    M, L : float
-        Numbers of Moes; L may be zero.
-    density_ratio : float
-        Density at the Hertz pressure over that at ambient pressure.
-
-    Returns
-    -------
-    float
-        Pure.
-
-    Source: Moes (1965, 2000).
-    """
+    """Central film ``H = h R/b^2`` by the formula of Moes, for domain and start; L may be zero."""
     rigid, elastic, thick_rigid, thick_elastic = _asymptotes(M, L).values()
     s = (7.0 + 8.0 * math.exp(-2.0 * elastic / rigid)) / 5.0
     film = (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 / 7)

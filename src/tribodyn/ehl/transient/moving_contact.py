@@ -199,27 +199,7 @@ class ReferenceScale:
 def reference_scale(
     time: Array, load: Array, radius: Array, entrainment_speed: Array, effective_modulus: float
 ) -> ReferenceScale:
-    """Scale of the widest dry contact of a series.
-
-    Parameters
-    ----------
-    time : (m,) array [s]
-        Instants.
-    load : (m,) array [N/m]
-        Load per width.
-    radius : (m,) array [m]
-        Reduced radius of curvature.
-    entrainment_speed : (m,) array [m/s]
-        HALF the sum of the surface speeds.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-
-    Returns
-    -------
-    ReferenceScale
-
-    Source: Hertz (1881) for the line contact.
-    """
+    """Scale of the widest dry contact of a series, after Hertz (1881)."""
     width = np.sqrt(8.0 * load * radius / (np.pi * effective_modulus))
     instant = int(np.argmax(width))
     b = float(width[instant])
