@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,12 +16,18 @@ from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
-from tribodyn.parallel import run_blocks
+from tribodyn.interrupt import Threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
+
+
+#: Contacts handed to the threads ahead of the one that is collected.
+_AHEAD = 64
+
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +177,7 @@ def solve_line_contacts(
     size = columns[0].size
     table, solutions = np.empty((8, size)), np.empty(size, dtype=object)
     progress.start("Solving oil films", size)
-    for index, (row, solution) in enumerate(run_blocks(solve, range(size), threads)):
+    for index, (row, solution) in enumerate(_in_order(solve, size, threads)):
         table[:, index], solutions[index] = row, solution
         progress.advance()
     progress.finish()
@@ -250,3 +260,22 @@ def _at(problem: Problem, index: int, shape: tuple[int, ...], columns: list[Arra
         why=problem.why,
         remedy=problem.remedy,
     )
+
+
+def _in_order(work: Callable[[int], Value], size: int, threads: int | None) -> Iterator[Value]:
+    """Results in order as they come; an interrupt or an error leaves no work behind."""
+    count = min(threads or os.cpu_count() or 1, size)
+    if count <= 1:
+        yield from map(work, range(size))
+        return
+    with Threads(count) as pool:
+        waiting: deque[Future[Value]] = deque()
+        for index in range(size + _AHEAD):
+            if index < size:
+                waiting.append(pool.submit(work, index))
+            if index >= _AHEAD and waiting:
+                future = waiting.popleft()
+                while not future.done():
+                    # A wait with an end lets Ctrl-C through on every system.
+                    wait([future], timeout=0.2)
+                yield future.result()
