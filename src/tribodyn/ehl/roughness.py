@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_positive, warn
+from tribodyn.errors import InputError, Problem, require_one_of, require_positive, warn
 from tribodyn.types import Array
 
 #: What lies beyond the ends of a profile.
@@ -58,14 +58,7 @@ class RoughnessProfile:
         height = np.array(self.height, dtype=float).reshape(-1)
         object.__setattr__(self, "position", position)
         object.__setattr__(self, "height", height)
-        if self.beyond not in BEYOND:
-            raise InputError(
-                Problem(
-                    what=f'beyond = "{self.beyond}"',
-                    where="argument beyond",
-                    why=f"Known: {', '.join(BEYOND)}",
-                )
-            )
+        require_one_of("beyond", self.beyond, BEYOND)
         if height.size < 8 or position.size != height.size:
             raise InputError(
                 Problem(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, Problem, require_between, require_one_of, require_positive
 from tribodyn.lubricant.roelands import ROELANDS_PRESSURE
 from tribodyn.types import Array
 
@@ -60,14 +60,7 @@ def contact_scales(
     compressible: bool,
 ) -> ContactScales:
     """Numbers of the equations from those of Moes; oil of Roelands, Dowson and Higginson (1966)."""
-    if viscosity_law not in LAWS:
-        raise InputError(
-            Problem(
-                what=f'viscosity_law = "{viscosity_law}"',
-                where="argument viscosity_law",
-                why=f"Known: {', '.join(LAWS)}",
-            )
-        )
+    require_one_of("viscosity_law", viscosity_law, LAWS)
     if L == 0.0:
         viscosity_law = "isoviscous"
     oil = np.zeros(6)

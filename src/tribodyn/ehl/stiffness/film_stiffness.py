@@ -9,7 +9,13 @@ import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import SolvedContact
 from tribodyn.ehl.steady.grid import estimate_film
-from tribodyn.errors import ComputationError, InputError, Problem, require_positive, warn
+from tribodyn.errors import (
+    ComputationError,
+    Problem,
+    require_one_of,
+    require_positive,
+    warn,
+)
 
 #: Change of ln(w) for the slope of the estimated film.
 _STEP = 1e-4
@@ -137,12 +143,5 @@ KINDS = {"tangent": tangent_stiffness, "secant": secant_stiffness, "seed": seed_
 
 def film_stiffness(solution: SolvedContact, length: float, kind: str) -> float:
     """Stiffness of one kind over the length of the contact line."""
-    if kind not in KINDS:
-        raise InputError(
-            Problem(
-                what=f'kind = "{kind}"',
-                where="argument kind",
-                why=f"Known: {', '.join(KINDS)}",
-            )
-        )
+    require_one_of("kind", kind, KINDS)
     return float(KINDS[kind](solution, length))

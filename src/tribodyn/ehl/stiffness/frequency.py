@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, SolvedContact
 from tribodyn.ehl.stiffness.film_stiffness import InletChange, central_film_slope, inlet_change
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import require_between, require_one_of, require_positive
 from tribodyn.types import Array, ComplexArray
 
 #: Intervals of the grid of the linearized equations.
@@ -55,14 +55,7 @@ def film_compliance(
     values = np.asarray(frequencies, dtype=float)
     require_between("frequencies", values, 0.0, 1e12, "Hz")
     require_positive("length", length, "m")
-    if deflection not in ("approach", "central"):
-        raise InputError(
-            Problem(
-                what=f'deflection = "{deflection}"',
-                where="argument deflection",
-                why="Known: approach, central",
-            )
-        )
+    require_one_of("deflection", deflection, ("approach", "central"))
     unit, rate = _units(solution, length)
     linear = _linearize(_on_coarse_grid(solution), inlet_change(solution))
     central, offset = linear.answer(0.0, None)

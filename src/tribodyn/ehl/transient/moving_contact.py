@@ -18,7 +18,7 @@ from tribodyn.ehl.formulas.lubrication_regimes import (
 )
 from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
 from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
-from tribodyn.errors import ComputationError, InputError, Problem, require_positive
+from tribodyn.errors import ComputationError, InputError, Problem, require_one_of, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 
@@ -119,14 +119,7 @@ def _require_speed(speed: Array) -> None:
 
 
 def _require_impose(impose: str, approach: Series | None) -> None:
-    if impose not in ("load", "approach"):
-        raise InputError(
-            Problem(
-                what=f'impose = "{impose}"',
-                where="argument impose",
-                why="Known: load, approach",
-            )
-        )
+    require_one_of("impose", impose, ("load", "approach"))
     if (impose == "approach") != (approach is not None):
         raise InputError(
             Problem(

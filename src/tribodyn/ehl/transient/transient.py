@@ -20,9 +20,9 @@ from tribodyn.ehl.transient.moving_contact import (
 from tribodyn.ehl.transient.transient_result import TransientLineContact
 from tribodyn.errors import (
     ComputationError,
-    InputError,
     Problem,
     require_between,
+    require_one_of,
     require_positive,
     warn,
 )
@@ -198,18 +198,8 @@ def _require_options(
     require_between("nodes", nodes, 65, 16385, remedy="257 to 513 nodes suit a mesh cycle")
     require_between("tolerance", tolerance, 1e-13, 1e-3)
     require_between("keep_every", keep_every, 0, 1e9)
-    for name, value, known in (
-        ("start", start, ("steady", "unloaded")),
-        ("inlet", inlet, ("flooded", "zero")),
-    ):
-        if value not in known:
-            raise InputError(
-                Problem(
-                    what=f'{name} = "{value}"',
-                    where=f"argument {name}",
-                    why=f"Known: {', '.join(known)}",
-                )
-            )
+    require_one_of("start", start, ("steady", "unloaded"))
+    require_one_of("inlet", inlet, ("flooded", "zero"))
 
 
 def _follow(
