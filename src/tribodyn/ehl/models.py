@@ -220,11 +220,7 @@ FILM_MODELS: Registry[FilmModel] = Registry("film model", "tribodyn.film")
 
 for _model in (
     FilmModel("none", "no film is computed"),
-    FilmModel(
-        "newton",
-        "solved line contact: multilevel Newton-Krylov",
-        method="newton",
-    ),
+    FilmModel("newton", "solved line contact: multilevel Newton-Krylov", method="newton"),
     FilmModel(
         "multigrid",
         "solved line contact: full multigrid after Venner and Lubrecht",

@@ -18,13 +18,7 @@ from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.ehl._kernel.factors import lu_factor, lu_solve
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.newton import CONVERGED, GAP, SINGULAR
-from tribodyn.ehl._kernel.reynolds import (
-    Fields,
-    fill_oil,
-    fill_tangent,
-    make_fields,
-    residual,
-)
+from tribodyn.ehl._kernel.reynolds import Fields, fill_oil, fill_tangent, make_fields, residual
 from tribodyn.types import Array, Index
 
 #: Intervals to which a change of the pressure bends the film within the sweep.

@@ -248,10 +248,7 @@ def _check_pressure(pressure: float, load: float, modulus: float, radius: float)
 
 def _check_numbers(M: float, L: float, where: str) -> None:
     require_between(
-        "M",
-        M,
-        *_LOADS,
-        remedy=f"The load number follows from {where}: check their units",
+        "M", M, *_LOADS, remedy=f"The load number follows from {where}: check their units"
     )
     require_between("L", L, 0.0, 1e4, remedy=f"The number follows from {where}: check the units")
 

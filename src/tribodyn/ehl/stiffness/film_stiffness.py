@@ -9,13 +9,7 @@ import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import SolvedContact
 from tribodyn.ehl.steady.grid import estimate_film
-from tribodyn.errors import (
-    ComputationError,
-    Problem,
-    require_one_of,
-    require_positive,
-    warn,
-)
+from tribodyn.errors import ComputationError, Problem, require_one_of, require_positive, warn
 
 #: Change of ln(w) for the slope of the estimated film.
 _STEP = 1e-4

@@ -71,10 +71,7 @@ def film_compliance(
 def _units(solution: SolvedContact, length: float) -> tuple[float, float]:
     """Deflection over load at a unit change of film over ln(w), and ``u_e/b``."""
     load = 0.5 * np.pi * solution.hertz_pressure * solution.half_width
-    return (
-        solution.film_unit / (load * length),
-        solution.entrainment_speed / solution.half_width,
-    )
+    return (solution.film_unit / (load * length), solution.entrainment_speed / solution.half_width)
 
 
 @dataclass(frozen=True)

@@ -187,12 +187,7 @@ def _extended(
 
 
 def _require_options(
-    effective_modulus: float,
-    start: str,
-    nodes: int,
-    inlet: str,
-    tolerance: float,
-    keep_every: int,
+    effective_modulus: float, start: str, nodes: int, inlet: str, tolerance: float, keep_every: int
 ) -> None:
     require_positive("effective_modulus", effective_modulus, "Pa")
     require_between("nodes", nodes, 65, 16385, remedy="257 to 513 nodes suit a mesh cycle")
