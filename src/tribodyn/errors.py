@@ -23,6 +23,7 @@ __all__ = [
     "Problem",
     "TribodynError",
     "require_between",
+    "require_one_of",
     "require_positive",
     "warn",
 ]
@@ -271,3 +272,35 @@ def require_between(
         f"between {low:g} and {high:g} {unit}".rstrip(),
         remedy,
     )
+
+
+def require_one_of(name: str, value: Any, known: Iterable[str]) -> None:
+    """Raise :class:`InputError` unless a value is one of the known words.
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : object
+        What was given.
+    known : iterable of str
+        The words.
+
+    Raises
+    ------
+    InputError
+        If the value is none of them.
+
+    Examples
+    --------
+    >>> require_one_of("inlet", "flooded", ("flooded", "zero"))
+    """
+    words = list(known)
+    if value not in words:
+        raise InputError(
+            Problem(
+                what=f'{name} = "{value}"',
+                where=f"argument {name}",
+                why=f"Known: {', '.join(words)}",
+            )
+        )
