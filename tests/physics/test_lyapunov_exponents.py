@@ -16,7 +16,7 @@ from tribodyn.analysis.lyapunov import _Carrier
 from tribodyn.analysis.lyapunov_products import grouped_products
 from tribodyn.analysis.lyapunov_tangent import TangentTables
 from tribodyn.dynamics import Contact, System, simulate
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.blocks import compile_for, march
 from tribodyn.errors import ComputationError, InputError
 
 TURN = 2.0 * np.pi

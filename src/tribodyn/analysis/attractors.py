@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from tribodyn.analysis.settling import still_settles
+from tribodyn.dynamics._engine.blocks import Compiled, march
 from tribodyn.dynamics.coordinates import orbit_coordinates
-from tribodyn.dynamics.lane_parameters import LaneParameters
-from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError
 from tribodyn.progress import SILENT, Progress

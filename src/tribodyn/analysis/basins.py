@@ -12,10 +12,10 @@ from tribodyn.analysis.basins_attractors import Attractor, Catalogue, Found, mul
 from tribodyn.analysis.basins_result import Basins
 from tribodyn.analysis.bifurcation import signal_name
 from tribodyn.analysis.verdict import step_verdict
-from tribodyn.dynamics.march import Compiled, compile_for
-from tribodyn.dynamics.simulate import read_start
+from tribodyn.dynamics._engine.blocks import Compiled, compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask

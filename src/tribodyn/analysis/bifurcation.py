@@ -14,9 +14,9 @@ from tribodyn.analysis.bifurcation_result import Bifurcation
 from tribodyn.analysis.bifurcation_values import Plan, Row, Values
 from tribodyn.analysis.lyapunov import lyapunov_exponents
 from tribodyn.analysis.verdict import step_verdict
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.step_limit import LIMIT
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.step_limit import LIMIT
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index

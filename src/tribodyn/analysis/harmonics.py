@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.dynamics.response import FineSamples, Response
+from tribodyn.dynamics.time.response import FineSamples, Response
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array, ComplexArray
 

@@ -8,7 +8,7 @@ damage that one direction alone does not give.
 from __future__ import annotations
 
 from tribodyn.analysis.indicators import alternating_rms
-from tribodyn.dynamics.response import FineSamples
+from tribodyn.dynamics.time.response import FineSamples
 from tribodyn.types import Array
 
 

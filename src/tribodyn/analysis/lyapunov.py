@@ -19,10 +19,10 @@ from tribodyn.analysis.lyapunov_floquet import floquet_growth, repeats_after
 from tribodyn.analysis.lyapunov_products import grouped_products, safe_length
 from tribodyn.analysis.lyapunov_tangent import TangentTables, contact_sides
 from tribodyn.analysis.verdict import exponent_verdict
-from tribodyn.dynamics.march import compile_for, march
-from tribodyn.dynamics.simulate import read_start
+from tribodyn.dynamics._engine.blocks import compile_for, march
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array

@@ -13,10 +13,10 @@ import math
 
 import numpy as np
 
+from tribodyn.dynamics._engine.blocks import Compiled
 from tribodyn.dynamics.coordinates import orbit_coordinates
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.load_friction import push_with_friction
-from tribodyn.dynamics.march import Compiled
-from tribodyn.dynamics.program import Nodes
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array, Index, Mask
 

@@ -12,9 +12,9 @@ from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.bifurcation_statistics import measure
 from tribodyn.analysis.bifurcation_values import compile_unchecked
 from tribodyn.analysis.verdict import step_verdict
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
-from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Index, Mask

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.analysis.poincare import poincare
-from tribodyn.dynamics.response import Response
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.response import Response
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

@@ -14,11 +14,11 @@ from tribodyn.analysis.poincare_march import (
     march_section,
     repeat_period,
 )
-from tribodyn.dynamics.march import compile_for
-from tribodyn.dynamics.response import Response
-from tribodyn.dynamics.simulate import read_start
+from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.response import Response
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.analysis.verdict import Verdict, step_verdict
+from tribodyn.dynamics._engine.blocks import Compiled, compile_for, march
 from tribodyn.dynamics.coordinates import orbit_coordinates
-from tribodyn.dynamics.march import Compiled, compile_for, march
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.natural_modes import natural_modes
 from tribodyn.dynamics.natural_modes_linear import ModePhase
-from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.types import Array
 

@@ -17,12 +17,12 @@ from tribodyn.dynamics.continuation_corrector import BranchPoint, StalledError, 
 from tribodyn.dynamics.continuation_map import Family, ParameterMap
 from tribodyn.dynamics.continuation_path import Stepping, follow, hold, with_values
 from tribodyn.dynamics.continuation_points import Located, locate, tests_of_multipliers
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.orbit_search import find_orbit
-from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.steady_state import TOLERANCE
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array

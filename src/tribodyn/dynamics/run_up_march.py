@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tribodyn.dynamics._engine.blocks import Compiled
 from tribodyn.dynamics.coordinates import OrbitCoordinates, orbit_coordinates
-from tribodyn.dynamics.ensemble import _fresh_moments
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbit_map import _balance_direction
-from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.time.ensemble import _fresh_moments
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.types import Array
 
@@ -125,7 +125,7 @@ class CycleMarcher:
         self, program: Program, period: float, change: float, state: Array, record: Array
     ) -> tuple[Array, Array, Array]:
         """March one cycle."""
-        from tribodyn.dynamics.marching import march_block
+        from tribodyn.dynamics._engine.marching import march_block
 
         load = self.inertia * change
         extra = self.torque + load

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.load_friction import friction_force
 from tribodyn.dynamics.run_up_tables import Table
-from tribodyn.dynamics.system import System
 from tribodyn.types import Array
 
 

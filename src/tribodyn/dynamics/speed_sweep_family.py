@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribodyn.dynamics._engine.blocks import Compiled, march
 from tribodyn.dynamics.coordinates import orbit_coordinates
-from tribodyn.dynamics.ensemble import _fresh_moments
-from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbit_map import OrbitMap
-from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
 from tribodyn.dynamics.start import static_start
+from tribodyn.dynamics.time.ensemble import _fresh_moments
 from tribodyn.types import Array, Index
 
 #: Disturbance of the matrix of a map with dead zones relative to the motion.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.load_friction import carried_load, friction_secant, push_with_friction
-from tribodyn.dynamics.march import Compiled
-from tribodyn.dynamics.program import Nodes
 from tribodyn.types import Array, Mask
 
 #: Rounds in which the ramps of a force law open and close; each round goes down the law.

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, System, solve_adaptive
-from tribodyn.dynamics.dormand_prince import march_adaptive
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.adaptive_engine import march_adaptive
+from tribodyn.dynamics._engine.blocks import compile_for, march
 from tribodyn.errors import ComputationError
 
 GRID, FINER = 64, 1024

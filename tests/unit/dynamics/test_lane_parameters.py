@@ -12,7 +12,7 @@ from tribodyn.dynamics import (
     simulate,
     simulate_ensemble,
 )
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.blocks import compile_for, march
 from tribodyn.errors import InputError
 
 NAMES = ("stiffness", "damping", "friction", "error", "gap", "force")

@@ -1,0 +1,1 @@
+"""The compiled engines: private, reached through `tribodyn.dynamics.time`."""

@@ -1,0 +1,1 @@
+"""Motion over time: single trajectories, ensembles, what is read off them."""
