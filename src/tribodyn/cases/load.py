@@ -37,6 +37,7 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     >>> load_case("fzg-roughness").operation.torque
     90.0
     """
+    from tribodyn.cases.copies import with_known_reasons
     from tribodyn.study.read import read_case, read_text
 
     named = case_files()
@@ -48,7 +49,9 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
         raise InputError(Problem("this is a directory, not a case file", asked, "", remedy))
     if not path.exists():
         raise InputError(_not_found(asked, path, list(named)))
-    return read_case(read_text(path), path.name if asked in named else asked)
+    if asked in named:
+        return read_case(read_text(path), path.name)
+    return with_known_reasons(read_case(read_text(path), asked))
 
 
 def _not_found(asked: str, path: Path, names: list[str]) -> Problem:

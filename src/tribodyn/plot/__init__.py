@@ -5,6 +5,7 @@ Figures are looked up by name in :data:`FIGURES`. Plotly is loaded when the firs
 
 from __future__ import annotations
 
+from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.acceleration import acceleration
 from tribodyn.plot.basins import basins
 from tribodyn.plot.bearing_force import bearing_force
@@ -39,7 +40,6 @@ from tribodyn.plot.parameter_map import parameter_map
 from tribodyn.plot.path_of_contact import path_of_contact
 from tribodyn.plot.phase_portrait import phase_portrait
 from tribodyn.plot.poincare import poincare
-from tribodyn.plot.registry import FIGURES, Drawing, drawing
 from tribodyn.plot.run_up import run_up
 from tribodyn.plot.run_up_map import run_up_map
 from tribodyn.plot.spectrogram import spectrogram

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import parameter_axis, scaled, unit_of
 from tribodyn.plot.style import PAIR_COLORS, PINION, WHEEL, figure
 
@@ -67,7 +67,7 @@ def _component(found: Any, number: int, name: str) -> Any:
     caption="Every start of the plane has the colour of the motion that it comes to; crosses "
     "are the states of these motions at the mesh phase 0. Where colours mix finely, the motion "
     "cannot be foretold from the start.",
-    missing=_missing,
+    needs=_missing,
 )
 def basins(found: Any) -> Any:
     """Draw the plane of starts.

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.both_gears import motion_panels, no_translation
 from tribodyn.plot.labels import rounded
 from tribodyn.plot.motion import Motion
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import stack
 
 
@@ -26,7 +26,7 @@ def _caption(result: Any) -> str:
     "bearing_force",
     heading="Bearing forces",
     caption=_caption,
-    missing=no_translation,
+    needs=no_translation,
 )
 def bearing_force(result: Any) -> Any:
     """Draw the forces of both gears on their bearings.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.both_gears import harmonic_panels, no_translation
 from tribodyn.plot.harmonics import harmonic_layout, no_harmonics, strongest
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import stack
 
 
@@ -20,7 +20,7 @@ def _missing(result: Any) -> str:
     heading="Spectra of the bearing forces",
     caption="What the bearings pass on to the housing, by mesh harmonic. A harmonic that meets a "
     "natural frequency of the housing is the one that is heard.",
-    missing=_missing,
+    needs=_missing,
 )
 def bearing_spectrum(result: Any) -> Any:
     """Draw the mesh harmonics of the bearing forces.

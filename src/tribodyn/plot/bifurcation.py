@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.labels import axis_label, displayed, readable
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PINION, WHEEL, Panel, line, stack
 from tribodyn.units import convert
 
@@ -133,7 +133,7 @@ def _title(found: Any, parameter: Any, label: str) -> str:
     "point means that the motion repeats with the mesh, two that it repeats every second cycle, a "
     "cloud that it does not repeat. Where the sweep upwards and the sweep downwards differ, two "
     "motions are possible. Grey points vanish with a shorter step: they are not physics.",
-    missing=_missing,
+    needs=_missing,
 )
 def bifurcation(found: Any) -> Any:
     """Draw the section, the rms and, if it is there, the largest exponent over the parameter.

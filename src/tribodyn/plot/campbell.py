@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, WHEEL, Panel, line, stack
 
 #: Widths of the curve of a mode without and with all of its strain in the mesh [px].
@@ -92,7 +92,7 @@ def _met(diagram: Any) -> list[dict[str, Any]]:
     caption="Natural frequencies across, mesh harmonics rising with speed. Where two lines cross "
     "the mesh can drive a resonance; the thicker the line of a mode and the larger the dot, the "
     "more of the strain sits in the mesh.",
-    missing=_missing,
+    needs=_missing,
 )
 def campbell(diagram: Any) -> Any:
     """Draw natural frequencies and mesh harmonics over speed.

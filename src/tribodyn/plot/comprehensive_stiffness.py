@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import pair_letters, roll_label
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
 from tribodyn.plot.torques import torque_colors, torque_texts
 
@@ -78,7 +78,7 @@ def _caption(study: Any) -> str:
     "comprehensive_stiffness",
     heading="Stiffness of teeth and film",
     caption=_caption,
-    missing=_missing,
+    needs=_missing,
 )
 def comprehensive_stiffness(study: Any) -> Any:
     """Draw the stiffness of film, teeth and both in series over the roll angle.

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.labels import axis_label, displayed, rounded, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 from tribodyn.types import Array, Mask
@@ -97,7 +97,7 @@ def _title(branch: Any) -> str:
     caption="How strong the periodic motion is over the parameter. Dashed parts exist but are "
     "left at the slightest disturbance. Where the branch turns back, the motion jumps. Below: the "
     "largest Floquet multiplier, by which a disturbance grows in one period.",
-    missing=_missing,
+    needs=_missing,
 )
 def continuation(branch: Any) -> Any:
     """Draw rms and largest multiplier of a branch over its parameter.

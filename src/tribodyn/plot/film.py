@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
     driving_roll_angle,
     pair_life,
@@ -14,7 +15,6 @@ from tribodyn.plot.cycle import (
 )
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 
 #: Column of the mesh table, name in the legend, and colour.
@@ -62,7 +62,7 @@ def _ratio(mesh: Any, angle: Any) -> list[Panel]:
     heading="Oil film",
     caption="Thickness of the oil film between the flanks, and its ratio to the composite "
     "roughness. Where the ratio comes near one, the highest asperities touch.",
-    missing=no_film,
+    needs=no_film,
 )
 def film(result: Any) -> Any:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear.

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
     driving_roll_angle,
     pair_life,
@@ -15,7 +16,6 @@ from tribodyn.plot.cycle import (
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.film import no_film
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
@@ -39,9 +39,7 @@ def _no_pressure(result: Any) -> str:
     )
 
 
-@drawing(
-    "film_pressure", heading="Pressure in the oil film", caption=_caption, missing=_no_pressure
-)
+@drawing("film_pressure", heading="Pressure in the oil film", caption=_caption, needs=_no_pressure)
 def film_pressure(result: Any) -> Any:
     """Draw the greatest film pressure of one tooth pair over the roll angle.
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
     driving_roll_angle,
     pair_life,
@@ -15,7 +16,6 @@ from tribodyn.plot.cycle import (
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.film import no_film
 from tribodyn.plot.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
 #: Kinds of film stiffness that are in series with the teeth.
@@ -49,7 +49,7 @@ def _no_stiffness(result: Any) -> str:
 
 
 @drawing(
-    "film_stiffness", heading="Stiffness of the oil film", caption=_caption, missing=_no_stiffness
+    "film_stiffness", heading="Stiffness of the oil film", caption=_caption, needs=_no_stiffness
 )
 def film_stiffness(result: Any) -> Any:
     """Draw the stiffness of film, teeth and pair over the roll angle.

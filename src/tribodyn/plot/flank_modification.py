@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.gear import (
     default_relief_length,
     flank_gap,
@@ -16,7 +17,6 @@ from tribodyn.gear import (
 )
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import PINION, TOTAL, WHEEL, Panel, line
 from tribodyn.types import Array
@@ -138,7 +138,7 @@ def _run_out(pair: Any) -> Row:
     caption="How far the flanks stand apart where perfect involutes would touch: material is "
     "missing where the curves are above zero. The profile is drawn at the middle of the face, the "
     "face in the middle of the profile against its own middle.",
-    missing=_missing,
+    needs=_missing,
 )
 def flank_modification(result: Any) -> Any:
     """Draw the modifications and deviations of both flanks.

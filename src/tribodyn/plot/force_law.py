@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import positions
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 
 _COLORS = (TOTAL, *PAIR_COLORS)

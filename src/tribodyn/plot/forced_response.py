@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
 
@@ -26,7 +26,7 @@ def _missing(result: Any) -> str:
     caption="Amplitudes over the frequency of the error. Slow errors turn the gears and press "
     "little; fast ones leave the inertias at rest and are taken up by the teeth; between "
     "them stand the natural modes of the mesh.",
-    missing=_missing,
+    needs=_missing,
 )
 def forced_response(response: Any) -> Any:
     """Draw amplitudes of mesh force, deflection and transmission error over frequency.

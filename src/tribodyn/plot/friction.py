@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import (
     driving_roll_angle,
     pair_life,
@@ -14,7 +15,6 @@ from tribodyn.plot.cycle import (
 )
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.sharing import load_sharing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, WHEEL, Panel, line, stack
 
@@ -37,7 +37,7 @@ def _frictionless(result: Any) -> str:
     )
 
 
-@drawing("friction", heading="Friction", caption=_caption, missing=_frictionless)
+@drawing("friction", heading="Friction", caption=_caption, needs=_frictionless)
 def friction(result: Any) -> Any:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle.
 

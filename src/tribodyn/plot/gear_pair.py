@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import path_of_contact
+from tribodyn.drawing import drawing
 from tribodyn.plot.gear_drawing import (
     circle,
     on_line_of_action,
@@ -15,7 +16,6 @@ from tribodyn.plot.gear_drawing import (
     tooth_angles,
 )
 from tribodyn.plot.labels import axis_label, displayed
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.sharing import further_changes, load_sharing
 from tribodyn.plot.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, figure
 from tribodyn.types import Array

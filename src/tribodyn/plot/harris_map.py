@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import mesh_marks, whole_cycles
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line
 from tribodyn.plot.torques import named, torque_colors, torque_names
@@ -87,7 +87,7 @@ def _swings(study: Any) -> Row:
     caption="Above, the transmission error of the mesh at rest under rising torque; below, how far "
     "it swings and how much of that falls on each mesh harmonic. Modified flanks are quietest at "
     "the torque for which they were made.",
-    missing=_missing,
+    needs=_missing,
 )
 def harris_map(study: Any) -> Any:
     """Draw the transmission error for each torque, and its swing and harmonics over the torque.

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import pair_life, positions
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import corner_shades, pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import TOTAL, Panel, line, stack
 from tribodyn.types import Array
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import (
@@ -19,7 +20,6 @@ from tribodyn.plot.loaded_life import (
     span,
     whole_cycles,
 )
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
 from tribodyn.plot.torques import named, torque_colors, torque_names
 from tribodyn.types import Array
@@ -127,7 +127,7 @@ def _shares_over_cycles(contact: Any) -> list[dict[str, Any]]:
     "of action; what varies in it excites the vibration. The tangent of the stiffness counts for "
     "small vibration about the load, the secant for the whole deflection. A pair that carries "
     "before A or after E does so on a tip corner.",
-    missing=needs_loaded_contact,
+    needs=needs_loaded_contact,
 )
 def loaded_contact(contact: Any) -> Any:
     """Draw transmission error, stiffness and load sharing of a loaded tooth contact.

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import (
@@ -17,7 +18,6 @@ from tribodyn.plot.loaded_life import (
     roll_label,
     span,
 )
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import Panel, line, stack
 from tribodyn.plot.torques import named, torque_colors, torque_names
 from tribodyn.types import Array, Mask
@@ -71,7 +71,7 @@ def _traces(contact: Any, life: Life, seen: Mask) -> list[dict[str, Any]]:
     return traces
 
 
-@drawing("loaded_sharing", heading="Load sharing", caption=_caption, missing=needs_loaded_contact)
+@drawing("loaded_sharing", heading="Load sharing", caption=_caption, needs=needs_loaded_contact)
 def loaded_sharing(contact: Any) -> Any:
     """Draw the force on one tooth pair from where it begins to carry to where it ends.
 

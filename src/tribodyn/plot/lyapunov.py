@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.plot.registry import drawing
+from tribodyn.drawing import drawing
 from tribodyn.plot.style import FILLS, MUTED, PAIR_COLORS, PINION, WHEEL, Panel, line, stack
 
 #: Exponents that are drawn at most; the largest decides.
@@ -41,7 +41,7 @@ def _title(found: Any) -> str:
     caption="Mean growth of a small disturbance up to each mesh cycle. The band is the standard "
     "error of a mean over so many cycles, the dotted line the result. A largest exponent that "
     "stays above zero means chaos.",
-    missing=_missing,
+    needs=_missing,
 )
 def lyapunov(found: Any) -> Any:
     """Draw the running means of the largest exponents.

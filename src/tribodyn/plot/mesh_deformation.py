@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.deformed_mesh import BentMesh, bent_mesh
 from tribodyn.plot.gear_drawing import on_line_of_action
 from tribodyn.plot.labels import axis_label, displayed, rounded, significant
 from tribodyn.plot.loaded_life import needs_loaded_contact, several_cycles
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import FILLS, INK, MUTED, PINION, WHEEL, figure
 from tribodyn.plot.torques import torque_names
 from tribodyn.types import ComplexArray
@@ -181,7 +181,7 @@ def _chosen(contact: Any, phase: float | None) -> list[int]:
     caption="Teeth in mesh, bent by their loads: grey without load, coloured with the deformation "
     "exaggerated. The arrows are the forces on the driven gear. The bores keep their places, and "
     "the driving gear turns until the flanks touch.",
-    missing=needs_loaded_contact,
+    needs=needs_loaded_contact,
 )
 def mesh_deformation(contact: Any, *, phase: float | None = None, torque: int = -1) -> Any:
     """Draw the teeth in mesh with their deformation exaggerated, and their loads.

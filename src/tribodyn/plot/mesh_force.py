@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.labels import axis_label, display_unit, rounded
 from tribodyn.plot.motion import Motion
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
 from tribodyn.study import record
 

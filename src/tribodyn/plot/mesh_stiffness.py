@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import CYCLES, cycles, mesh_events, pair_lives
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import PAIR_COLORS, TOTAL, Panel, line, stack
 
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import display_unit, displayed, rounded, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Panel, stack
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS, MUTED, TOTAL)
@@ -48,7 +48,7 @@ def _bars(labels: list[str], shares: dict[str, Any]) -> list[dict[str, Any]]:
     heading="Natural modes",
     caption="One bar for each natural frequency. Above, which body moves; below, which spring "
     "is strained. A mode with much of its strain in the mesh answers to transmission errors.",
-    missing=_missing,
+    needs=_missing,
 )
 def mode_shapes(modes: Any) -> Any:
     """Draw the energy shares of all elastic modes.

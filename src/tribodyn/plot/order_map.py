@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, display_unit, displayed, readable, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.spectrogram import MAP_HEIGHT, amplitude_heatmap, amplitude_label, with_unit
 from tribodyn.plot.style import PINION, TOTAL, WHEEL, Panel, line, stack
 from tribodyn.types import Array
@@ -58,7 +58,7 @@ def _axis(result: Any) -> tuple[Array, str, str]:
     caption="What turns with the shaft is a level line; its order counts the cycles in one "
     "revolution. Where a level line darkens, that order meets a natural frequency. Below, the "
     "strongest orders over the speed.",
-    missing=_missing,
+    needs=_missing,
 )
 def order_map(result: Any) -> Any:
     """Draw amplitudes over orders and speed, and cuts at the strongest orders.

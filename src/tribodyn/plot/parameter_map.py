@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.plot.registry import drawing
+from tribodyn.drawing import drawing
 from tribodyn.plot.scaled import parameter_axis, scaled, unit_of
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import PAIR_COLORS, PINION, WHEEL, Panel
@@ -94,7 +94,7 @@ def _title(found: Any) -> str:
     caption="After how many mesh cycles the motion repeats, how much the mesh vibrates and how "
     "long the teeth are apart, over two parameters. Each motion starts by itself: where several "
     "exist, another start may show another one.",
-    missing=_missing,
+    needs=_missing,
 )
 def parameter_map(found: Any) -> Any:
     """Draw period, rms and contact loss.

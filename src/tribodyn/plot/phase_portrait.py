@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.plot.registry import drawing
+from tribodyn.drawing import drawing
 from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import MUTED, PINION, WHEEL, figure
 
@@ -26,7 +26,7 @@ def _missing(result: Any) -> str:
     caption="Velocity over position of one coordinate, or of the compression of a contact. A "
     "motion that repeats is a closed curve; the dots are its states at the mesh phase 0. Dashed "
     "lines are the ends of the backlash.",
-    missing=_missing,
+    needs=_missing,
 )
 def phase_portrait(portrait: Any) -> Any:
     """Draw the curve and its points at the mesh phase 0.

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.errors import InputError, Problem
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.scaled import scaled, unit_of
 from tribodyn.plot.style import PINION, TOTAL, figure
 
@@ -41,7 +41,7 @@ def _window(values: Any, motion: float) -> list[float]:
     caption="The state once per mesh cycle, at the mesh phase 0. A motion that repeats shows as "
     "many points as it takes mesh cycles to do so, a quasi-periodic one a closed curve, a chaotic "
     "one a cloud with inner structure.",
-    missing=_missing,
+    needs=_missing,
 )
 def poincare(section: Any, coordinate: int | str = 0) -> Any:
     """Draw the points of one coordinate in its phase plane.

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, displayed, readable, rounded, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Panel, line, stack
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
@@ -111,7 +111,7 @@ def _title(run: Any, levels: list[Any], found: Sequence[Any], unit: str, factor:
     caption="Overall level and orders of the mesh over the speed. Solid on the way up, dotted on "
     "the way down; where the two differ, the motion jumps or the speed changes too quickly for a "
     "resonance to build up. Circles mark peaks of an order and the natural mode that it meets.",
-    missing=_missing,
+    needs=_missing,
 )
 def run_up(
     run: Any, *, signal: str = "contact_force", orders: Sequence[float] | None = None

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, displayed, readable, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.run_up import _missing, _parts, signal_words
 from tribodyn.plot.spectrogram import amplitude_heatmap
 from tribodyn.plot.style import MUTED, WHEEL, Panel, line, stack
@@ -97,7 +97,7 @@ def _on_one_scale(surfaces: list[tuple[float, dict[str, Any]]]) -> None:
     caption="Which frequencies are there at what speed. Rising lines are orders of the mesh, "
     "level lines natural modes that strain the mesh; where they cross, an order resonates. What "
     "lies between the orders rings after a jump or never repeats.",
-    missing=_missing,
+    needs=_missing,
 )
 def run_up_map(
     run: Any, *, signal: str = "contact_force", highest_frequency: float | None = None

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, readable, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import GRID, INK, MUTED, TOTAL, Panel, line, stack
 from tribodyn.types import Array
 
@@ -81,7 +81,7 @@ def _missing(result: Any) -> str:
     heading="Spectrogram",
     caption="Which frequencies are there at what time. Lines that rise with the speed are orders "
     "of a shaft; level ones are natural frequencies. Below, the rms over time.",
-    missing=_missing,
+    needs=_missing,
 )
 def spectrogram(result: Any) -> Any:
     """Draw amplitudes over time and frequency, and the rms over time.

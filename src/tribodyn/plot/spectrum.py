@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.both_gears import harmonic_panels
 from tribodyn.plot.harmonics import harmonic_layout, harmonic_panel, no_harmonics, strongest
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import TOTAL, stack
 
 
@@ -17,7 +17,7 @@ from tribodyn.plot.style import TOTAL, stack
     caption="How strong each mesh harmonic is. Harmonic 1 is the mesh frequency, the teeth that "
     "pass in a second. A high bar at a higher harmonic tells of a natural frequency near it. The "
     "buttons switch to a logarithmic scale, on which small harmonics show.",
-    missing=no_harmonics,
+    needs=no_harmonics,
 )
 def spectrum(result: Any) -> Any:
     """Draw the mesh harmonics of the transmission error and of the accelerations.

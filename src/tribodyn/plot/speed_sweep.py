@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, displayed, readable, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, WHEEL, Panel, line, stack
 
 _COLORS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
@@ -77,7 +77,7 @@ def _title(sweep: Any) -> str:
     caption="How strong the steady motion is when the speed goes up slowly, and when it comes "
     "down. Where the two differ, two motions are possible and the one before decides; arrows are "
     "jumps. Crosses are motions that are not stable or do not repeat.",
-    missing=_missing,
+    needs=_missing,
 )
 def speed_sweep(sweep: Any, *, signal: str | None = None) -> Any:
     """Draw rms, range and loss of contact over the speed.

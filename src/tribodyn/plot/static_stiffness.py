@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import pair_life
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
 from tribodyn.types import Array
 

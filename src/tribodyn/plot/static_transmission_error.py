@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.cycle import CYCLES, cycles, mesh_events
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line
 

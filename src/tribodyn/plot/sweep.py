@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import readable
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, WHEEL, Panel, figure, line, stack
 from tribodyn.study.summary_names import SUMMARY
 from tribodyn.units import convert
@@ -118,7 +118,7 @@ def _map(found: Any, values: Any, label: str, unit: str, title: str) -> Any:
     caption="One figure of the summary over the values that were varied. Peaks are resonances; a "
     "step means that the motion jumped. A cross or an empty place is a value that could not be "
     "computed, and the reason stands in the table.",
-    missing=_missing,
+    needs=_missing,
 )
 def sweep(found: Any, figure: str = "rms_mesh_force") -> Any:
     """Draw a figure of the summary over the keys that vary.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.loaded_life import mesh_marks, whole_cycles
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.separate import Row, separate
 from tribodyn.plot.style import INK, MUTED, TOTAL, WHEEL, Panel, line
 from tribodyn.plot.torques import torque_colors, torque_names
@@ -122,7 +122,7 @@ def _caption(study: Any) -> str:
     return words
 
 
-@drawing("tip_relief_map", heading="Search for a tip relief", caption=_caption, missing=_missing)
+@drawing("tip_relief_map", heading="Search for a tip relief", caption=_caption, needs=_missing)
 def tip_relief_map(study: Any) -> Any:
     """Draw the objective over amount and length, and the transmission error before and after.
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot import signals
 from tribodyn.plot.cycle import cycles
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.motion import Motion, is_periodic
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
 
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.labels import axis_label, readable, rounded, significant
-from tribodyn.plot.registry import drawing
 from tribodyn.plot.spectrogram import with_unit
 from tribodyn.plot.style import INK, MUTED, WHEEL, Panel, line, stack
 
@@ -29,7 +29,7 @@ def _missing(result: Any) -> str:
     heading="Waterfall",
     caption="One spectrum behind the other, from the first at the bottom to the last at the top; "
     "all on one scale. The one with the highest peak is drawn in colour.",
-    missing=_missing,
+    needs=_missing,
 )
 def waterfall(result: Any) -> Any:
     """Draw the spectra of an order map or a spectrogram one behind the other.

@@ -167,7 +167,7 @@ def _write(path: Path, case: Any, *, varied: Sequence[str], **parts: Any) -> Pat
         title=case.title,
         version=version(),
         operating_point=[chip for chip in operating_point(case) if chip[0] not in gone],
-        assumptions=assumptions(case),
+        assumptions=[row for row in assumptions(case) if row.key not in varied],
         provenance=provenance(None),
         case_text=case.to_toml(),
         figures=Markup("{\n" + drawn + "\n}"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field, PrivateAttr, ValidationError
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.study import derive
 from tribodyn.study.checks import cross_problems
 from tribodyn.study.faults import translate
@@ -16,8 +16,10 @@ from tribodyn.study.fields import text
 from tribodyn.study.gears import Gears
 from tribodyn.study.given import Given, plain
 from tribodyn.study.options import left_behind
+from tribodyn.study.provenance import effective, provenance
 from tribodyn.study.section import Section
 from tribodyn.study.source import Source
+from tribodyn.study.stated import Stated, read_stated, settled, tables, without_records
 from tribodyn.study.structure import Dynamics, Friction, Solver, Stiffness
 from tribodyn.study.surroundings import Film, LubricantData, MaterialData, Operation
 from tribodyn.study.values import Plain
@@ -78,20 +80,24 @@ class Case(Section):
 
     _given: Given = PrivateAttr()
     _source: Source = PrivateAttr()
+    _stated: Stated = PrivateAttr()
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         given = Given(data if source is not None else plain(data))
         source = source or Source()
-        found: list[tuple[str, Problem]] = []
+        stated, found = read_stated(type(self), given)
         try:
-            super().__init__(**given.data)
+            super().__init__(**without_records(given.data))
         except ValidationError as error:
-            found = translate(type(self), error)
+            found += translate(type(self), error)
         found += cross_problems(given, {key for key, _ in found})
         found += derive.gear_problems(given) if found else derive.case_problems(self)
         if found:
             raise InputError(source.place(found))
-        self._given = given
+        self._stated, stale = settled(self, effective(self), given, stated)
+        for key in stale:
+            del self.assumed[key]
+        self._given = Given({**given.data, **tables(self._stated, self.assumed)})
         self._source = source
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Case:
@@ -101,7 +107,8 @@ class Case(Section):
         ----------
         changes : mapping
             Dotted key to value: a float in SI, text with a unit, a pint quantity, or None to go
-            back to the default. A changed value is no longer marked as assumed.
+            back to the default. A changed value is no longer marked as assumed, and the origin of
+            the case no longer stands for it.
         by : str
             What made the change, for messages, for example ``"--set"``; then a bare number for
             a dimension is refused as in a file.
@@ -197,6 +204,11 @@ class Case(Section):
         """Where the values came from."""
         return self._source
 
+    @property
+    def stated(self) -> Stated:
+        """What the values were that the reasons and the origin of the case belong to."""
+        return self._stated
+
     def values(self) -> Iterator[tuple[str, Any]]:
         """Walk over all values of the case.
 
@@ -221,16 +233,12 @@ class Case(Section):
 
     def __eq__(self, other: object) -> bool:
         """Cases are equal when all values and what is known of their origin are."""
-        from tribodyn.study.provenance import effective, provenance
-
         if not isinstance(other, Case):
             return NotImplemented
         return effective(self) == effective(other) and provenance(self) == provenance(other)
 
     def __hash__(self) -> int:
         """Hash of all values in force."""
-        from tribodyn.study.provenance import effective
-
         return hash(tuple(effective(self).items()))
 
     def __repr__(self) -> str:

@@ -11,11 +11,13 @@ import numpy as np
 from tribodyn.errors import ModelWarning
 from tribodyn.study.collect import collected
 from tribodyn.study.derive import gear_warnings
+from tribodyn.study.foundations import body
+from tribodyn.study.provenance import changed_keys, effective
 from tribodyn.study.record import compression, first_touch, is_steady, measured, mesh_force
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
-    from tribodyn.gear import SpurGear
+    from tribodyn.gear import MassProperties, SpurGear
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case import Case
 
@@ -26,6 +28,8 @@ _STEEL = 3e9
 _RIM = 1.0
 #: Ratio of a given mass or inertia to that of the solid, or the inverse, that is a slip.
 _UNLIKELY = 3.0
+#: What a gear weighs: key, unit shown, and how many of it make the SI unit.
+_INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
 
 def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
@@ -33,7 +37,7 @@ def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
     pair = case.gear_pair
     found = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        found += [*_rim(case, name, gear), *_mass(case, name, gear)]
+        found += [*_rim(case, name, gear), *_mass(case, name, gear), *_other_gear(case, name, gear)]
     return (*found, *_starved(case))
 
 
@@ -48,8 +52,6 @@ def _starved(case: Case) -> Iterator[ModelWarning]:
 
 
 def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
-    from tribodyn.study.provenance import effective
-
     rim = gear.root_radius - 0.5 * gear.bore_diameter
     if (
         effective(case)["stiffness.reference"] == "bore"
@@ -64,14 +66,35 @@ def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
         )
 
 
-def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
-    """Compare given inertias with those of the solid: a wrong unit is far off."""
+def _solid(case: Case, gear: SpurGear) -> MassProperties:
     from tribodyn.gear import mass_properties
 
     with collected():  # What is odd about the shape has been said.
         bare = replace(gear, mass=None, moment_of_inertia=None)
-    solid = mass_properties(bare, case.material.density)
-    for key, unit, factor in (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6)):
+    return mass_properties(bare, case.material.density)
+
+
+def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+    """A mass that stayed what it was while the shape of its gear has changed."""
+    changed, base = changed_keys(case), case.stated.base
+    shape = [key for key in changed if key in body(name)]
+    for key, unit, factor in _INERTIAS:
+        full, given = f"gears.{name}.{key}", getattr(gear, key)
+        if not shape or given is None or base.get(full) is None or full in changed:
+            continue
+        own = getattr(_solid(case, gear), key)
+        yield ModelWarning(
+            "mass-of-other-gear",
+            f"{name}: {key} = {given * factor:.4g} {unit} is that of the gear before "
+            f"{', '.join(shape)} changed; the solid gear now has {own * factor:.4g} {unit}. Give "
+            f"that of this gear, or leave {key} out for the solid one",
+        )
+
+
+def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+    """Compare given inertias with those of the solid: a wrong unit is far off."""
+    solid = _solid(case, gear)
+    for key, unit, factor in _INERTIAS:
         given, own = getattr(gear, key), getattr(solid, key)
         if given is not None and not 1.0 / _UNLIKELY <= given / own <= _UNLIKELY:
             yield ModelWarning(

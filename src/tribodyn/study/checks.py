@@ -25,6 +25,8 @@ _PROPERTIES = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient")
 #: Options of the friction of the film, and the properties that only they need.
 _HEAT = ("inlet_heating", "flash_temperature")
 _THERMAL = ("temperature_viscosity_coefficient", "thermal_conductivity")
+#: Tables about values of the other tables.
+_ABOUT = ("assumed", "based_on")
 _SAME = "They are two ways of saying the same thing"
 
 
@@ -174,8 +176,9 @@ def _assumed(given: Given, faulty: set[str]) -> Found:
     marks = given.value("assumed", {})
     for key, reason in marks.items() if isinstance(marks, Mapping) else ():
         absent = key not in given or isinstance(given.value(key), Mapping)
-        if absent and reason != DEFAULT_MARK:
-            known = [k for k in given.keys("") if not k.startswith("assumed.") and k not in faulty]
+        recorded = isinstance(reason, Mapping) and "value" in reason
+        if absent and reason != DEFAULT_MARK and not recorded:
+            known = [k for k in given.keys("") if k not in faulty and k.split(".")[0] not in _ABOUT]
             near = difflib.get_close_matches(key, known, n=1)
             why = "[assumed] marks values that this case gives"
             remedy = f'Did you mean "{near[0]}"?' if near else f"Give {key}, or remove the mark"

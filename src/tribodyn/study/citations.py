@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import tribodyn
 from tribodyn.errors import InputError, Problem
+from tribodyn.study.provenance import changed_keys
 
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
@@ -35,6 +36,10 @@ _BEHIND: dict[tuple[str, str], tuple[str, ...]] = {
     ("dynamics", "torsional"): ("kahraman-singh",),
     ("solver", "steady"): ("anderson",),
 }
+
+
+#: Changed values that a citation names.
+_NAMED = 12
 
 
 @lru_cache(maxsize=1)
@@ -77,10 +82,22 @@ def _data_sources(case: Case) -> dict[str, dict[str, Any]]:
     oil = case.lubricant_properties
     found = {}
     if case.origin:
-        found["case"] = {"type": "misc", "title": f"Values of the case: {case.origin}"}
+        found["case"] = _origin(case)
     if oil is not None and oil.source:
         found["oil"] = {"type": "misc", "title": f"Oil {oil.name}: {oil.source}"}
     return found
+
+
+def _origin(case: Case) -> dict[str, Any]:
+    """The document behind the values of a case, and the values that differ from its own."""
+    changed = changed_keys(case)
+    if not changed:
+        return {"type": "misc", "title": f"Values of the case: {case.origin}"}
+    named = ", ".join(changed[:_NAMED])
+    more = f" and {len(changed) - _NAMED} more" if len(changed) > _NAMED else ""
+    plural = "s" if len(changed) > 1 else ""
+    note = f"{len(changed)} value{plural} of the case differ{'' if plural else 's'}: {named}{more}"
+    return {"type": "misc", "title": f"Based on: {case.origin}", "note": note}
 
 
 def sources_of(section: str, name: str) -> list[str]:
@@ -115,10 +132,12 @@ def _text(entry: dict[str, Any]) -> str:
     pages = f", {entry['pages']}" if "pages" in entry else ""
     doi = f", doi:{entry['doi']}" if "doi" in entry else ""
     head = f"{authors}{year}: " if authors else ""
-    return f"{head}{entry['title'].rstrip('.')}." + (f" {home}{pages}{doi}." if home else "")
+    note = f" {entry['note']}." if "note" in entry else ""
+    return f"{head}{entry['title'].rstrip('.')}." + (f" {home}{pages}{doi}." if home else "") + note
 
 
 def _bibtex(key: str, entry: dict[str, Any]) -> str:
+    entry = {**entry, "note": entry["note"].replace("_", r"\_")} if "note" in entry else entry
     fields = [f"  {name} = {{{value}}}" for name, value in entry.items() if name != "type"]
     return f"@{entry['type']}{{{key},\n" + ",\n".join(fields) + "\n}"
 

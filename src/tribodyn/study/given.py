@@ -12,8 +12,22 @@ from tribodyn.study.values import Plain, written
 def plain(data: Any) -> Any:
     """Mark every value of nested mappings as coming from Python, where a bare float is SI."""
     if isinstance(data, Mapping):
-        return {key: value if key == "assumed" else plain(value) for key, value in data.items()}
+        return {
+            key: _marks(value) if key == "assumed" else plain(value) for key, value in data.items()
+        }
     return data if isinstance(data, Plain) else Plain(data)
+
+
+def _marks(table: Any) -> Any:
+    """Mark the values that reasons belong to; the reasons stay as they are."""
+    if not isinstance(table, Mapping):
+        return table
+    return {
+        key: {**mark, "value": plain(mark["value"])}
+        if isinstance(mark, Mapping) and "value" in mark
+        else mark
+        for key, mark in table.items()
+    }
 
 
 class Given:

@@ -9,8 +9,10 @@ from tribodyn.study.checks import DEFAULT_MARK
 from tribodyn.study.derived import BASIS, derived_values
 from tribodyn.study.faults import section_at
 from tribodyn.study.fields import Spec
+from tribodyn.study.foundations import foundations
 from tribodyn.study.options import model_options
 from tribodyn.study.rig import RIG
+from tribodyn.study.stated import same
 from tribodyn.study.tooth_contact import mesh_law_of
 
 if TYPE_CHECKING:
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 
 
 _TRANSIENT_CYCLES = 50
+#: Keys of a case that are words about it.
+_WORDS = ("title", "origin")
 
 
 @dataclass(frozen=True)
@@ -74,29 +78,56 @@ def effective(case: Case) -> dict[str, Any]:
     return values
 
 
-def _marked(case: Case, key: str, reason: str, value: Any) -> str:
-    """Origin of a value with a mark in ``[assumed]``."""
-    if reason != DEFAULT_MARK:
-        return f"assumed: {reason}"
+def default_of(case: Case, key: str) -> Any:
+    """Value of a key where a case like this one does not give it; None if it is derived."""
     *path, name = key.split(".")
     section = section_at(type(case), tuple(path))
-    standard = section.model_fields[name].default if section else None
+    field = section.model_fields.get(name) if section else None
+    standard = None if field is None or field.is_required() else field.default
     standard = _option_default(case, key) if standard is None else standard
-    if key == "solver.cycles" and standard is None:
-        standard = _TRANSIENT_CYCLES
-    if standard == value:
+    return _TRANSIENT_CYCLES if key == "solver.cycles" and standard is None else standard
+
+
+def changed_keys(case: Case) -> tuple[str, ...]:
+    """Keys whose values differ from those that the case began with."""
+    values, base = effective(case), case.stated.base
+    if any(values.get(key) is None for key in base):
+        derived = derived_values(case)
+        values = {k: derived.get(k) if v is None else v for k, v in values.items()}
+    new = {
+        key: default_of(case, key)
+        for key in values
+        if key in case.given and key not in base and case.assumed.get(key) != DEFAULT_MARK
+    }
+    before = {**new, **base}
+    return tuple(
+        key
+        for key in (*values, *(key for key in base if key not in values))
+        if key in before and key not in _WORDS and not same(before[key], values.get(key))
+    )
+
+
+def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:
+    """Origin of a value with a mark in ``[assumed]``."""
+    reason = case.assumed[key]
+    if reason != DEFAULT_MARK:
+        since = [other for other in changed if other in foundations(key)]
+        told = f"; stated before {', '.join(since)} changed" if since else ""
+        return f"assumed: {reason}{told}"
+    standard = default_of(case, key)
+    if same(standard, value):
         return DEFAULT_MARK
     spec = spec_of(case, key)
     now = spec.show(standard) if spec and standard is not None else "derived"
-    return f"assumed: marked as default in the file, while this version has {now}"
+    return f"assumed: marked as default in the file, while this version has {now} for this case"
 
 
 def provenance(case: Case) -> dict[str, str]:
     """Tell the origin of every value in force."""
-    origins = {}
+    origins, changed = {}, changed_keys(case)
     for key, value in effective(case).items():
         if key in case.assumed:
-            origins[key] = _marked(case, key, case.assumed[key], value)
+            origins[key] = _marked(case, key, value, changed)
         elif key in case.given:
             origins[key] = "given"
         elif value is not None or key.rpartition(".")[2] in BASIS:

@@ -74,11 +74,19 @@ normal_pressure_angle, driver, pinion, wheel.
 def _place_files(data: dict[str, Any], folder: Path) -> None:
     """Let the paths of a case begin at its own folder."""
     for gear in ("pinion", "wheel"):
-        table: Any = data
-        for key in ("gears", gear, "modification"):
-            table = table.get(key) if isinstance(table, dict) else None
+        table = _at(data, "gears", gear, "modification")
         if isinstance(table, dict) and isinstance(table.get("profile_map"), str):
             table["profile_map"] = str((folder / table["profile_map"]).absolute())
+        mark = _at(data, "assumed", f"gears.{gear}.modification.profile_map")
+        if isinstance(mark, dict) and isinstance(mark.get("value"), str):
+            mark["value"] = str((folder / mark["value"]).absolute())
+
+
+def _at(data: Any, *keys: str) -> Any:
+    """Item of nested tables, or None."""
+    for key in keys:
+        data = data.get(key) if isinstance(data, dict) else None
+    return data
 
 
 def _parse(text: str, name: str) -> dict[str, Any]:

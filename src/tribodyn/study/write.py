@@ -11,7 +11,7 @@ from tribodyn.study.checks import DEFAULT_MARK
 from tribodyn.study.derived import BASIS, derived_values
 from tribodyn.study.faults import section_at
 from tribodyn.study.fields import Spec
-from tribodyn.study.provenance import effective, provenance, spec_of
+from tribodyn.study.provenance import changed_keys, effective, provenance, spec_of
 
 if TYPE_CHECKING:
     from tribodyn.study.case import Case
@@ -63,7 +63,9 @@ def _unset_example(spec: Spec) -> str:
 def case_toml(case: Case) -> str:
     """Write the complete commented case file."""
     values, origins, derived = effective(case), provenance(case), derived_values(case)
-    lines, table = [], ""
+    changed = changed_keys(case)
+    lines: list[str] = []
+    table = ""
     for key, value in values.items():
         spec = spec_of(case, key)
         place, _, name = key.rpartition(".")
@@ -76,15 +78,58 @@ def case_toml(case: Case) -> str:
             section = section_at(type(case), tuple(place.split(".")))
             lines += ["", f"[{place}]  # {_table_meaning(case, place)}" if section else ""]
         lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key)))
+        if key == "origin" and value is not None and changed:
+            lines[-1] += f"; {len(changed)} of the values have changed since: see [based_on]"
     if case.lubricant is None:
         lines += ["", "# [lubricant] is not given: nothing in this case needs an oil"]
     marks = {key: case.assumed.get(key, DEFAULT_MARK) for key, origin in origins.items()
              if origin != "given" and values[key] is not None}  # fmt: skip
-    if marks:
-        lines += ["", "# Values above that the source of this case does not print, and defaults"]
-        lines += ["[assumed]"]
-        lines += [f'"{key}" = {json.dumps(why, ensure_ascii=False)}' for key, why in marks.items()]
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case)]) + "\n"
+
+
+def _assumed_lines(case: Case, marks: dict[str, str]) -> list[str]:
+    """Reasons, each with the value that it belongs to."""
+    if not marks:
+        return []
+    values, lines = effective(case), []
+    for key, reason in marks.items():
+        value = _recorded(case, key, values[key])
+        why = json.dumps(reason, ensure_ascii=False)
+        lines.append(f'"{key}" = {{ value = {value}, reason = {why} }}')
+    return [
+        "",
+        "# Values above that the source of this case does not print, and defaults. A reason holds",
+        "# for the value beside it: change the value above alone, and the reason falls away.",
+        "[assumed]",
+        *lines,
+    ]
+
+
+def _base_lines(case: Case) -> list[str]:
+    """Values of the document that the case began with; without a document there are none."""
+    base = case.stated.base
+    if base.get("origin") is None:
+        return []
+    lines = [
+        f"{_quoted(key)} = {_recorded(case, key, value)}"
+        for key, value in base.items()
+        if value is not None and key != "title"
+    ]
+    return [
+        "",
+        "# What this case began with: leave it as it is, and reports name the values changed since",
+        "[based_on]",
+        *lines,
+    ]
+
+
+def _quoted(key: str) -> str:
+    return f'"{key}"' if "." in key else key
+
+
+def _recorded(case: Case, key: str, value: Any) -> str:
+    spec = spec_of(case, key)
+    return json.dumps(value) if spec is None else _toml_value(spec, value)
 
 
 def _table_meaning(case: Case, place: str) -> str:

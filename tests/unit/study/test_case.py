@@ -126,7 +126,10 @@ def test_every_line_of_a_written_case_is_commented() -> None:
 def test_a_stale_default_is_told() -> None:
     text = read_case(SOUND, "pair.toml").to_toml()
     assert "mesh_damping_ratio = 0.04" in text
-    other = read_case(text.replace("mesh_damping_ratio = 0.04", "mesh_damping_ratio = 0.05"))
+    older = text.replace("mesh_damping_ratio = 0.04", "mesh_damping_ratio = 0.05").replace(
+        'mesh_damping_ratio" = { value = 0.04', 'mesh_damping_ratio" = { value = 0.05'
+    )
+    other = read_case(older)
     assert "while this version has 0.04" in provenance(other)["dynamics.mesh_damping_ratio"]
 
 

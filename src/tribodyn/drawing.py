@@ -1,0 +1,243 @@
+"""Figures by name and by the type of result that they draw.
+
+A figure is a function that takes a result and returns a plotly figure. It registers itself with
+:func:`drawing` and names the classes that it draws; a result that draws itself asks :func:`draw`.
+This module knows neither figures nor results: those of the package come from the entry-point
+group ``tribodyn.figures``, which names modules to import, those of others also from the group
+``tribodyn.plot``, which names single figures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+from typing import Any
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.registry import Registry
+
+#: Why a result lacks what a figure draws; empty if it has it.
+Lack = Callable[[Any], str]
+
+
+@dataclass(frozen=True)
+class Need:
+    """Something that a result must have before a figure of it can be drawn.
+
+    Parameters
+    ----------
+    attributes : str
+        Names of attributes, of which one that is not None is enough, separated by blanks.
+    reason : str
+        One sentence for a result that has none of them, with the remedy.
+    """
+
+    attributes: str
+    reason: str
+
+    def __call__(self, subject: Any) -> str:
+        """Return the reason where the need is not met."""
+        values = (getattr(subject, name, None) for name in self.attributes.split())
+        return "" if any(value is not None for value in values) else self.reason
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure function together with what a reader should know about it.
+
+    Parameters
+    ----------
+    name : str
+        Name in :data:`FIGURES`.
+    draw : callable
+        Takes what it draws, returns a plotly figure.
+    heading : str
+        Heading of the figure in a report.
+    caption : str or callable
+        What to look for, in plain language; a callable takes the result and says it.
+    of : tuple of str
+        Classes that it draws, by name: ``"Campbell"``, or ``"Result.mesh"`` for a part of one.
+    made_by : str
+        How to come by such a result, told to whoever draws it from another one.
+    needs : callable, optional
+        Says in one sentence why this result has no such figure; empty if it has.
+    """
+
+    name: str
+    draw: Callable[..., Any]
+    heading: str
+    caption: str | Callable[[Any], str]
+    of: tuple[str, ...] = ()
+    made_by: str = ""
+    needs: Lack | None = None
+
+    def subject(self, result: Any) -> Any:
+        """Return the result, or the part of it, that the figure draws; None if it draws another.
+
+        Parameters
+        ----------
+        result : object
+            Any result.
+
+        Returns
+        -------
+        object or None
+        """
+        kinds = {kind.__name__ for kind in type(result).__mro__}
+        for place in self.of:
+            name, _, path = place.partition(".")
+            if name not in kinds:
+                continue
+            part = result
+            for attribute in path.split(".") if path else ():
+                part = getattr(part, attribute, None)
+            if part is not None:
+                return part
+        return None if self.of else result
+
+    def missing(self, result: Any) -> str:
+        """Say in one sentence why a result has no such figure; empty if it has.
+
+        Parameters
+        ----------
+        result : object
+            Any result.
+
+        Returns
+        -------
+        str
+        """
+        subject = self.subject(result)
+        if subject is None:
+            kinds = " or ".join(dict.fromkeys(place.partition(".")[0] for place in self.of))
+            return f"This figure draws a {kinds}. {self.made_by}".strip()
+        return "" if self.needs is None else self.needs(subject)
+
+    def caption_of(self, result: Any) -> str:
+        """Tell what to look for in the figure of a result.
+
+        Parameters
+        ----------
+        result : object
+            Any result.
+
+        Returns
+        -------
+        str
+        """
+        return self.caption if isinstance(self.caption, str) else self.caption(result)
+
+    def __call__(self, result: Any, **options: Any) -> Any:
+        """Draw the figure of a result.
+
+        Parameters
+        ----------
+        result : object
+            One of the classes in ``of``.
+        **options
+            Of the figure function, where it has any.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+
+        Raises
+        ------
+        InputError
+            If the result has nothing to draw.
+        """
+        reason = self.missing(result)
+        if reason:
+            raise InputError(Problem(what=reason))
+        return self.draw(self.subject(result), **options)
+
+
+FIGURES: Registry[Callable[..., Any]] = Registry("figure", "tribodyn.plot")
+
+
+def drawing(
+    name: str,
+    *,
+    heading: str,
+    caption: str | Callable[[Any], str],
+    of: str | Iterable[str] = (),
+    made_by: str = "",
+    needs: Lack | None = None,
+) -> Callable[[Callable[..., Any]], Drawing]:
+    """Register a figure function under a name and for the classes that it draws.
+
+    Parameters
+    ----------
+    name : str
+        Name in :data:`FIGURES`.
+    heading : str
+        Heading of the figure in a report.
+    caption : str or callable
+        What to look for, in plain language; a callable takes the result and says it.
+    of : str or iterable of str
+        Classes that it draws, by name, or parts of them: ``("MeshTable", "Result.mesh")``. The
+        function is handed the part. Empty: any result, which is handed over as it is.
+    made_by : str
+        How to come by such a result, told to whoever draws it from another one.
+    needs : callable, optional
+        Takes what is drawn and says why it has no such figure, empty if it has, see :class:`Need`.
+
+    Returns
+    -------
+    callable
+        Decorator that turns the function into a :class:`Drawing`.
+
+    Examples
+    --------
+    >>> from tribodyn.plot import FIGURES
+    >>> FIGURES["mesh_force"].heading
+    'Mesh force'
+    """
+    kinds = (of,) if isinstance(of, str) else tuple(of)
+
+    def keep(draw: Callable[..., Any]) -> Drawing:
+        figure = Drawing(name, draw, heading, caption, kinds, made_by, needs)
+        FIGURES.register(name)(figure)
+        return figure
+
+    return keep
+
+
+@cache
+def load_figures() -> None:
+    """Import the modules of the entry-point group ``tribodyn.figures``, whose figures register."""
+    for entry in entry_points(group="tribodyn.figures"):
+        import_module(entry.module)
+
+
+def figures_of(result: Any) -> list[str]:
+    """Names of the figures that draw this type of result."""
+    load_figures()
+    return [
+        name
+        for name, figure in ((name, FIGURES[name]) for name in FIGURES)
+        if not isinstance(figure, Drawing) or figure.subject(result) is not None
+    ]
+
+
+def draw(result: Any, name: str = "", **options: Any) -> Any:
+    """Draw a result: the figure of that name, or the first that draws its class itself."""
+    load_figures()
+    if name:
+        return FIGURES[name](result, **options)
+    kinds = [kind.__name__ for kind in type(result).__mro__]
+    for kind in kinds:
+        for each in FIGURES:
+            figure = FIGURES[each]
+            if isinstance(figure, Drawing) and kind in figure.of:
+                return figure(result, **options)
+    raise InputError(
+        Problem(
+            what=f"no figure draws a {kinds[0]}",
+            why="Figures say which classes they draw when they register",
+            remedy=f'Register one with @drawing(..., of="{kinds[0]}")',
+        )
+    )

@@ -1,0 +1,236 @@
+"""Results that show themselves: fields with dimensions and units, and all that follows from them.
+
+A result is a frozen dataclass made by :func:`record`. Its fields say what they are: a
+:func:`quantity` over named dimensions with a unit, a :func:`fact` that belongs to the whole
+result, or a plain field that is not exported. From that come ``to_xarray``, equality, the table
+in a notebook, ``save`` and ``plot``. One line of text is all that a result class writes itself.
+
+>>> @record
+... class Orders(Record):
+...     order: Array = quantity("order", unit="1", axis=True)
+...     rms: Array = quantity("order", unit="m")
+...     teeth: int = fact()
+>>> found = Orders(np.array([1.0, 2.0]), np.array([3e-6, 1e-6]), 24)
+>>> found.to_xarray().rms.units
+'m'
+>>> found
+Orders(order: 2, teeth 24)
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, dataclass, field, fields
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
+
+import numpy as np
+
+from tribodyn.drawing import draw
+from tribodyn.errors import OutputExistsError, Problem
+
+if TYPE_CHECKING:
+    pass
+
+T = TypeVar("T")
+_KEY = "tribodyn"
+
+
+class Labels(NamedTuple):
+    """How a field is exported."""
+
+    dims: tuple[str, ...]  #: dimensions; empty for a fact
+    unit: str | None  #: unit, ``"@name"`` for the unit in the field ``name``, None for no unit
+    axis: bool  #: a coordinate rather than a variable
+    name: str  #: name in the data set, where it is another one
+
+
+def quantity(
+    *dims: str,
+    unit: str | None = None,
+    axis: bool = False,
+    name: str = "",
+    default: Any = MISSING,
+    repr: bool = True,
+) -> Any:
+    """Declare an array over named dimensions, a coordinate of the data set if it is an axis."""
+    return _field(Labels(dims, unit, axis, name), default, repr)
+
+
+def fact(name: str = "", default: Any = MISSING, repr: bool = True) -> Any:
+    """Declare a number or a text about the whole result, an attribute of the data set."""
+    return _field(Labels((), None, False, name), default, repr)
+
+
+def _field(labels: Labels, default: Any, repr: bool) -> Any:
+    return field(default=default, repr=repr, metadata={_KEY: labels})
+
+
+@dataclass_transform(
+    frozen_default=True, eq_default=False, field_specifiers=(quantity, fact, field)
+)
+def record(cls: type[T]) -> type[T]:
+    """Turn a subclass of :class:`Record` into a frozen dataclass."""
+    return dataclass(frozen=True, eq=False, repr=False)(cls)
+
+
+class Parts(NamedTuple):
+    """Variables, coordinates and attributes of a data set."""
+
+    variables: dict[str, Any]
+    coordinates: dict[str, Any]
+    attributes: dict[str, Any]
+
+
+class Record:
+    """Base of the results: what its fields declare is exported, shown, compared and drawn."""
+
+    #: Variable that ``to_xarray`` returns as a DataArray with its coordinates; empty: a Dataset.
+    ARRAY: ClassVar[str] = ""
+
+    def _labelled(self) -> list[tuple[Field[Any], Labels]]:
+        return [(each, each.metadata[_KEY]) for each in fields(self) if _KEY in each.metadata]  # type: ignore[arg-type]
+
+    def _parts(self) -> Parts:
+        """Variables, coordinates and attributes; a class extends them where fields are not all."""
+        parts = Parts({}, {}, {})
+        for each, labels in self._labelled():
+            value, name = getattr(self, each.name), labels.name or each.name
+            if not labels.dims:
+                parts.attributes[name] = value
+            elif value is not None:
+                place = parts.coordinates if labels.axis else parts.variables
+                place[name] = (labels.dims, value, self._units(labels.unit))
+        return parts
+
+    def _units(self, unit: str | None) -> dict[str, str]:
+        if unit is None:
+            return {}
+        return {"units": (getattr(self, unit[1:]) or "1") if unit.startswith("@") else unit}
+
+    def to_xarray(self) -> Any:
+        """Return the result as labelled arrays with units.
+
+        Returns
+        -------
+        xarray.Dataset or xarray.DataArray
+            The fields over their dimensions; facts are attributes.
+        """
+        import xarray
+
+        variables, coordinates, attributes = self._parts()
+        if not self.ARRAY:
+            return xarray.Dataset(variables, coordinates, attributes)
+        dims, values, told = variables[self.ARRAY]
+        return xarray.DataArray(values, coordinates, dims, self.ARRAY, {**told, **attributes})
+
+    def plot(self, **options: Any) -> Any:
+        """Draw the result by the figure registered for its class.
+
+        Parameters
+        ----------
+        **options
+            Of that figure.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, **options)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the result to a netCDF file that appears whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path
+            File to write.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        OutputExistsError
+            If the file exists.
+        """
+        target = Path(path)
+        if target.exists():
+            raise OutputExistsError(
+                Problem(f"{target} exists", "argument path", "", "Choose another name")
+            )
+        beside = target.with_name(f".{target.name}.{os.getpid()}")
+        try:
+            self.to_xarray().to_netcdf(beside, engine="h5netcdf")
+            os.replace(beside, target)
+        finally:
+            beside.unlink(missing_ok=True)
+        return target
+
+    def __eq__(self, other: object) -> bool:
+        """Results are equal when they are of one class and all their fields are equal."""
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(
+            _equal(getattr(self, each.name), getattr(other, each.name))
+            for each in fields(self)  # type: ignore[arg-type]
+        )
+
+    def __hash__(self) -> int:
+        """Hash of the class and the facts: equal results have equal ones."""
+        facts = (getattr(self, each.name) for each, labels in self._labelled() if not labels.dims)
+        return hash((type(self), *(value for value in facts if isinstance(value, str | int))))
+
+    def _sizes(self) -> dict[str, int]:
+        sizes: dict[str, int] = {}
+        for each, labels in self._labelled():
+            sizes |= dict(zip(labels.dims, np.shape(getattr(self, each.name)), strict=False))
+        return sizes
+
+    def __repr__(self) -> str:
+        """One line: the sizes of the dimensions and the facts."""
+        sizes = [f"{name}: {size}" for name, size in self._sizes().items()]
+        facts = [
+            f"{each.name} {_short(getattr(self, each.name))}"
+            for each, labels in self._labelled()
+            if not labels.dims and each.repr
+        ]
+        return f"{type(self).__name__}({', '.join([*sizes, *facts])})"
+
+    def _repr_html_(self) -> str:
+        """Table of the fields for notebooks."""
+        rows = []
+        for each, labels in self._labelled():
+            value = getattr(self, each.name)
+            unit = self._units(labels.unit).get("units", "")
+            cells = (each.name, " x ".join(labels.dims), _short(value), unit)
+            rows.append("".join(f"<td>{escape(str(cell))}</td>" for cell in cells))
+        head = "".join(f"<th>{name}</th>" for name in ("field", "over", "value", "unit"))
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        return f"<b>{escape(repr(self))}</b><table><tr>{head}</tr>{body}</table>"
+
+
+def _equal(one: Any, other: Any) -> bool:
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        a, b = np.asarray(one), np.asarray(other)
+        numeric = a.dtype.kind in "fc" and b.dtype.kind in "fc"
+        return bool(np.array_equal(a, b, equal_nan=numeric))
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(_equal(one[key], other[key]) for key in one)
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return len(one) == len(other) and all(map(_equal, one, other))
+    return bool(one == other) or (one != one and other != other)
+
+
+def _short(value: Any) -> str:
+    """A value in a few characters; of an array its range."""
+    if isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.size:
+        if value.size == 1:
+            return f"{value.item():.6g}"
+        return f"{np.nanmin(value):.5g} to {np.nanmax(value):.5g}"
+    text = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,362 @@
+"""A changed value keeps neither reason nor source of the old one, whichever way it is changed."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tribodyn as td
+from tribodyn.cases.catalogue import case_files
+from tribodyn.cli import call
+from tribodyn.errors import InputError
+from tribodyn.report import render_report, write_sweep_report
+from tribodyn.study.cautions import case_cautions
+from tribodyn.study.citations import cite
+from tribodyn.study.fields import Spec
+from tribodyn.study.provenance import (
+    assumptions,
+    changed_keys,
+    effective,
+    provenance,
+    spec_of,
+)
+from tribodyn.study.read import read_case
+
+WIDTH = "gears.pinion.face_width"
+MARK = re.compile(r'^("[\w.]+") = \{ value = (.*), reason = (".*") \}$', re.MULTILINE)
+
+
+def reason_of(case: Any, key: str) -> str:
+    """What is said of a value wherever a reader looks for it."""
+    told = [row.reason for row in assumptions(case) if row.key == key and row.kind == "assumed"]
+    return " ".join([*told, case.assumed.get(key, "")])
+
+
+def old_form(text: str) -> str:
+    """A case file as it was written before values were recorded."""
+    return MARK.sub(r"\1 = \3", text[: text.index("# What this case began with")])
+
+
+def edited(text: str, key: str, line: str | None) -> str:
+    """Text of a case file with the line of one key changed, added or taken away."""
+    table, _, name = key.rpartition(".")
+    head = re.search(rf"^\[{re.escape(table)}\].*\n", text, re.MULTILINE)
+    if head is None:
+        assert line is not None
+        return text.replace("[assumed]", f"[{table}]\n{line}\n\n[assumed]", 1)
+    end = text.find("\n[", head.end())
+    body = text[head.end() : end]
+    present = re.search(rf"^#? ?{name} = .*\n", body, re.MULTILINE)
+    new = "" if line is None else line + "\n"
+    body = new + body if present is None else body.replace(present.group(), new, 1)
+    return text[: head.end()] + body + text[end:]
+
+
+EDITS = {
+    "length": (WIDTH, 'face_width = "30 mm"'),
+    "number": ("dynamics.mesh_damping_ratio", "mesh_damping_ratio = 0.07"),
+    "choice": ("operation.torque_balance", 'torque_balance = "drive"'),
+    "default": ("dynamics.damping_in_gap", "damping_in_gap = true"),
+    "default number": ("gears.addendum_coefficient", "addendum_coefficient = 0.98"),
+    "oil": ("lubricant.name", 'name = "75W90-A"'),
+    "printed": ("operation.torque", 'torque = "91 N*m"'),
+    "whole number": ("solver.steps_per_mesh_cycle", "steps_per_mesh_cycle = 2048"),
+    "removed": ("dynamics.backlash", None),
+    "removed default": ("dynamics.mesh_damping_ratio", None),
+    "removed mass": ("gears.pinion.mass", None),
+    "added": ("gears.pinion.tip_diameter", 'tip_diameter = "88.5 mm"'),
+    "modification": ("gears.pinion.modification.tip_relief", 'tip_relief = "12 um"'),
+    "list": ("gears.wheel.modification.wear_depth", 'wear_depth = ["1 um", "2 um"]'),
+}
+#: Whose value stays what it was: 0.04 is the default as well.
+STAYS = {"removed default"}
+
+
+@pytest.mark.parametrize("kind", EDITS)
+def test_an_edited_line_of_a_written_file_is_the_users(kind: str, tmp_path: Path) -> None:
+    key, line = EDITS[kind]
+    began = td.load_case("fzg-roughness")
+    path = tmp_path / "my.toml"
+    path.write_text(edited(began.to_toml(), key, line), encoding="utf-8")
+    case = td.load_case(path)
+    if kind in STAYS:
+        assert changed_keys(case) == ()
+        return
+    assert changed_keys(case) == (key,)
+    assert reason_of(case, key).strip() == ""
+    assert provenance(case)[key] == ("default" if line is None else "given")
+    again = read_case(case.to_toml())
+    assert again == case
+    assert changed_keys(again) == changed_keys(case)
+    assert again.to_toml() == case.to_toml()
+    others = [k for k in began.assumed if k != key]
+    assert all(case.assumed[k] == began.assumed[k] for k in others)
+
+
+@pytest.mark.parametrize("same", ["20 mm", "0.02 m", "2e4 um", "0.02000000000001 m"])
+def test_the_same_value_in_other_words_keeps_its_reason(same: str) -> None:
+    text = td.load_case("fzg-roughness").to_toml()
+    case = read_case(edited(text, WIDTH, f'face_width = "{same}"'))
+    assert provenance(case)[WIDTH].startswith("assumed: FZG type A test gears are 20 mm wide")
+    assert changed_keys(case) == ()
+    assert "Values of the case: Study" in cite(case)
+
+
+def test_another_value_by_a_thousandth_does_not() -> None:
+    text = td.load_case("fzg-roughness").to_toml()
+    case = read_case(edited(text, WIDTH, 'face_width = "20.02 mm"'))
+    assert provenance(case)[WIDTH] == "given"
+
+
+@pytest.mark.parametrize("name", sorted(case_files()))
+def test_what_is_untouched_says_what_it_said(name: str, tmp_path: Path) -> None:
+    case = td.load_case(name)
+    origins = provenance(case)
+    assert all(origins[key] == f"assumed: {reason}" for key, reason in case.assumed.items())
+    assert f"Values of the case: {case.origin}" in cite(case)
+    for text in (case.to_toml(), old_form(case.to_toml())):
+        path = tmp_path / "copy.toml"
+        path.write_text(text, encoding="utf-8")
+        copy = td.load_case(path)
+        assert copy == case
+        assert assumptions(copy) == assumptions(case)
+        assert cite(copy) == cite(case)
+        assert case_cautions(copy) == case_cautions(case)
+
+
+def other_values(spec: Spec, value: Any) -> list[Any]:
+    """Values of a key unlike the one in force, the likeliest to be allowed first."""
+    if spec.names is not None:
+        return [name for name in spec.names() if name != value]
+    if spec.kind == "flag":
+        return [not value]
+    if spec.kind == "integer":
+        return [value + 1, value - 1]
+    return [value * 1.001, value * 0.999] if value else [spec.high * 1e-3]
+
+
+def mutated(case: Any, key: str) -> Any:
+    """The case with another value of one key, or None if it stands alone."""
+    for other in other_values(spec_of(case, key), effective(case)[key]):
+        try:
+            return case.replace({key: other})
+        except InputError:
+            continue
+    return None
+
+
+@pytest.mark.parametrize("name", sorted(case_files()))
+@pytest.mark.parametrize("way", ["replace", "file", "old file"])
+def test_no_mutated_value_keeps_its_reason(name: str, way: str, tmp_path: Path) -> None:
+    case = td.load_case(name)
+    text = case.to_toml()
+    began = text if way == "file" else old_form(text)
+    path, done = tmp_path / "my.toml", 0
+    for key, reason in case.assumed.items():
+        changed = mutated(case, key)
+        if changed is None or key in changed.assumed:
+            assert changed is None
+            continue
+        if way != "replace":
+            line = re.search(
+                rf"^{key.rpartition('.')[2]} = .*$",
+                edited_block(changed.to_toml(), key),
+                re.MULTILINE,
+            )
+            assert line is not None
+            path.write_text(edited(began, key, line.group()), encoding="utf-8")
+            try:
+                changed = td.load_case(path)
+            except InputError:
+                continue  # Options of the model left behind have to go by hand.
+        done += 1
+        assert key in changed_keys(changed)
+        assert reason_of(changed, key).strip() == ""
+        assert provenance(changed)[key] == "given"
+        assert not re.search(rf'^"{key}" = .*{re.escape(reason)}', changed.to_toml(), re.MULTILINE)
+        assert f"Values of the case: {case.origin}" not in cite(changed)
+        assert f"Based on: {case.origin}" in cite(changed)
+        assert key in cite(changed)
+    assert done >= 0.75 * len(case.assumed)
+
+
+def edited_block(text: str, key: str) -> str:
+    """The table of a key in the text of a case file."""
+    table = key.rpartition(".")[0]
+    start = text.index(f"\n[{table}]")
+    return text[start : text.find("\n[", start + 2)]
+
+
+def test_all_of_it_holds_on_the_command_line(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert call(["check", "fzg-roughness"]) == 0
+    assert "20 values are assumed" in capsys.readouterr().err
+    words = ["--set", f"{WIDTH}=30 mm", "--set", "gears.wheel.face_width=30 mm"]
+    assert call(["check", "fzg-roughness", *words]) == 0
+    by_set = capsys.readouterr().err
+    assert "18 values are assumed" in by_set
+    assert call(["new", "my.toml", "--from", "fzg-roughness"]) == 0
+    text = Path("my.toml").read_text(encoding="utf-8")
+    Path("my.toml").write_text(text.replace('\nface_width = "20 mm"', '\nface_width = "30 mm"'))
+    capsys.readouterr()
+    assert call(["check", "my.toml"]) == 0
+    assert capsys.readouterr().err == by_set
+    assert call(["check", "my.toml", "--json"]) == 0
+    out = capsys.readouterr()
+    assert "20 mm wide" not in out.out + out.err
+    assert isinstance(json.loads(out.out), dict)
+    told = cite(td.load_case("my.toml"))
+    assert "Values of the case" not in told
+    assert f"2 values of the case differ: {WIDTH}, gears.wheel.face_width" in told
+    assert r"gears.pinion.face\_width" in cite(td.load_case("my.toml"), "bibtex")
+
+
+def test_result_and_report_say_nothing_of_the_old_value(tmp_path: Path) -> None:
+    case = td.load_case("fzg-stiffness")
+    old = case.assumed["friction.coefficient"]
+    for value, told in ((None, True), (0.1, False)):
+        changes = {} if value is None else {"friction.coefficient": value}
+        result = td.run(case.replace(changes | {"solver.steps_per_mesh_cycle": 256}))
+        page = html.unescape(render_report(result))
+        reasons = [row.reason for row in result.assumptions]
+        assert (old in reasons) is told
+        assert (old in page) is told
+        assert "Values of the case:" not in page + result.cite()  # the steps are not its own
+        assert "solver.steps_per_mesh_cycle" in result.cite()
+        assert ("friction.coefficient" in result.cite()) is not told
+    result.save(tmp_path / "kept")
+    assert td.load_case(tmp_path / "kept" / "case.toml") == result.case
+
+
+def test_the_table_of_a_sweep_gives_no_reason_for_what_it_varies(tmp_path: Path) -> None:
+    case = td.load_case("fzg-stiffness").replace({"solver.steps_per_mesh_cycle": 256})
+    found = td.sweep(case, {"friction.coefficient": [0.1, 0.119]})
+    page = write_sweep_report(found, tmp_path / "report.html").read_text(encoding="utf-8")
+    table = page[page.index('id="assumptions"') : page.index("</section>", page.index('id="assu'))]
+    old = case.assumed["friction.coefficient"]
+    assert html.escape(old, quote=False) not in table
+    assert "stiffness.mean_stiffness" in table
+
+
+def test_replace_by_another_table_drops_the_reasons_of_the_old() -> None:
+    case = td.load_case("time-varying-friction").replace({"lubricant": None, "friction": None})
+    assert "lubricant.name" not in case.assumed
+    assert {"lubricant.name", "friction.law"} <= set(changed_keys(case))
+    wide = td.load_case("fzg-film").replace({"lubricant.name": "80W"} | dict.fromkeys(
+        ("lubricant.dynamic_viscosity", "lubricant.density",
+         "lubricant.pressure_viscosity_coefficient")))  # fmt: skip
+    assert "lubricant.name" in changed_keys(wide)
+
+
+def test_back_to_the_old_value_is_the_old_source_again() -> None:
+    case = td.load_case("fzg-roughness")
+    there = case.replace({WIDTH: "30 mm"})
+    assert changed_keys(there) == (WIDTH,)
+    back = there.replace({WIDTH: "20 mm"})
+    assert changed_keys(back) == ()
+    assert provenance(back)[WIDTH] == "given"  # by who wrote it anew
+    assert "Values of the case" in cite(back)
+
+
+def test_keywords_take_a_reason_with_or_without_its_value() -> None:
+    tables = {
+        "gears": {
+            "normal_module": 4.5e-3, "normal_pressure_angle": 0.35, "driver": "pinion",
+            "pinion": {"teeth": 20, "face_width": 0.02}, "wheel": {"teeth": 24},
+        },
+        "operation": {"speed": 100.0, "torque": 90.0},
+        "stiffness": {"reference": "rim"},
+        "dynamics": {"model": "torsional"},
+    }  # fmt: skip
+    plain = td.Case(**tables, assumed={WIDTH: "a guess"})
+    assert plain.assumed == {WIDTH: "a guess"}
+    assert plain.replace({WIDTH: 0.03}).assumed == {}
+    for value, kept in ((0.02, True), ("2 cm", True), (0.021, False)):
+        record = {WIDTH: {"value": value, "reason": "a guess"}}
+        assert (WIDTH in td.Case(**tables, assumed=record).assumed) is kept
+
+
+def test_a_reason_of_ones_own_stands() -> None:
+    text = edited(td.load_case("fzg-roughness").to_toml(), WIDTH, 'face_width = "30 mm"')
+    mark = next(line for line in text.splitlines() if line.startswith(f'"{WIDTH}"'))
+    case = read_case(text.replace(mark, f'"{WIDTH}" = "measured on the drawing"'))
+    assert provenance(case)[WIDTH] == "assumed: measured on the drawing"
+    assert changed_keys(case) == (WIDTH,)
+    assert read_case(case.to_toml()) == case
+
+
+def test_a_removed_mark_changes_no_value() -> None:
+    text = td.load_case("fzg-roughness").to_toml()
+    kept = [line for line in text.splitlines() if not line.startswith(f'"{WIDTH}" = {{')]
+    case = read_case("\n".join(kept))
+    assert provenance(case)[WIDTH] == "given"
+    assert changed_keys(case) == ()
+
+
+def test_another_origin_stands_for_the_values_in_force() -> None:
+    text = edited(td.load_case("fzg-roughness").to_toml(), WIDTH, 'face_width = "30 mm"')
+    line = next(line for line in text.splitlines() if line.startswith("origin = "))
+    case = read_case(text.replace(line, 'origin = "Drawing 4711"', 1))
+    assert changed_keys(case) == ()
+    assert "Values of the case: Drawing 4711." in cite(case)
+    assert "Study of the flank roughness" not in cite(case) + case.to_toml()
+    assert "Based on: Drawing 4711" in cite(case.replace({"operation.torque": 95.0}))
+    none = read_case(text.replace(line, "", 1))
+    assert "Study of the flank" not in cite(none)
+
+
+def test_a_mass_of_another_gear_is_told() -> None:
+    case = td.load_case("fzg-roughness")
+    code = "mass-of-other-gear"
+    assert code not in [warning.code for warning in case_cautions(case)]
+    wide = read_case(edited(case.to_toml(), WIDTH, 'face_width = "30 mm"'))
+    told = [str(warning) for warning in case_cautions(wide) if warning.code == code]
+    assert len(told) == 2
+    solid = wide.replace({"gears.pinion.moment_of_inertia": None, "gears.pinion.mass": None})
+    assert code not in [warning.code for warning in case_cautions(solid)]
+    assert "pinion: moment_of_inertia = 407 kg*mm^2" in told[1]
+    assert f"before {WIDTH} changed" in told[1]
+
+
+def test_a_reason_tells_that_its_ground_has_changed() -> None:
+    case = td.load_case("fzg-12dof").replace({WIDTH: "12 mm"})
+    reason = "assumed: that of a comparable FZG pair, 20 mm wide; none is printed"
+    assert provenance(case)["gears.pinion.mass"] == f"{reason}; stated before {WIDTH} changed"
+    assert provenance(case)["gears.wheel.mass"].endswith("none is printed")
+    assert provenance(read_case(case.to_toml())) == provenance(case)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ('"gears.pinion.face_widht" = { value = "20 mm", reason = "x" }', "no key"),
+        (f'"{WIDTH}" = {{ value = "20 s", reason = "x" }}', "wrong kind of quantity"),
+        (f'"{WIDTH}" = {{ value = "20 mm" }}', "string"),
+        (f'"{WIDTH}" = {{ value = "20 mm", reason = "x", of = 3 }}', "string"),
+        ('[based_on]\n"gears.module" = "3 mm"', "no key"),
+    ],
+)
+def test_faults_of_a_record_are_told_with_their_line(line: str, words: str) -> None:
+    text = Path(case_files()["fzg-stiffness"]).read_text(encoding="utf-8") + line + "\n"
+    with pytest.raises(InputError, match=words) as told:
+        read_case(text, "my.toml")
+    assert f"my.toml:{text.count(chr(10))}" in str(told.value)
+
+
+def test_a_file_of_before_names_what_its_user_changed(tmp_path: Path) -> None:
+    path = tmp_path / "old.toml"
+    text = edited(old_form(td.load_case("fzg-12dof").to_toml()), WIDTH, 'face_width = "14 mm"')
+    text = edited(text, "dynamics.shaft1_damping", 'shaft1_damping = "0.5 N*m*s/rad"')
+    path.write_text(text, encoding="utf-8")
+    case = td.load_case(path)
+    assert changed_keys(case) == (WIDTH, "dynamics.shaft1_damping")
+    assert provenance(case)["dynamics.shaft1_damping"] == "given"
+    assert provenance(case)["dynamics.shaft2_damping"].startswith("assumed: about 2 %")
+    assert "Based on: Study of the transmission error of FZG A10 gears" in cite(case)
