@@ -12,7 +12,7 @@ from tribodyn.analysis import basins, bifurcation, parameter_map, phase_portrait
 from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.verdict import step_verdict
 from tribodyn.dynamics import Contact, System, continuation, simulate, steady_state
-from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.start import static_start
 from tribodyn.errors import InputError
 

@@ -16,7 +16,8 @@ from tribodyn.analysis.lyapunov import _Carrier
 from tribodyn.analysis.lyapunov_products import grouped_products
 from tribodyn.analysis.lyapunov_tangent import TangentTables
 from tribodyn.dynamics import Contact, System, simulate
-from tribodyn.dynamics._engine.blocks import compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import ComputationError, InputError
 
 TURN = 2.0 * np.pi

@@ -12,7 +12,7 @@ from tribodyn.analysis.basins_attractors import Attractor, Catalogue, Found, mul
 from tribodyn.analysis.basins_result import Basins
 from tribodyn.analysis.bifurcation import signal_name
 from tribodyn.analysis.verdict import step_verdict
-from tribodyn.dynamics._engine.blocks import Compiled, compile_for
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.time.simulate import read_start

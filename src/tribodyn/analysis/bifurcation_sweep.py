@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribodyn.analysis.attractors import Motions, settle
-from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import largest_rate
 from tribodyn.dynamics.equations.system import System

@@ -17,9 +17,10 @@ from numpy.typing import ArrayLike
 from tribodyn.analysis.lyapunov_crossing import carry_over_crossings
 from tribodyn.analysis.lyapunov_floquet import floquet_growth, repeats_after
 from tribodyn.analysis.lyapunov_products import grouped_products, safe_length
-from tribodyn.analysis.lyapunov_tangent import TangentTables, contact_sides
+from tribodyn.analysis.lyapunov_tangent import TangentTables
 from tribodyn.analysis.verdict import exponent_verdict
-from tribodyn.dynamics._engine.blocks import compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
@@ -312,7 +313,7 @@ class _Carrier:
         def sides(q: Array, node: int) -> Array:
             q = q.reshape(-1, steps, size)
             d = np.einsum("rji,cri->crj", nodes.direction[:, node], q) - nodes.error[:, node]
-            side = contact_sides(d, nodes.gap[:, node], tables.dead)
+            side = sides(d, nodes.gap[:, node], tables.dead)
             return side.reshape(len(q) * steps, d.shape[-1])
 
         left, right = sides(place[:-1], 0), sides(place[1:], 2)

@@ -12,7 +12,7 @@ from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.bifurcation_statistics import measure
 from tribodyn.analysis.bifurcation_values import compile_unchecked
 from tribodyn.analysis.verdict import step_verdict
-from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
 from tribodyn.errors import ComputationError

@@ -14,7 +14,7 @@ from tribodyn.analysis.poincare_march import (
     march_section,
     repeat_period,
 )
-from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.time.response import Response

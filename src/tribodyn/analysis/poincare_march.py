@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.analysis.verdict import Verdict, step_verdict
-from tribodyn.dynamics._engine.blocks import Compiled, compile_for, march
+from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.coordinates import orbit_coordinates
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import Compiled, compile_for
 from tribodyn.dynamics.coordinates import OrbitCoordinates
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.errors import InputError, Problem

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.dynamics.orbit_periods import find_any_orbit, shortest_period

@@ -13,7 +13,7 @@ from tribodyn.dynamics import (
     simulate_ensemble,
     steady_state,
 )
-from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.divergence import probable_cause
 from tribodyn.errors import ComputationError, InputError
 

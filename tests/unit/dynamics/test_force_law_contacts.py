@@ -17,7 +17,7 @@ from tribodyn.dynamics import (
     steady_state,
     torsional,
 )
-from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.start import static_start
 from tribodyn.errors import InputError
 from tribodyn.mesh import MeshForceLaw, PhaseFunction

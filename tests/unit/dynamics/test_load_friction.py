@@ -24,7 +24,7 @@ from tribodyn.dynamics import (
     simulate_ensemble,
     steady_state,
 )
-from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.load_friction import friction_force, friction_tangent
 from tribodyn.dynamics.start import static_start
 from tribodyn.errors import InputError

@@ -8,7 +8,7 @@ import pytest
 from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
 from plain.newmark import newmark_plain
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics._engine.blocks import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.time.newmark import NEWMARK_PRESETS, compile_newmark, march_newmark
 from tribodyn.errors import ComputationError, InputError
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import Compiled, Member
-from tribodyn.dynamics._engine.dormand_prince_failure import report_failure
+from tribodyn.dynamics._engine.blocks import BlockRecord, LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.phase_table import PhaseTable, build_table
 from tribodyn.dynamics._engine.tolerance import (
     SMALL,
@@ -20,20 +19,20 @@ from tribodyn.dynamics._engine.tolerance import (
     static_scale,
     step_share,
 )
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.divergence import adaptive_failure
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import compile_system, lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
-#: Lanes of one block.
-_WIDTHS = (1, 16)
 _SAMPLE = 64
 
 
-@dataclass(frozen=True)
-class AdaptiveRun:
+class AdaptiveRun(NamedTuple):
     """What a march gives."""
 
     state: Array  #: position and velocity at the end
@@ -42,7 +41,6 @@ class AdaptiveRun:
     crossings: int
     widest: float  #: widest step in mesh phase [-]
     trail: Array
-    memory: Array  #: step sizes and sizes of the state, to go on with
 
 
 @dataclass(frozen=True)
@@ -56,114 +54,109 @@ class AdaptiveEngine:
     rate: float  #: fastest motion of the system [rad/s]
     safety: float  #: error of a step over the tolerance [-]
 
+    def march(self, period: Array, state: Array, cycles: int, **options: Any) -> AdaptiveRun:
+        """March lanes by whole mesh cycles, with the options of :class:`AdaptiveLanes`."""
+        facts = {name: options.pop(name) for name in ("extra_force", "scales") if name in options}
+        return AdaptiveLanes(self, period, **facts).march(state, cycles, **options)
+
+
+class AdaptiveLanes:
+    """Lanes of one system that march on from call to call, block by block."""
+
+    def __init__(
+        self,
+        engine: AdaptiveEngine,
+        period: Array,
+        *,
+        extra_force: Array | None = None,
+        scales: Array | None = None,
+        numbers: Index | None = None,
+    ) -> None:
+        lanes, n = period.size, engine.system.size
+        extra = np.zeros((lanes, n)) if extra_force is None else extra_force
+        factors = np.ones((lanes, 6)) if scales is None else scales
+        steady = lane_load(engine.table.program, engine.system, extra, factors[:, 5])
+        self.engine, self.period = engine, np.asarray(period, dtype=float)
+        self.load, self.numbers = np.hstack((steady, factors)), numbers
+        self.blocks = lane_blocks(lanes)
+        width = self.blocks[0].index.size
+        #: Next step and last error of each block, and largest sizes of all states so far.
+        self.memory = np.zeros((len(self.blocks), 2 + 2 * n * width))
+        rate = max(engine.rate * float(np.max(period)), 1e-9)
+        self.memory[:, 0] = min(0.1 * engine.rtol**0.2 / rate, 0.1)
+        self.memory[:, 1] = 1.0
+
     def march(
         self,
-        period: Array,
         state: Array,
         cycles: int,
         *,
-        extra_force: Array | None = None,
         points: Array | None = None,
         record: Array | None = None,
-        memory: Array | None = None,
         room: int = 0,
-        width: int | None = None,
         threads: int | None = None,
-        scales: Array | None = None,
-        numbers: Index | None = None,
         elapsed: int = 0,
     ) -> AdaptiveRun:
-        """March lanes by whole mesh cycles."""
-        lanes, double = state.shape
-        width = width or (_WIDTHS[0] if lanes < 4 else _WIDTHS[1])
-        extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
-        factors = np.ones((lanes, 6)) if scales is None else scales
-        load = lane_load(self.table.program, self.system, extra, factors[:, 5])
-        load = np.hstack((load, factors))
-        called = (np.arange(lanes) if lanes > 1 else np.array([-1])) if numbers is None else numbers
-        starts = range(0, lanes, width)
-        memory = self._fresh(len(starts), 2 + double * width, period) if memory is None else memory
-        memory, new = memory.copy(), np.empty_like(state)
-        trail, reports = np.zeros((room, 2 + 3 * double)), np.zeros((len(starts), 10))
+        """March all lanes by whole mesh cycles, after ``elapsed`` others."""
+        new = np.empty_like(state)
+        trail = np.zeros((room, 2 + 3 * state.shape[1]))
         grid = np.zeros(1) if points is None else np.ascontiguousarray(points)
 
-        def block(number: int) -> None:
-            # Lanes past the end repeat the last one, so that a block is always full.
-            first = starts[number]
-            index = np.minimum(np.arange(first, first + width), lanes - 1)
-            count = min(width, lanes - first)
-            part = np.ascontiguousarray(state[index])
-            kept = np.zeros((0, double, width))
-            if record is not None:
-                kept = record if lanes == width else np.empty((*record.shape[:2], width))
-            self._march_block(
-                period[index], load[index], part, memory[number], cycles, grid, kept, trail,
-                reports[number], called[index], elapsed,
-            )  # fmt: skip
-            new[first : first + count] = part[:count]
-            if record is not None and kept is not record:
-                record[:, :, first : first + count] = kept[:, :, :count]
+        def march_lanes(place: int) -> Array:
+            block = self.blocks[place]
+            part = np.ascontiguousarray(state[block.index])
+            kept = BlockRecord(record, block.lanes, block.index.size)
+            report = self.march_block(place, part, cycles, grid, kept.states, trail, elapsed)
+            kept.put()
+            new[block.lanes] = part[: block.count]
+            return report
 
-        threads = threads or os.cpu_count() or 1
-        if len(starts) == 1 or threads == 1:
-            for number in range(len(starts)):
-                block(number)
-        else:
-            with ThreadPoolExecutor(threads) as pool:
-                list(pool.map(block, range(len(starts))))
+        count = threads or os.cpu_count() or 1
+        reports = np.array(in_threads(march_lanes, range(len(self.blocks)), count))
         total = reports.sum(axis=0)
         return AdaptiveRun(
             new, int(total[0]), int(total[1]), int(total[2]), float(reports[:, 3].max()),
-            trail[: int(reports[0, 8])], memory,
+            trail[: int(reports[0, 8])],
         )  # fmt: skip
 
-    def _fresh(self, blocks: int, length: int, period: Array) -> Array:
-        """Memory before the first step: how long it may be."""
-        memory = np.zeros((blocks, length))
-        longest = float(np.max(period))
-        memory[:, 0] = min(0.1 * self.rtol**0.2 / max(self.rate * longest, 1e-9), 0.1)
-        memory[:, 1] = 1.0
-        return memory
-
-    def _march_block(
+    def march_block(
         self,
-        period: Array,
-        load: Array,
+        place: int,
         state: Array,
-        memory: Array,
         cycles: int,
         points: Array,
-        record: Array,
+        record: Array | None,
         trail: Array,
-        report: Array,
-        index: Index,
         elapsed: int,
-    ) -> None:
-        from tribodyn.dynamics._engine.adaptive import march_adaptive_block
-        from tribodyn.dynamics._engine.dormand_prince import own_slots
+    ) -> Array:
+        """March one block, whose states are overwritten; returns its report."""
+        from tribodyn.dynamics._engine.adaptive import Kept, march_adaptive_block
 
-        table, program = self.table, self.table.program
-        width, n = len(state), self.system.size
-        own = program.slots.count
-        slots = own + own_slots(n, len(self.system.contacts))
-        work = np.zeros(slots * (width + 1) + table.constant.size)
-        march_adaptive_block(
-            (0.0,) * width, program.code, program.reads, table.constant, table.edge, table.degree,
-            table.start, table.coefficients, table.varying, table.events, table.first, work,
-            own, slots, np.ascontiguousarray(period), np.ascontiguousarray(load), state, memory,
-            self.safety * self.rtol, self.safety * self.atol, cycles, points, record, trail, report,
+        engine, block = self.engine, self.blocks[place]
+        width, double = state.shape
+        kept = np.zeros((0, double, width)) if record is None else record
+        report = np.zeros(10)
+        slots = march_adaptive_block(
+            (0.0,) * width, engine.table, self.period[block.index], self.load[block.index], state,
+            self.memory[place], engine.safety * engine.rtol, engine.safety * engine.atol, cycles,
+            Kept(points, kept, trail, report), stop_flag(),
         )  # fmt: skip
+        refuse_stopped(int(report[4]))
         if report[4]:
-            report[9] += elapsed
-            lane = int(report[6])
-            blocks = work[: slots * width].reshape(slots, width)[:, lane]
-            single = work[slots * width : slots * (width + 1)]
-            used = single if report[4] == 2.0 else blocks
-            # The state at the failed step, and its largest sizes before.
-            report_failure(
-                report, float(period[lane]), used[: 2 * n], self.atol / (SMALL * self.rtol),
-                self.system, load[lane, n:], int(index[lane]),
-            )  # fmt: skip
+            self._report(block, report, slots[:double], elapsed)
+        return report
+
+    def _report(self, block: LaneBlock, report: Array, state: Array, elapsed: int) -> None:
+        engine, lane = self.engine, int(block.index[int(report[6])])
+        number = lane if self.period.size > 1 else None
+        if self.numbers is not None:
+            number = int(self.numbers[lane])
+        report[9] += elapsed
+        # The state at the failed step, and its largest sizes before.
+        raise adaptive_failure(
+            report, float(self.period[lane]), state, engine.atol / (SMALL * engine.rtol),
+            engine.system, self.load[lane, engine.system.size :], number,
+        )  # fmt: skip
 
 
 def adaptive_engine(
@@ -203,39 +196,3 @@ def adaptive_engine(
     safety = step_share(compiled, cycles / slowest, float(most[0]), float(least[1]))
     rate = largest_rate(system, nodes, tuple(most[:3]))
     return AdaptiveEngine(system, table, float(rtol), given, rate, safety)
-
-
-def march_adaptive(
-    compiled: Compiled,
-    period: Array,
-    state: Array,
-    cycles: int,
-    *,
-    rtol: float = 1e-6,
-    atol: Tolerance | None = None,
-    extra_force: Array | None = None,
-    parameters: LaneParameters | None = None,
-    record: Array | None = None,
-    threads: int | None = None,
-) -> Array:
-    """March lanes by whole mesh cycles; returns their new state."""
-    period = np.asarray(period, dtype=float)
-    scales = None if parameters is None else parameters.table(period.size)
-    everyone = np.arange(period.size)
-    whole = Member(compiled.system, compiled.nodes, everyone)
-    new = np.empty_like(state)
-    for one in compiled.members or (whole,):
-        own = one.lanes
-        engine = adaptive_engine(
-            one.system, 1.0 / period[own], cycles, rtol=rtol, atol=atol, parameters=parameters
-        )
-        kept = record if record is None or not compiled.members else record[:, :, own]
-        new[own] = engine.march(
-            period[own], state[own], cycles, points=compiled.grid.left, record=kept,
-            extra_force=None if extra_force is None else extra_force[own], threads=threads,
-            scales=None if scales is None else scales[own],
-            numbers=everyone[own] if period.size > 1 else None,
-        ).state  # fmt: skip
-        if record is not None and kept is not None and kept is not record:
-            record[:, :, own] = kept
-    return new

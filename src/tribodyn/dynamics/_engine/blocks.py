@@ -1,106 +1,88 @@
-"""From a compiled system to marched lanes: blocks, threads, and a step that is stable."""
+"""Lanes in blocks, blocks in threads: marching with fixed steps, and what is said of a failure."""
 
 from __future__ import annotations
 
 import os
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.divergence import report_divergence
-from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.divergence import (
+    Failed,
+    newmark_failure,
+    runaway,
+    unparted_step,
+)
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import (
-    Program,
-    build_program,
-    compile_system,
-    lane_load,
-)
-from tribodyn.dynamics.equations.step_limit import (
-    refuse_unstable_lanes,
-    refuse_unstable_step,
-)
-from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.types import Array, Index, Mask
+from tribodyn.dynamics.equations.program import lane_load
+from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes
+from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
+from tribodyn.types import Array, Index
 
 #: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
 #: stay in the first cache, which 64 lanes of a pair of gears overflow.
 _WIDTHS = (1, 16)
 #: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
+#: Fewer lanes than these march one by one.
 _OWN_ROWS = 4
+#: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
+_BRIEF = 200_000
+
+
+class Statistics(NamedTuple):
+    """What is gathered while marching, so that no time series is stored."""
+
+    outputs: Array  #: linear outputs of the state (m, 2 n)
+    waves: Array  #: cosine and sine of harmonics, (steps, 3, harmonics, 2)
+    moments: Array  #: (numbers, lanes); overwritten
 
 
 @dataclass(frozen=True)
-class Member:
-    """One of several systems on a common grid, with the lanes that march it."""
+class LaneBlock:
+    """Lanes that march side by side: past the end the last one is repeated, to fill the block."""
 
-    system: System
-    nodes: Nodes
-    lanes: Index  #: numbers of its lanes
+    index: Index
+    count: int  #: lanes that are not repeated
 
-
-@dataclass(frozen=True)
-class Compiled:
-    """A system on its grid, checked for one highest step size."""
-
-    system: System
-    grid: Grid
-    nodes: Nodes
-    program: Program
-    step_number: float  #: ``omega_max * dt`` of the slowest mesh frequency [-]
-    members: tuple[Member, ...] = ()  #: systems of the lanes where these differ
-    parameters: LaneParameters | None = None  #: factors of the lanes for which the step was checked
-    _programs: dict[tuple[bool, bool], tuple[Program, ...]] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
-
-    def programs(self, parameters: LaneParameters | None = None) -> tuple[Program, ...]:
-        """Programs of all members, or of the one system, all with the same terms."""
-        scaled = parameters is not None and parameters.scales_contacts
-        split = parameters is not None and parameters.scales_friction
-        if not (scaled or split or self.members):
-            return (self.program,)
-        if (scaled, split) not in self._programs:
-            pairs = [(one.system, one.nodes) for one in self.members]
-            pairs = pairs or [(self.system, self.nodes)]
-
-            def build(pattern: Mask | None) -> tuple[Program, ...]:
-                return tuple(
-                    build_program(pair[0], self.grid, pair[1], scaled=scaled, split=split,
-                                  pattern=pattern)
-                    for pair in pairs
-                )  # fmt: skip
-
-            made = build(None)
-            if len(made) > 1:
-                made = build(np.any([one.pattern for one in made], axis=0))
-            self._programs[scaled, split] = made
-        return self._programs[scaled, split]
+    @property
+    def lanes(self) -> Index:
+        """Numbers of the lanes."""
+        return self.index[: self.count]
 
 
-def compile_for(
-    system: System,
-    mesh_frequency: ArrayLike,
-    steps: int,
-    parameters: LaneParameters | None = None,
-) -> Compiled:
-    """Compile a system and refuse a step that the integrator cannot follow."""
-    require_positive("mesh_frequency", mesh_frequency, "Hz")
-    if int(steps) != steps or steps < 1:
-        raise InputError(
-            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
-        )
-    grid, nodes, program = compile_system(system, int(steps))
-    beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
-    if parameters is None:
-        number = refuse_unstable_step(system, nodes, grid, float(beat.min()))
-    else:
-        number = refuse_unstable_lanes(system, nodes, grid, beat, parameters)
-    return Compiled(system, grid, nodes, program, number, parameters=parameters)
+def lane_blocks(lanes: int, width: int | None = None, *, own_rows: bool = False) -> list[LaneBlock]:
+    """Divide lanes into blocks."""
+    if width is None:
+        width = _WIDTHS[0] if lanes < _OWN_ROWS else _OWN_ROWS if own_rows else _WIDTHS[1]
+    return [
+        LaneBlock(np.minimum(np.arange(first, first + width), lanes - 1), min(width, lanes - first))
+        for first in range(0, lanes, width)
+    ]
+
+
+class BlockRecord:
+    """The lanes of one block in a record of all."""
+
+    def __init__(self, record: Array | None, lanes: Index, width: int) -> None:
+        self._all, self._lanes = record, lanes
+        whole = record is not None and record.shape[2] == lanes.size == width
+        self.states = record
+        if record is not None and not whole:
+            self.states = np.empty((*record.shape[:2], width))
+
+    def put(self) -> None:
+        """Put the lanes in their places."""
+        if self._all is not None and self.states is not None and self.states is not self._all:
+            self._all[:, :, self._lanes] = self.states[:, :, : self._lanes.size]
+
+
+def is_brief(compiled: Compiled, lanes: int, cycles: int) -> bool:
+    """Tell whether a march is over before an interruption is missed."""
+    size = compiled.system.size + len(compiled.system.contacts)
+    return lanes * cycles * compiled.grid.steps * size <= _BRIEF
 
 
 def march(
@@ -109,61 +91,45 @@ def march(
     state: Array,
     cycles: int,
     *,
+    method: RungeKutta4 | Newmark = RungeKutta4(),  # noqa: B008  # a constant tuple
     extra_force: Array | None = None,
     parameters: LaneParameters | None = None,
     record: Array | None = None,
-    outputs: Array | None = None,
-    waves: Array | None = None,
-    moments: Array | None = None,
+    statistics: Statistics | None = None,
     width: int | None = None,
     threads: int | None = None,
     any_step: bool = False,
     elapsed: int = 0,
 ) -> Array:
-    """March lanes by whole mesh cycles; returns their new state."""
+    """March lanes by whole mesh cycles, after ``elapsed`` others; returns their new state."""
     lanes = state.shape[0]
-    if not any_step and parameters is not None and parameters is not compiled.parameters:
-        _check_parameters(compiled, 1.0 / period, parameters)
-    run = _Run(compiled, parameters, period, state, extra_force)
-    width = width or _choose_width(lanes, bool(compiled.members))
+    if isinstance(method, RungeKutta4) and not any_step:
+        _refuse_scaled(compiled, 1.0 / period, parameters)
+    run = _Run(compiled, method, parameters, period, state, extra_force)
     new = np.empty_like(state)
-    fresh = None if moments is None else moments[:, 0].copy()
 
-    def block(first: int) -> int:
-        # Lanes past the end repeat the last one, so that a block is always full.
-        index = np.minimum(np.arange(first, first + width), lanes - 1)
-        part = np.ascontiguousarray(state[index])
-        own = None if fresh is None else np.repeat(fresh, width)
-        failed = run.block(index, part, cycles, record, outputs, waves, own)
-        count = min(width, lanes - first)
-        new[first : first + count] = part[:count]
-        if own is not None and moments is not None:
-            moments[:, first : first + count] = own.reshape(-1, width)[:, :count]
-        return failed
+    def march_lanes(block: LaneBlock) -> int:
+        part = np.ascontiguousarray(state[block.index])
+        kept = BlockRecord(record, block.lanes, block.index.size)
+        code = run.march(block, part, cycles, kept.states, statistics)
+        kept.put()
+        new[block.lanes] = part[: block.count]
+        return code
 
-    starts = range(0, lanes, width)
-    threads = threads or os.cpu_count() or 1
-    if len(starts) == 1 or threads == 1:
-        failures = [block(first) for first in starts]
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            failures = list(pool.map(block, starts))
-    if max(failures) >= 0:
-        first = starts[int(np.argmax(failures))]
-        _report(run, np.arange(first, min(first + width, lanes)), max(failures), elapsed)
+    blocks = lane_blocks(lanes, width, own_rows=bool(compiled.members))
+    brief = is_brief(compiled, lanes, cycles)
+    codes = in_threads(march_lanes, blocks, threads or os.cpu_count() or 1, brief=brief)
+    if max(codes) >= 0:
+        run.report(blocks[int(np.argmax(codes))], max(codes), elapsed)
     return new
 
 
-def _choose_width(lanes: int, own_rows: bool) -> int:
-    if lanes < _OWN_ROWS:
-        return _WIDTHS[0]
-    return _OWN_ROWS if own_rows else _WIDTHS[1]
-
-
-def _check_parameters(compiled: Compiled, beat: Array, parameters: LaneParameters) -> None:
-    for one in compiled.members or (Member(compiled.system, compiled.nodes, np.arange(beat.size)),):
+def _refuse_scaled(compiled: Compiled, beat: Array, parameters: LaneParameters | None) -> None:
+    if parameters is None or parameters is compiled.parameters:
+        return
+    for member in compiled.each(beat.size):
         refuse_unstable_lanes(
-            one.system, one.nodes, compiled.grid, beat, parameters, lanes=one.lanes
+            member.system, member.nodes, compiled.grid, beat, parameters, lanes=member.lanes
         )
 
 
@@ -173,86 +139,107 @@ class _Run:
     def __init__(
         self,
         compiled: Compiled,
+        method: RungeKutta4 | Newmark,
         parameters: LaneParameters | None,
         period: Array,
         state: Array,
         extra_force: Array | None,
     ) -> None:
         lanes, double = state.shape
-        self.compiled, self.period, self.state = compiled, period, state
-        self.extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
+        self.compiled, self.method, self.period, self.state = compiled, method, period, state
+        extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
         self.programs = compiled.programs(parameters)
         self.member = np.zeros(lanes, dtype=np.int64)
-        for number, one in enumerate(compiled.members):
-            self.member[one.lanes] = number
         self.scales = np.ones((lanes, 6)) if parameters is None else parameters.table(lanes)
-        systems = [one.system for one in compiled.members] or [compiled.system]
         self.load = np.empty((lanes, double // 2))
-        for number, (program, system) in enumerate(zip(self.programs, systems, strict=True)):
-            own = self.member == number
-            self.load[own] = lane_load(program, system, self.extra[own], self.scales[own, 5])
+        self.members = compiled.each(lanes)
+        for number, member in enumerate(self.members):
+            own = member.lanes
+            self.member[own] = number
+            self.load[own] = lane_load(
+                self.programs[number], member.system, extra[own], self.scales[own, 5]
+            )
         if parameters is not None:
             self.load = np.hstack((self.load, self.scales))
 
-    def block(
+    def march(
         self,
-        index: Index,
+        block: LaneBlock,
         state: Array,
         cycles: int,
-        record: Array | None,
-        outputs: Array | None,
-        waves: Array | None,
-        moments: Array | None,
+        record: Array | None = None,
+        statistics: Statistics | None = None,
     ) -> int:
-        """March the lanes ``index`` in one block; returns what :func:`march_block` does."""
+        """March the lanes of one block; returns what :func:`march_block` does."""
         from tribodyn.dynamics._engine.marching import march_block
+        from tribodyn.dynamics._engine.moments import Gathered
 
+        index = block.index
         program = self.programs[self.member[index[0]]]
         rows = program.rows
         width, double = state.shape
         if self.compiled.members and width > 1:
             rows = np.stack([self.programs[number].rows for number in self.member[index]], axis=-1)
-        keep = np.zeros((0, double, width)) if record is None else record
-        table = np.zeros(0) if waves is None else np.ascontiguousarray(waves).reshape(-1)
-        linear = np.zeros((0, double)) if outputs is None else outputs
-        harmonics = 0 if waves is None else waves.shape[2]
-        work = np.zeros(program.slots.count * (width + 1) + 6 * int(program.code[2]))
-        return int(
-            march_block(
-                (0.0,) * width, program.code, program.reads, rows, program.width, program.restart,
-                work, self.period[index], self.load[index], state, cycles, keep, linear, table,
-                harmonics, moments,
-            )
+        gathered = None
+        states = np.zeros((0, double, width)) if record is None else record
+        if statistics is not None:
+            waves = np.ascontiguousarray(statistics.waves).reshape(-1)
+            moments = np.ascontiguousarray(statistics.moments[:, index]).reshape(-1)
+            harmonics = statistics.waves.shape[2]
+            gathered = Gathered(statistics.outputs, waves, harmonics, moments)
+        code = march_block(
+            (0.0,) * width, self.method, program, rows, self.period[index], self.load[index],
+            state, cycles, states, gathered, stop_flag(),
         )  # fmt: skip
+        if statistics is not None and gathered is not None:
+            numbers = gathered.moments.reshape(-1, width)
+            statistics.moments[:, block.lanes] = numbers[:, : block.count]
+        return refuse_stopped(int(code))
 
+    def report(self, block: LaneBlock, code: int, elapsed: int) -> None:
+        """Tell why a block ended early."""
+        from tribodyn.dynamics._engine.marching import UNFOUND, UNPARTED
 
-def _report(run: _Run, lanes: Index, step: int, elapsed: int) -> None:
-    """Find the lane that ran away, march it once more and tell how it did."""
-    compiled, steps = run.compiled, run.compiled.grid.steps
-    # The step counted from the start is at the end of a mesh cycle. A lane marched by itself is
-    # rounded differently, so that it may take a cycle more or less.
-    before, last, lane = max(step // steps - 1, 0), -1, int(lanes[0])
-    record = np.zeros((steps + 1, run.state.shape[1], 1))
-    for lane in lanes:
-        index = np.array([lane])
-        state = run.state[index].copy()
-        early = run.block(index, state, before, None, None, None, None) if before else -1
-        if early >= 0:
-            before = early // steps - 1
-            state = run.state[index].copy()
-            if before:
-                run.block(index, state, before, None, None, None, None)
-        for _ in range(2):
-            last = run.block(index, state, 1, record, None, None, None)
-            if last >= 0:
-                break
-            before += 1
-        if last >= 0:
-            break
-        before = max(step // steps - 1, 0)
-    member = compiled.members[run.member[lane]] if compiled.members else compiled
-    report_divergence(
-        member.system, member.nodes, compiled.grid, compiled.step_number, record[:, :, 0],
-        1.0 / float(run.period[lane]), before + elapsed, int(lane) if run.period.size > 1 else None,
-        run.scales[lane],
-    )  # fmt: skip
+        grid, several = self.compiled.grid, self.period.size > 1
+        if UNPARTED <= code < UNFOUND:
+            place, item = divmod(code - UNPARTED, block.index.size)
+            contacts = len(self.compiled.system.contacts)
+            cycle, number = divmod(place // contacts, grid.steps)
+            lane = int(block.index[item])
+            phase = elapsed + cycle + float(grid.left[number])
+            raise unparted_step(
+                place % contacts, contacts, phase, phase * float(self.period[lane]),
+                lane if several else None,
+            )  # fmt: skip
+        lane, before, record, last = self._again(block, code % UNPARTED)
+        member = self.members[self.member[lane]]
+        failed = Failed(
+            member.system, member.nodes, grid, record, before + elapsed, float(self.period[lane]),
+            lane if several else None, self.scales[lane], self.compiled.step_number,
+        )  # fmt: skip
+        if isinstance(self.method, Newmark):
+            done = last % UNPARTED if last >= 0 else grid.steps
+            raise newmark_failure(failed, done, last >= UNFOUND, self.method[:3])
+        raise runaway(failed)
+
+    def _again(self, block: LaneBlock, step: int) -> tuple[int, int, Array, int]:
+        """March the lane that failed once more: its number, cycles before, last cycle, code."""
+        # The step counted from the start is at the end of a mesh cycle. A lane marched by itself is
+        # rounded differently, so that it may take a cycle more or less.
+        steps = self.compiled.grid.steps
+        record, last, lane = np.zeros((steps + 1, self.state.shape[1], 1)), -1, block.index[0]
+        before = max((step - 1) // steps, 0)
+        for lane in block.lanes:
+            alone = LaneBlock(np.array([lane]), 1)
+            state, before = self.state[alone.index].copy(), max((step - 1) // steps, 0)
+            early = self.march(alone, state, before) if before else -1
+            if early >= 0:
+                before, state = max((early - 1) // steps, 0), self.state[alone.index].copy()
+                if before:
+                    self.march(alone, state, before)
+            for _ in range(2):
+                last = self.march(alone, state, 1, record)
+                if last >= 0:
+                    return int(lane), before, record, last
+                before += 1
+        return int(lane), before, record, last

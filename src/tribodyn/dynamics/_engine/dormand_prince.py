@@ -1,22 +1,16 @@
-"""One Dormand-Prince step of all lanes, its error and its dense output.
+"""One Dormand-Prince step of all lanes, its error and the polynomial of the step.
 
 Seven stages give a solution of fifth order and, by comparison with one of fourth, its error
 (Dormand and Prince 1980). The last stage is the first of the next step. Between the ends the
 position is the quintic Hermite interpolant of position, velocity and acceleration at both ends,
 and the velocity is its derivative: of sixth and fifth order, hence no worse than the step.
 The readable version is in ``tests/plain``.
-
-On top of the slots of :class:`~tribodyn.dynamics.program.Program` every lane owns, from slot
-``own``: accelerations and velocities of the seven stages, the mean velocity of the step, the
-largest size of each state so far, its inverse tolerance, the error, the mesh period, clearances
-of the contacts at five places of the step, marks of contacts that have just changed sides, and
-clearances at one more place.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
@@ -24,9 +18,13 @@ import numpy as np
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     INNER,
+    Law,
     acceleration,
-    compression,
-    dead_zone,
+    clearances,
+    first_contact,
+    is_dead_zone,
+    next_contact,
+    slots_of,
 )
 from tribodyn.dynamics._engine.lanes import any_negative, greatest, load, store
 from tribodyn.types import Array, Index
@@ -49,107 +47,144 @@ WEIGHT_ERROR = np.array(
 )
 
 
-def own_slots(n: int, contacts: int) -> int:
-    """Slots of a lane on top of those of the program."""
-    return 19 * n + 2 + 13 * contacts
+class AdaptiveSlots(NamedTuple):
+    """Slots of the method, behind those of the law."""
+
+    stage: int  #: accelerations of the seven stages
+    last: int  #: of them that of the last
+    rate: int  #: velocities of the seven stages
+    mean: int  #: mean velocity of the step
+    size: int  #: largest size of each state so far
+    tolerance: int  #: inverse tolerance of each state
+    error: int
+    period: int  #: [s]
+    table: int  #: distances of every contact at five places of the step
+    fresh: int  #: marks of contacts that have just changed their sides
+    end: int
+
+
+@nb.njit(forceinline=True, **INNER)
+def adaptive_slots(code: Index) -> AdaptiveSlots:
+    """Where a lane keeps what the method needs."""
+    s = slots_of(code)
+    n, own, contacts = s.n, s.end, s.contacts
+    mean = own + 14 * n
+    error = mean + 5 * n
+    table = error + 2
+    fresh = table + 10 * contacts
+    return AdaptiveSlots(
+        own, own + 6 * n, own + 7 * n, mean, mean + n, mean + 3 * n, error, error + 1, table,
+        fresh, fresh + contacts - own,
+    )  # fmt: skip
+
+
+class Cells(NamedTuple):
+    """Addresses of the polynomials of the row over the mesh phase."""
+
+    edge: Any
+    degree: Any
+    start: Any
+    coefficients: Any
+    varying: Any
+    varies: int  #: how many factors vary
+
+
+class Trial(NamedTuple):
+    """A step within a segment between two events."""
+
+    cell: int  #: cell of its beginning
+    last: int  #: cell behind those of the segment
+    phase: float  #: [-]
+    width: float  #: [-]
 
 
 @nb.njit(**INNER)
-def find_cell(cells: Any, cell: int, first: int, last: int, phase: float) -> int:
+def find_cell(cells: Cells, cell: int, first: int, last: int, phase: float) -> int:
     """Cell of a phase within the segment from cell ``first`` to before ``last``."""
-    edge = cells[0]
-    while cell < last - 1 and phase > edge[cell + 1]:
+    while cell < last - 1 and phase > cells.edge[cell + 1]:
         cell += 1
-    while cell > first and phase < edge[cell]:
+    while cell > first and phase < cells.edge[cell]:
         cell -= 1
     return cell
 
 
 @nb.njit(**INNER)
-def fill_row(cells: Any, count: int, cell: int, phase: float, row: Array) -> None:
-    """Evaluate the ``count`` varying factors of the row at a phase of the cell."""
-    edge, degree, start, coefficients, varying = cells
-    low, high = edge[cell], edge[cell + 1]
+def fill_row(cells: Cells, cell: int, phase: float, row: Array) -> None:
+    """Evaluate the varying factors of the row at a phase of the cell."""
+    low, high = cells.edge[cell], cells.edge[cell + 1]
     x = ((phase - low) - (high - phase)) / (high - low)
-    top, at = degree[cell], start[cell]
-    for item in range(count):
-        value = coefficients[at + top]
+    top, at = cells.degree[cell], cells.start[cell]
+    for item in range(cells.varies):
+        value = cells.coefficients[at + top]
         for k in range(top):
-            value = value * x + coefficients[at + top - 1 - k]
-        row[varying[item]] = value
+            value = value * x + cells.coefficients[at + top - 1 - k]
+        row[cells.varying[item]] = value
         at += top + 1
 
 
 @nb.njit(**INNER)
-def set_scale(
-    width: int, n: int, own: int, rtol: float, atol: Array, w: Array, position: int
-) -> None:
-    """Take the state from slot ``position`` into the largest sizes and the inverse tolerances."""
+def fill_within(cells: Cells, trial: Trial, theta: float, here: int, row: Array) -> int:
+    """Evaluate the row at a fraction of a step; returns its cell."""
+    phase = trial.phase + theta * trial.width
+    here = find_cell(cells, here, trial.cell, trial.last, phase)
+    fill_row(cells, here, phase, row)
+    return here
+
+
+@nb.njit(**INNER)
+def set_scale(width: int, code: Index, rtol: float, atol: Array, w: Array) -> None:
+    """Take the state into the largest sizes and the inverse tolerances."""
+    n, o = code[0], adaptive_slots(code)
     for i in range(2 * n):
-        size, inverse = (own + 15 * n + i) * width, (own + 17 * n + i) * width
+        size, inverse = (o.size + i) * width, (o.tolerance + i) * width
         for lane in range(width):
-            now = abs(w[(position + i) * width + lane])
+            now = abs(w[i * width + lane])
             if now > w[size + lane]:
                 w[size + lane] = now
             w[inverse + lane] = 1.0 / (atol[i] + rtol * w[size + lane])
 
 
 @nb.njit(**INNER)
-def try_step(
-    lanes: Any,
-    code: Index,
-    reads: Index,
-    cells: Any,
-    count: int,
-    cell: int,
-    last: int,
-    phase: float,
-    width: float,
-    row: Array,
-    own: int,
-    w: Array,
-) -> float:
-    """Step every lane by ``width`` in phase, from buffer 0 to buffer 2; returns the worst error."""
-    n, contacts = code[0], code[1]
-    first, rate, mean = own, own + 7 * n, own + 14 * n
-    period = load(lanes, w, own + 19 * n + 1)
-    h = width * period
-    store(w, 9 * n + 2 * contacts + 1, h)
+def try_step(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> float:
+    """Step every lane, from buffer 0 to buffer 2; returns the worst error over the tolerance."""
+    s, o = slots_of(law.code), adaptive_slots(law.code)
+    n = s.n
+    h = trial.width * load(lanes, w, o.period)
+    store(w, s.h, h)
     for i in range(n):
-        store(w, rate + i, load(lanes, w, n + i))
-    here = cell
-    for s in range(1, 7):
-        if s < 6:
-            place = phase + NODES[s] * width
-            here = find_cell(cells, here, cell, last, place)
-            fill_row(cells, count, here, place, row)
-        buffer = I64(2) if s == 6 else I64(1)
+        store(w, o.rate + i, load(lanes, w, n + i))
+    here = trial.cell
+    for stage in range(1, 7):
+        if stage < 6:
+            here = fill_within(cells, trial, NODES[stage], here, law.rows)
+        buffer = I64(2) if stage == 6 else I64(1)
         target = 2 * n * buffer
         for i in range(n):
-            dq, dv = MATRIX[s, 0] * load(lanes, w, rate + i), MATRIX[s, 0] * load(lanes, w, i + own)
-            for j in range(1, s):
-                factor = MATRIX[s, j]
-                dq = dq + factor * load(lanes, w, rate + j * n + i)
-                dv = dv + factor * load(lanes, w, first + j * n + i)
+            dq = MATRIX[stage, 0] * load(lanes, w, o.rate + i)
+            dv = MATRIX[stage, 0] * load(lanes, w, o.stage + i)
+            for j in range(1, stage):
+                factor = MATRIX[stage, j]
+                dq = dq + factor * load(lanes, w, o.rate + j * n + i)
+                dv = dv + factor * load(lanes, w, o.stage + j * n + i)
             v = load(lanes, w, n + i) + h * dv
             store(w, target + i, load(lanes, w, i) + h * dq)
             store(w, target + n + i, v)
-            store(w, rate + s * n + i, v)
-            if s == 6:
-                store(w, mean + i, dq)
-        acceleration(lanes, code, reads, row, I64(0), buffer, first + s * n, w)
+            store(w, o.rate + stage * n + i, v)
+            if stage == 6:
+                store(w, o.mean + i, dq)
+        acceleration(lanes, law, I64(0), buffer, o.stage + stage * n, w)
     total = 0.0 * h
     for i in range(2 * n):
-        stage = (rate if i < n else first - n) + i
-        error = WEIGHT_ERROR[0] * load(lanes, w, stage)
+        at = (o.rate if i < n else o.stage - n) + i
+        error = WEIGHT_ERROR[0] * load(lanes, w, at)
         for j in range(2, 7):
-            error = error + WEIGHT_ERROR[j] * load(lanes, w, stage + j * n)
-        error = error * h * load(lanes, w, own + 17 * n + i)
+            error = error + WEIGHT_ERROR[j] * load(lanes, w, at + j * n)
+        error = error * h * load(lanes, w, o.tolerance + i)
         total = total + error * error
-    store(w, own + 19 * n, total)
+    store(w, o.error, total)
     worst = 0.0
     for lane in range(len(lanes)):
-        value = w[(own + 19 * n) * len(lanes) + lane]
+        value = w[o.error * len(lanes) + lane]
         if not np.isfinite(value):
             return np.inf
         worst = max(worst, value)
@@ -157,8 +192,10 @@ def try_step(
 
 
 @nb.njit(**INNER)
-def between(lanes: Any, n: int, own: int, theta: float, h: Any, speed: bool, w: Array) -> None:
+def between(lanes: Any, law: Law, theta: float, speed: bool, w: Array) -> None:
     """State at the fraction ``theta`` of the step, into buffer 1; without ``speed`` positions."""
+    slots, o = slots_of(law.code), adaptive_slots(law.code)
+    n, h = slots.n, load(lanes, w, slots.h)
     s = theta
     s2, s3 = s * s, s * s * s
     b5 = s3 * (10.0 - s * (15.0 - 6.0 * s))
@@ -173,8 +210,8 @@ def between(lanes: Any, n: int, own: int, theta: float, h: Any, speed: bool, w: 
     d3 = s2 * (1.5 - s * (4.0 - 2.5 * s))
     for i in range(n):
         v0, v1 = load(lanes, w, n + i), load(lanes, w, 5 * n + i)
-        a0, a1 = load(lanes, w, own + i), load(lanes, w, own + 6 * n + i)
-        mean = load(lanes, w, own + 14 * n + i)
+        a0, a1 = load(lanes, w, o.stage + i), load(lanes, w, o.last + i)
+        mean = load(lanes, w, o.mean + i)
         q = b5 * mean + b1 * v0 + b4 * v1 + h * (b2 * a0 + b3 * a1)
         store(w, 2 * n + i, load(lanes, w, i) + h * q)
         if speed:
@@ -182,65 +219,44 @@ def between(lanes: Any, n: int, own: int, theta: float, h: Any, speed: bool, w: 
 
 
 @nb.njit(**INNER)
-def clearances(
-    lanes: Any, code: Index, reads: Index, row: Array, buffer: int, slot: int, w: Array
-) -> None:
+def _distances(lanes: Any, law: Law, buffer: int, slot: int, w: Array) -> None:
     """Distances of every contact to the boundaries of its side, two slots each from ``slot``."""
-    n, contacts = code[0], code[1]
-    at, read, here = I64(4), buffer * code[3], I64(0)
-    for j in range(contacts):
-        if code[at + 2] != 0:
-            d = compression(lanes, code, reads, row, at, read, here, w)
-            gap = dead_zone(lanes, code, row, here, w)
-            sign = load(lanes, w, 8 * n + contacts + j)
-            touch = sign * sign
-            inside, free = touch * (sign * d - gap), 1.0 - touch
-            store(w, slot + 2 * j, inside + free * (gap - d))
-            store(w, slot + 2 * j + 1, inside + free * (gap + d))
-        here += 5 + code[at] + code[at + 1]
-        read += code[at] + code[at + 1]
-        at += 4
+    here = first_contact(law, I64(0), buffer)
+    for j in range(law.code[1]):
+        if is_dead_zone(law, here):
+            near, far = clearances(lanes, law, here, j, w)
+            store(w, slot + 2 * j, near)
+            store(w, slot + 2 * j + 1, far)
+        here = next_contact(law, here)
 
 
 @nb.njit(**INNER)
-def may_cross(
-    lanes: Any,
-    code: Index,
-    reads: Index,
-    cells: Any,
-    count: int,
-    cell: int,
-    last: int,
-    phase: float,
-    width: float,
-    row: Array,
-    own: int,
-    w: Array,
-) -> bool:
+def may_cross(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> bool:
     """Tell whether a contact of any lane may have left its side within the step just tried."""
-    n, contacts = code[0], code[1]
-    h, table = load(lanes, w, 9 * n + 2 * contacts + 1), own + 19 * n + 2
-    here = cell
+    contacts, table = law.code[1], adaptive_slots(law.code).table
+    cell = trial.cell
     for m in range(5):
         theta = 0.25 * m
-        here = find_cell(cells, here, cell, last, phase + theta * width)
-        fill_row(cells, count, here, phase + theta * width, row)
+        cell = fill_within(cells, trial, theta, cell, law.rows)
         if 0 < m < 4:
-            between(lanes, n, own, theta, h, False, w)
+            between(lanes, law, theta, False, w)
         buffer = I64(0) if m == 0 else (I64(2) if m == 4 else I64(1))
-        clearances(lanes, code, reads, row, buffer, table + 2 * contacts * m, w)
-    found = False
+        _distances(lanes, law, buffer, table + 2 * contacts * m, w)
+    some = False
+    here = first_contact(law, I64(0), I64(0))
     for j in range(contacts):
-        if code[4 + 4 * j + 2] == 0:
+        dead = is_dead_zone(law, here)
+        here = next_contact(law, here)
+        if not dead:
             continue
         for slot in range(table + 2 * j, table + 2 * j + 2):
             before = load(lanes, w, slot)
-            here_now = load(lanes, w, slot + 2 * contacts)
+            now = load(lanes, w, slot + 2 * contacts)
             for m in range(2, 5):
                 after = load(lanes, w, slot + 2 * contacts * m)
                 slope = after - before
                 reach = greatest(slope, 0.0 * slope - slope)
-                if any_negative(here_now - 0.25 * reach) or any_negative(after):
-                    found = True
-                before, here_now = here_now, after
-    return found
+                if any_negative(now - 0.25 * reach) or any_negative(after):
+                    some = True
+                before, now = now, after
+    return some

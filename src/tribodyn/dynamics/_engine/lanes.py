@@ -90,6 +90,14 @@ def _broadcast(builder: Any, scalar: Any, width: int) -> Any:
     return builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), mask)
 
 
+def _uniform(width: int, number: float) -> Any:
+    return ir.Constant(ir.VectorType(ir.DoubleType(), width), [number] * width)
+
+
+def _any(builder: Any, comparison: Any, width: int) -> Any:
+    return cgutils.is_not_null(builder, builder.bitcast(comparison, ir.IntType(width)))
+
+
 @intrinsic
 def any_negative(typing: Any, value: Any) -> Any:
     """Tell whether the number of any lane is below zero."""
@@ -97,14 +105,20 @@ def any_negative(typing: Any, value: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         width = signature.args[0].width
         below = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
-        bits = builder.bitcast(below, ir.IntType(width))
-        return cgutils.is_not_null(builder, bits)
+        return _any(builder, below, width)
 
     return types.boolean(value), generate
 
 
-def _uniform(width: int, number: float) -> Any:
-    return ir.Constant(ir.VectorType(ir.DoubleType(), width), [number] * width)
+@intrinsic
+def any_above(typing: Any, value: Any, limit: Any) -> Any:
+    """Tell whether any lane is above its limit or no number."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        higher = builder.fcmp_unordered(">", arguments[0], arguments[1])
+        return _any(builder, higher, signature.args[0].width)
+
+    return types.boolean(value, limit), generate
 
 
 @intrinsic
@@ -120,16 +134,16 @@ def negative_lanes(typing: Any, value: Any) -> Any:
     return types.int64(value), generate
 
 
-@intrinsic
-def above(typing: Any, left: Any, right: Any) -> Any:
-    """1 for every lane whose left number is above the right one, else 0."""
+def _indicator(comparison: str) -> Any:
+    def compare(typing: Any, left: Any, right: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            width = signature.args[0].width
+            holds = builder.fcmp_ordered(comparison, arguments[0], arguments[1])
+            return builder.select(holds, _uniform(width, 1.0), _uniform(width, 0.0))
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        width = signature.args[0].width
-        higher = builder.fcmp_ordered(">", arguments[0], arguments[1])
-        return builder.select(higher, _uniform(width, 1.0), _uniform(width, 0.0))
+        return left(left, right), generate
 
-    return left(left, right), generate
+    return intrinsic(compare)
 
 
 @intrinsic
@@ -226,3 +240,28 @@ def _choice(comparison: str) -> Any:
 
 #: Smaller and larger of two vectors, lane by lane.
 least, greatest = _choice("<"), _choice(">")
+
+#: 1 for every lane whose left number is above, or below, the right one, else 0.
+above, below = _indicator(">"), _indicator("<")
+
+
+@intrinsic
+def quotient(typing: Any, left: Any, right: Any) -> Any:
+    """Divide lane by lane."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.fdiv(arguments[0], arguments[1])
+
+    return left(left, right), generate
+
+
+@intrinsic
+def magnitude(typing: Any, value: Any) -> Any:
+    """Take absolute values lane by lane."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        width = signature.args[0].width
+        negative = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
+        return builder.select(negative, builder.fneg(arguments[0]), arguments[0])
+
+    return value(value), generate

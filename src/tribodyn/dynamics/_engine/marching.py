@@ -11,239 +11,231 @@ from numba import types
 from numba.extending import overload
 
 from tribodyn.compiled import source_digest
-from tribodyn.dynamics._engine.contact_forces import I64, INNER, JIT, left_side, step
-from tribodyn.dynamics._engine.crossing import MAX_SPLITS, set_sides, split_step
+from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
+from tribodyn.dynamics._engine.contact_forces import (
+    I64,
+    INNER,
+    JIT,
+    Law,
+    first_contact,
+    is_dead_zone,
+    left_side,
+    next_contact,
+    set_sides,
+    slots_of,
+)
+from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
 from tribodyn.dynamics._engine.lanes import address, open_rows
-from tribodyn.dynamics._engine.moments import gather, gather_parts
+from tribodyn.dynamics._engine.method import accept, own_slots, prepare, restart, step
+from tribodyn.dynamics._engine.moments import Gathered, gather, gather_parts
+from tribodyn.dynamics.equations.program import Program
+from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
-_SOURCES = ("lanes", "contact_forces", "crossing", "moments", "marching")
+_SOURCES = (
+    "lanes", "contact_forces", "method", "runge_kutta", "newmark", "crossing", "moments",
+    "marching", "../equations/program", "../equations/motion", "../equations/divergence",
+)  # fmt: skip
+#: What :func:`march_block` returns from here on tells of a step that comes to no end, and of one
+#: whose forces were not found.
+UNPARTED, UNFOUND = 1 << 40, 1 << 50
 
 
 @nb.njit(**INNER)
-def _take(lane: int, width: int, slots: int, w: Array, single: Array) -> None:
+def take_lane(lane: int, width: int, slots: int, w: Array, single: Array) -> None:
+    """Copy the slots of one lane of a block."""
     for slot in range(slots):
         single[slot] = w[slot * width + lane]
 
 
 @nb.njit(**INNER)
-def _put(lane: int, width: int, first: int, last: int, w: Array, single: Array) -> None:
+def put_lane(lane: int, width: int, first: int, last: int, w: Array, single: Array) -> None:
+    """Copy slots of one lane back into the block."""
     for slot in range(first, last):
         w[slot * width + lane] = single[slot]
 
 
-def _own_rows(
-    rows: Any, base: int, columns: int, width: int, lane: int, room: Any
-) -> tuple[Any, int]:
-    """Three rows of one lane, as an address and a base; gathered in ``room`` if need be."""
-    return rows, base
+def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> tuple[Law, int]:
+    """Law of one lane and where its three rows begin; gathered if lanes have rows of their own."""
+    raise NotImplementedError
 
 
-@overload(_own_rows)
-def _choose_rows(rows, base, columns, width, lane, room):  # type: ignore[no-untyped-def]
-    if not isinstance(rows, types.BaseTuple):
-        return lambda rows, base, columns, width, lane, room: (rows, base)
+@overload(_rows_of_lane)
+def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-def]
+    if not isinstance(law.types[2], types.BaseTuple):
+        return lambda law, base, width, lane, gathered: (law, base)
 
-    def gathered(rows, base, columns, width, lane, room):  # type: ignore[no-untyped-def]
-        table = rows[0]
-        for item in range(3 * columns):
-            room[item] = table[(base + item) * width + lane]
-        return room, 0
+    def gather_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-def]
+        table = law.rows[0]
+        for item in range(3 * law.code[2]):
+            gathered[item] = table[(base + item) * width + lane]
+        return Law(law.code, law.reads, gathered), 0
 
-    return gathered
-
-
-@nb.njit(**INNER)
-def _repair(
-    lane: int,
-    slots: int,
-    lanes: Any,
-    code: Index,
-    reads: Index,
-    rows: Array,
-    base: int,
-    w: Array,
-    single: Array,
-    part: Array,
-    room: Array,
-    parts: Array,
-) -> None:
-    """Repeat the step in parts for a lane that crossed a boundary."""
-    n, side, width = code[0], 8 * code[0] + code[1], len(lanes)
-    h = 9 * n + 2 * code[1] + 1
-    _take(lane, width, slots, w, single)
-    own, start = _own_rows(rows, base, code[2], width, lane, room)
-    split_step(code, reads, own, start, w[h * width + lane], part, single, parts)
-    _put(lane, width, 4 * n, 6 * n, w, single)
-    _put(lane, width, side, side + code[1], w, single)
+    return gather_rows
 
 
-def _room_aside(first: int, moments: Any, waves: int) -> Array:
-    """Room for ``first`` numbers; with moments, also for those of every lane and some waves."""
-    return np.empty(first + (0 if moments is None else moments.size + waves))
+def _moments_of(gathered: Any) -> Any:
+    """Numbers of all moments and of the waves of a step; none without statistics."""
+    raise NotImplementedError
 
 
-@overload(_room_aside)
-def _choose_room(first, moments, waves):  # type: ignore[no-untyped-def]
-    if isinstance(moments, types.NoneType):
-        return lambda first, moments, waves: np.empty(first)
-    return lambda first, moments, waves: np.empty(first + moments.size + waves)
+@overload(_moments_of)
+def _choose_moments(gathered):  # type: ignore[no-untyped-def]
+    if isinstance(gathered, types.NoneType):
+        return lambda gathered: (0, 0)
+    return lambda gathered: (gathered.moments.size, 6 * gathered.harmonics)
 
 
 @nb.njit(**INNER)
-def _put_back(gone: int, width: int, moments: Array, kept: Array) -> None:
-    """Replace the moments of split lanes, to which the whole step was added, by their own."""
-    count = moments.size // width
-    for lane in range(width):
-        if (gone >> lane) & 1:
-            own = address(kept[lane * count :])
-            _put(lane, width, I64(0), count, address(moments), own)
-
-
-@nb.njit(**INNER)
-def _set_up(lanes: Any, code: Index, period: Array, load: Array, state: Array, w: Array) -> None:
-    n, contacts, width = code[0], code[1], len(lanes)
-    steady = 8 * n + 2 * contacts
-    one = steady + n
+def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w: Array) -> None:
+    """Fill the slots of all lanes: state, load and factors."""
+    s = slots_of(code)
+    n = s.n
     for lane in range(width):
         for i in range(2 * n):
             w[i * width + lane] = state[lane, i]
         for i in range(n):
-            w[(steady + i) * width + lane] = load[lane, i]
-        for j in range(contacts):
-            w[(8 * n + contacts + j) * width + lane] = 1.0
-        w[one * width + lane] = 1.0
-        w[(one + 2) * width + lane] = 1.0 / period[lane]
+            w[(s.load + i) * width + lane] = load[lane, i]
+        for j in range(s.contacts):
+            w[(s.side + j) * width + lane] = 1.0
+        w[s.force_scale * width + lane] = 1.0
+        w[s.beat * width + lane] = 1.0 / period[lane]
         if load.shape[1] > n:
-            # Factors of stiffness, damping, friction, error, gap and load: see `Slots`.
-            for slot, item in ((6, 0), (7, 1), (8, 2), (5, 4)):
-                w[(one + slot) * width + lane] = load[lane, n + item] - 1.0
-            w[(one + 3) * width + lane] = 1.0 - load[lane, n + 3]
-            w[one * width + lane] = load[lane, n + 5]
+            w[s.stiffness * width + lane] = load[lane, n] - 1.0
+            w[s.damping * width + lane] = load[lane, n + 1] - 1.0
+            w[s.rub * width + lane] = load[lane, n + 2] - 1.0
+            w[s.error * width + lane] = 1.0 - load[lane, n + 3]
+            w[s.gap * width + lane] = load[lane, n + 4] - 1.0
+            w[s.force_scale * width + lane] = load[lane, n + 5]
+
+
+@nb.njit(**INNER)
+def has_dead_zones(law: Law) -> bool:
+    """Whether any contact has a dead zone."""
+    here = first_contact(law, I64(0), I64(0))
+    some: Any = np.bool_(False)
+    for _ in range(law.code[1]):
+        some = some or is_dead_zone(law, here)
+        here = next_contact(law, here)
+    return some
 
 
 def _build(digest: str) -> Any:
     @nb.njit(cache=True, **JIT)
     def march_block(
         lanes: Any,
-        code: Index,
-        reads: Index,
-        rows: Any,
-        share: Array,
-        restart: Any,
-        work: Array,
+        method: Any,
+        program: Program,
+        rows: Array,
         period: Array,
         load: Array,
         state: Array,
         cycles: int,
         record: Array,
-        outputs: Array,
-        waves: Array,
-        harmonics: int,
-        moments: Any,
+        gathered: Gathered | None,
+        stop: Index,
     ) -> int:
-        """March every lane by ``cycles`` mesh cycles."""
+        """March every lane by ``cycles`` mesh cycles.
+
+        Returns -1 when done, :data:`STOPPED` when stopped, else the step, counted from the start,
+        after which a state is not finite; or, with ``step * contacts + contact`` times the lanes
+        plus the lane on top of it, :data:`UNPARTED`; or :data:`UNFOUND` plus the step.
+        """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        n, columns, width = code[0], code[2], len(lanes)
-        h = 9 * n + 2 * code[1] + 1
-        slots = h + 8 + code[4 + 4 * code[1]]
+        share, again = program.width, program.restart
+        law = Law(address(program.code), address(program.reads), open_rows(rows))
+        s, n, columns, width = slots_of(law.code), law.code[0], law.code[2], len(lanes)
+        own, lasting = own_slots(method, law)
+        slots = s.end + own
+        # Slots of all lanes, those of one, rows of a part of a step, rows of one lane.
+        work = np.zeros(slots * (width + 1) + 6 * columns)
         single, part = address(work[slots * width :]), address(work[slots * (width + 1) :])
-        room = address(work[slots * (width + 1) + 3 * columns :])
-        w, code, reads, table = address(work), address(code), address(reads), open_rows(rows)
-        # A list of the parts of a step, moments of the lanes that were split, waves of a part.
-        most = 1 + (MAX_SPLITS + 1) * (2 + code[1] + 4 * n)
-        kept = _room_aside(most, moments, 6 * harmonics)
-        parts, wave = address(kept), address(waves)
-        _set_up(lanes, code, period, load, state, w)
-        switching = np.bool_(False)
-        for j in range(code[1]):
-            switching = switching or code[4 + 4 * j + 2] != 0
+        w, room = address(work), address(work[slots * (width + 1) + 3 * columns :])
+        # A list of the parts of a step, the search, moments of the lanes that were split, waves.
+        listed = 1 + (most_splits(s.contacts) + 1) * (2 + s.contacts + 4 * n)
+        most = listed + WIDTH * (s.contacts + 1)
+        counts = _moments_of(gathered)
+        kept = np.empty(most + counts[0] + counts[1])
+        parts, search = address(kept), address(kept[listed:])
+        set_up(width, law.code, period, load, state, w)
+        for lane in range(width if own > 0 else 0):
+            take_lane(lane, width, slots, w, single)
+            alone, first = _rows_of_lane(law, I64(0), width, lane, room)
+            prepare(method, alone, first, period[lane], single)
+            put_lane(lane, width, s.end, slots, w, single)
+        switching = has_dead_zones(law)
         keep = record.shape[0] > 0
         point = 0
         for _cycle in range(cycles):
             for r in range(share.size):
+                if stop[0] != 0:
+                    return STOPPED
                 base = 3 * columns * r
                 for lane in range(width):
-                    w[h * width + lane] = period[lane] * share[r]
-                if switching and restart[r]:
-                    set_sides(lanes, code, reads, table, base, I64(0), w)
+                    w[s.h * width + lane] = period[lane] * share[r]
+                if again[r] or point == 0:
+                    if switching:
+                        set_sides(lanes, law, base, I64(0), w)
+                    restart(lanes, method, law, base, w)
                 if keep:
                     for i in range(2 * n):
                         for lane in range(width):
                             record[point, i, lane] = w[i * width + lane]
-                step(lanes, code, reads, table, base, w)
+                if not step(lanes, method, law, r, base, w):
+                    return UNFOUND + point + 1
                 gone = I64(0)
                 if switching:
-                    gone = left_side(lanes, code, reads, table, base + 2 * columns, w)
+                    gone = left_side(lanes, law, base + 2 * columns, w)
                 if gone != 0:
                     for lane in range(width):
                         if not (gone >> lane) & 1:
                             continue
-                        _repair(
-                            lane,
-                            slots,
-                            lanes,
-                            code,
-                            reads,
-                            table,
-                            base,
-                            w,
-                            single,
-                            part,
-                            room,
-                            parts,
+                        take_lane(lane, width, slots, w, single)
+                        alone, first = _rows_of_lane(law, base, width, lane, room)
+                        whole = period[lane] * share[r]
+                        good, contact = split_step(
+                            method, alone, first, whole, part, single, parts, search
                         )
-                        if moments is not None:
-                            count = moments.size // width
-                            own = address(kept[most + lane * count :])
-                            _take(lane, width, count, address(moments), own)
-                            own_rows, start = _own_rows(table, base, columns, width, lane, room)
+                        if contact >= 0:
+                            return UNPARTED + (point * s.contacts + contact) * width + lane
+                        if not good:
+                            return UNFOUND + point + 1
+                        put_lane(lane, width, 4 * n, 6 * n, w, single)
+                        put_lane(lane, width, s.force, s.side + s.contacts, w, single)
+                        put_lane(lane, width, s.end, s.end + lasting, w, single)
+                        if gathered is not None:
+                            count = counts[0] // width
+                            mine = address(kept[most + lane * count :])
+                            take_lane(lane, width, count, address(gathered.moments), mine)
                             gather_parts(
-                                code,
-                                reads,
-                                own_rows,
-                                start,
-                                parts,
-                                period[lane] * share[r],
-                                part,
-                                single,
-                                outputs,
-                                share[r] / cycles,
-                                wave,
-                                6 * harmonics * r,
-                                harmonics,
-                                address(kept[most + width * count :]),
-                                own,
-                            )
-                if moments is not None:
+                                alone, first, parts, whole, part, single, gathered.outputs,
+                                share[r] / cycles, address(gathered.waves),
+                                6 * gathered.harmonics * r, gathered.harmonics,
+                                address(kept[most + counts[0] :]), mine,
+                            )  # fmt: skip
+                if gathered is not None:
                     for lane in range(width):
-                        w[(h + 3) * width + lane] = 1.0 / w[h * width + lane]
+                        w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
+                    moments = address(gathered.moments)
                     gather(
-                        lanes,
-                        code,
-                        reads,
-                        table,
-                        base,
-                        switching,
-                        w,
-                        outputs,
-                        share[r] / cycles,
-                        wave,
-                        6 * harmonics * r,
-                        harmonics,
-                        address(moments),
-                    )
-                    if gone != 0:
-                        _put_back(gone, width, moments, kept[most:])
-                for item in range(2 * n * width):
-                    w[item] = w[4 * n * width + item]
+                        lanes, law, base, switching, w, gathered.outputs, share[r] / cycles,
+                        address(gathered.waves), 6 * gathered.harmonics * r, gathered.harmonics,
+                        moments,
+                    )  # fmt: skip
+                    # The whole step was added to lanes that were split: their own moments instead.
+                    for lane in range(width if gone != 0 else 0):
+                        if (gone >> lane) & 1:
+                            count = counts[0] // width
+                            mine = address(kept[most + lane * count :])
+                            put_lane(lane, width, I64(0), count, moments, mine)
+                accept(lanes, method, law, w)
                 point += 1
             for item in range(2 * n * width):
                 if not np.isfinite(w[item]):
                     return point
-        # The address of the list of parts holds only as long as its owner is in use.
-        kept[0] = 0.0
+        # Addresses hold only as long as their owners are in use.
+        kept[0] = work[0]
         for lane in range(width):
             for i in range(2 * n):
                 state[lane, i] = w[i * width + lane]

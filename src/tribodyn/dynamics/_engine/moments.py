@@ -10,15 +10,28 @@ linear outputs of the state.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.dynamics._engine.contact_forces import I64, INNER, acceleration, compression
-from tribodyn.dynamics._engine.crossing import row_within, set_sides
+from tribodyn.dynamics._engine.contact_forces import (
+    I64,
+    INNER,
+    Law,
+    acceleration,
+    compression,
+    first_contact,
+    next_contact,
+    set_sides,
+    slots_of,
+)
+from tribodyn.dynamics._engine.crossing import row_within
 from tribodyn.dynamics._engine.lanes import greatest, least, load, store
-from tribodyn.types import Array, Index
+from tribodyn.dynamics.equations import motion
+from tribodyn.types import Array
+
+cubic_middle = nb.njit(**INNER)(motion.cubic_middle)
 
 #: Per signal: mean, mean square, minimum, maximum, share of the time off the driving flank.
 #: Signals of the contacts are followed by a cosine and a sine part per harmonic.
@@ -27,30 +40,34 @@ PLAIN_MOMENTS = 5
 _SHORTEST = 1e-7
 
 
+class Gathered(NamedTuple):
+    """What statistics are gathered."""
+
+    outputs: Array  #: linear outputs of the state
+    waves: Array  #: cosine and sine of every harmonic at the three nodes of every step
+    harmonics: int
+    moments: Array  #: of all lanes
+
+
 @nb.njit(**INNER)
-def _middle(lanes: Any, code: Index, w: Array) -> None:
-    """Hermite interpolant of buffers 0 and 2 at the middle of the step, into buffer 1."""
-    n = code[0]
-    h = load(lanes, w, 9 * n + 2 * code[1] + 1)
-    inverse = load(lanes, w, 9 * n + 2 * code[1] + 4)
+def _middle(lanes: Any, law: Law, w: Array) -> None:
+    """Interpolant of buffers 0 and 2 at the middle of the step, into buffer 1."""
+    s = slots_of(law.code)
+    n, h, inverse = s.n, load(lanes, w, s.h), load(lanes, w, s.inverse)
     for i in range(n):
-        q0, v0 = load(lanes, w, i), load(lanes, w, n + i)
-        q1, v1 = load(lanes, w, 4 * n + i), load(lanes, w, 5 * n + i)
-        store(w, 2 * n + i, 0.5 * (q0 + q1) + 0.125 * h * (v0 - v1))
-        store(w, 3 * n + i, 1.5 * inverse * (q1 - q0) - 0.25 * (v0 + v1))
+        q, v = cubic_middle(
+            h, inverse, load(lanes, w, i), load(lanes, w, n + i),
+            load(lanes, w, 4 * n + i), load(lanes, w, 5 * n + i),
+        )  # fmt: skip
+        store(w, 2 * n + i, q)
+        store(w, 3 * n + i, v)
 
 
 @nb.njit(**INNER)
 def _add(
-    lanes: Any,
-    value: Any,
-    weight: float,
-    at: int,
-    waves: Array,
-    wave: int,
-    harmonics: int,
+    lanes: Any, value: Any, weight: float, at: int, waves: Array, wave: int, harmonics: int,
     m: Array,
-) -> None:
+) -> None:  # fmt: skip
     weighted = weight * value
     store(m, at, load(lanes, m, at) + weighted)
     store(m, at + 1, load(lanes, m, at + 1) + weighted * value)
@@ -63,46 +80,34 @@ def _add(
 
 @nb.njit(**INNER)
 def gather(
-    lanes: Any,
-    code: Index,
-    reads: Index,
-    rows: Array,
-    base: int,
-    switching: bool,
-    w: Array,
-    outputs: Array,
-    share: float,
-    waves: Array,
-    wave: int,
-    harmonics: int,
-    m: Array,
-) -> None:
+    lanes: Any, law: Law, base: int, switching: bool, w: Array, outputs: Array, share: float,
+    waves: Array, wave: int, harmonics: int, m: Array,
+) -> None:  # fmt: skip
     """Add one step, whose ends are in buffers 0 and 2, to the moments ``m``."""
-    n, contacts, columns = code[0], code[1], code[2]
+    s, columns = slots_of(law.code), law.code[2]
+    n, contacts = s.n, s.contacts
     long = PLAIN_MOMENTS + 2 * harmonics
-    _middle(lanes, code, w)
+    _middle(lanes, law, w)
     for node in range(3):
         buffer, row = (0, 1, 2)[node], base + node * columns
         weight = (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)[node] * share
         phase = wave + node * 2 * harmonics
         if switching:
-            set_sides(lanes, code, reads, rows, row, buffer, w)
-        acceleration(lanes, code, reads, rows, row, buffer, 6 * n, w)
-        at, read, here = I64(4), buffer * code[3], row
+            set_sides(lanes, law, row, buffer, w)
+        acceleration(lanes, law, row, buffer, s.first, w)
+        here = first_contact(law, row, buffer)
         for j in range(contacts):
-            d = compression(lanes, code, reads, rows, at, read, here, w)
+            d = compression(lanes, law, here, w)
             _add(lanes, d, weight, j * long, waves, phase, harmonics, m)
-            force = load(lanes, w, 8 * n + j)
+            force = load(lanes, w, s.force + j)
             _add(lanes, force, weight, (contacts + j) * long, waves, phase, harmonics, m)
-            off = weight * (1.0 - greatest(load(lanes, w, 8 * n + contacts + j), 0.0 * d))
+            off = weight * (1.0 - greatest(load(lanes, w, s.side + j), 0.0 * d))
             slot = (contacts + j) * long + 4
             store(m, slot, load(lanes, m, slot) + off)
-            here += 5 + code[at] + code[at + 1]
-            read += code[at] + code[at + 1]
-            at += 4
+            here = next_contact(law, here)
         signal = 2 * contacts * long
         for i in range(n):
-            a = load(lanes, w, 6 * n + i)
+            a = load(lanes, w, s.first + i)
             _add(lanes, a, weight, signal, waves, phase, 0, m)
             signal += PLAIN_MOMENTS
         for o in range(outputs.shape[0]):
@@ -130,54 +135,29 @@ def _waves_within(
 
 @nb.njit(**INNER)
 def gather_parts(
-    code: Index,
-    reads: Index,
-    rows: Array,
-    base: int,
-    parts: Array,
-    width: float,
-    part: Array,
-    w: Array,
-    outputs: Array,
-    share: float,
-    waves: Array,
-    wave: int,
-    harmonics: int,
-    near: Array,
-    m: Array,
-) -> None:
+    law: Law, base: int, parts: Array, width: float, part: Array, w: Array, outputs: Array,
+    share: float, waves: Array, wave: int, harmonics: int, near: Array, m: Array,
+) -> None:  # fmt: skip
     """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``."""
-    n, contacts = code[0], code[1]
-    one, at = 9 * n + 2 * contacts, I64(1)
+    s, own = slots_of(law.code), Law(law.code, law.reads, part)
+    n, contacts, at = s.n, s.contacts, I64(1)
     for _ in range(I64(parts[0])):
         start, end = parts[at], parts[at + 1]
         at += 2
         if end - start > _SHORTEST:
             for j in range(contacts):
-                w[8 * n + contacts + j] = parts[at + j]
+                w[s.side + j] = parts[at + j]
             for i in range(2 * n):
                 w[i] = parts[at + contacts + i]
                 w[4 * n + i] = parts[at + contacts + 2 * n + i]
             for node in range(3):
                 tau = start + 0.5 * node * (end - start)
-                row_within(code, rows, base, tau, part, I64(node))
+                row_within(law, base, tau, part, I64(node))
                 _waves_within(waves, wave, harmonics, tau, near, I64(node))
-            w[one + 1] = width * (end - start)
-            w[one + 4] = 1.0 / w[one + 1]
-            here = share * (end - start)
+            w[s.h] = width * (end - start)
+            w[s.inverse] = 1.0 / w[s.h]
             gather(
-                (0.0,),
-                code,
-                reads,
-                part,
-                I64(0),
-                np.bool_(False),
-                w,
-                outputs,
-                here,
-                near,
-                I64(0),
-                harmonics,
-                m,
-            )
+                (0.0,), own, I64(0), np.bool_(False), w, outputs, share * (end - start), near,
+                I64(0), harmonics, m,
+            )  # fmt: skip
         at += contacts + 4 * n

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.start import static_start
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
@@ -62,7 +63,6 @@ def step_share(
 ) -> float:
     """Error of a step over the tolerance of the motion."""
     system, nodes = compiled.system, compiled.nodes
-    size = system.size
     inverse = np.linalg.inv(np.asarray(system.mass))
     longest = 0.0
     pairs = (
@@ -76,11 +76,7 @@ def step_share(
                 "rs,rsj,rsji,rsjk->ik", nodes.weight, values, nodes.direction, nodes.direction
             )
             parts.append(inverse @ (np.asarray(own) + share * contact))
-        scale = max(float(np.sqrt(np.abs(parts[0]).max())), 1e-30)
-        matrix = np.block(
-            [[np.zeros((size, size)), scale * np.eye(size)], [-parts[0] / scale, -parts[1]]]
-        )
-        roots = np.linalg.eigvals(matrix)
+        roots = state_roots(*parts)
         time = np.minimum(duration, 1.0 / np.maximum(-roots.real, 1e-3 / duration))
         longest = max(longest, float((np.abs(roots.imag) * time).max(initial=0.0)))
     share = _SHARE_WITH_GAP if np.any(nodes.gap > 0.0) else _SHARE

@@ -9,7 +9,7 @@
 | `motion` | What forces and accelerations follow from a motion? The law, readable. |
 | `program` | In which flat arrays do the kernels read the law? |
 | `lane_parameters` | By which factors do lanes of an ensemble differ? |
-| `lane_tables` | How do lanes with systems of their own march on one grid? |
+| `compiled` | What is a system, or one for each lane, on its grid? |
 | `step_limit` | How long may a step be? |
-| `divergence` | Why did a motion grow beyond all bounds? |
+| `divergence` | What is said of a march that failed, and why did it? |
 """

@@ -61,7 +61,7 @@ class Slots(NamedTuple):
     damping: int  #: factor of the damping less 1
     rub: int  #: factor of the friction less 1
     friction: int  #: force of every friction that follows its load
-    count: int  #: number of slots; those of a method begin here
+    end: int  #: number of slots; those of a method begin here
 
 
 def lay_out(n: int, contacts: int, frictions: int) -> Slots:
@@ -134,7 +134,7 @@ def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> 
 def _friction_terms(
     system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
 ) -> list[int]:
-    code = [slots.count - slots.friction]
+    code = [slots.end - slots.friction]
     for f, one in enumerate(system.frictions):
         count = coefficient_count(f"frictions[{f}].coefficients", one)
         code += [len(one.contacts), count]

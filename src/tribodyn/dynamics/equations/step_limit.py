@@ -18,7 +18,7 @@ from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.load_friction import friction_tangent, push_with_friction
 from tribodyn.errors import InputError, Problem
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, ComplexArray, Index
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.
 LIMIT = 2.7
@@ -41,7 +41,6 @@ def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLA
 
 def _rates(system: System, nodes: Nodes, rows: Index, stages: Index, factors: Array) -> Array:
     """Largest modulus of an eigenvalue for each row of ``factors`` (f, 3), f or 1 rows each."""
-    size = system.size
     along, push = nodes.direction[rows, stages], nodes.force_direction[rows, stages]
     if system.frictions:
         at = Nodes(*(part[rows, stages] for part in nodes))
@@ -56,6 +55,12 @@ def _rates(system: System, nodes: Nodes, rows: Index, stages: Index, factors: Ar
     inverse = np.linalg.inv(np.asarray(system.mass))
     elastic = inverse @ (spring * stiffness + np.asarray(system.stiffness))
     viscous = inverse @ (damper * damping + np.asarray(system.damping))
+    return np.asarray(np.abs(state_roots(elastic, viscous)).max(axis=(-2, -1)))
+
+
+def state_roots(elastic: Array, viscous: Array) -> ComplexArray:
+    """Eigenvalues of ``q'' = -elastic q - viscous q'``, for matrices (..., n, n)."""
+    size = elastic.shape[-1]
     # Displacements in units of velocity over the largest stiffness rate: without it the matrix
     # mixes entries of 1 and 1e12 and the eigenvalues lose digits.
     scale = max(float(np.sqrt(np.abs(elastic).max())), 1e-30)
@@ -63,7 +68,7 @@ def _rates(system: System, nodes: Nodes, rows: Index, stages: Index, factors: Ar
     state[..., :size, size:] = scale * np.eye(size)
     state[..., size:, :size] = -elastic / scale
     state[..., size:, size:] = -viscous
-    return np.asarray(np.abs(np.linalg.eigvals(state)).max(axis=(-2, -1)))
+    return np.asarray(np.linalg.eigvals(state), dtype=complex)
 
 
 def _stiffest_rows(total: Array) -> tuple[Index, Index]:

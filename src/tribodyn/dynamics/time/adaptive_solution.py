@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.adaptive_engine import adaptive_engine
+from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, adaptive_engine
 from tribodyn.dynamics._engine.tolerance import Tolerance
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start, require_cycles
@@ -230,26 +230,18 @@ def solve_adaptive(
     engine = adaptive_engine(system, mesh_frequency, cycles, rtol=rtol, atol=atol)
     state = read_start(system, start)[None, :]
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
-    period, memory = np.array([1.0 / mesh_frequency]), None
+    lane = AdaptiveLanes(engine, np.array([1.0 / mesh_frequency]), extra_force=extra[None, :])
     trails, room, counts = [], _ROOM, np.zeros(2, dtype=np.int64)
     for cycle in range(cycles):
-        while True:
-            run = engine.march(
-                period,
-                state,
-                1,
-                extra_force=extra[None, :],
-                memory=memory,
-                room=room,
-                elapsed=cycle,
-            )
-            if run.steps <= room:
-                break
-            room = 2 * run.steps
+        memory = lane.memory.copy()
+        run = lane.march(state, 1, room=room, elapsed=cycle)
+        while run.steps > room:
+            room, lane.memory = 2 * run.steps, memory.copy()
+            run = lane.march(state, 1, room=room, elapsed=cycle)
         run.trail[:, 0] += cycle
         trails.append(run.trail)
         counts += (run.rejections, run.crossings)
-        state, memory = run.state, run.memory
+        state = run.state
     trail = np.concatenate(trails)
     n = system.size
     phase = np.append(trail[:, 0], float(cycles))

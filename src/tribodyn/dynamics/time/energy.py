@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import Compiled, compile_for
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
 from tribodyn.dynamics.equations.motion import quadratic, sides, within_steps
 from tribodyn.dynamics.equations.system import System

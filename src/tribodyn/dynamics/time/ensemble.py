@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.dynamics._engine.blocks import Compiled, march
+from tribodyn.dynamics._engine.blocks import Statistics
 from tribodyn.dynamics._engine.tolerance import Tolerance
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.lane_tables import compile_lanes
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.ensemble_engines import (
-    Block,
-    adaptive_blocks,
-    march_blocks,
-    moments_taker,
-    newmark_blocks,
-)
-from tribodyn.dynamics.time.newmark import newmark_law
-from tribodyn.dynamics.time.simulate import Method, refuse_foreign
+from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, ComplexArray
@@ -92,7 +84,7 @@ class Ensemble:
         )
 
 
-def _fresh_moments(contacts: int, others: int, harmonics: int, lanes: int) -> Array:
+def fresh_moments(contacts: int, others: int, harmonics: int, lanes: int) -> Array:
     """Moments before the first step: zero, but minima and maxima at infinity."""
     tall = np.zeros((2 * contacts, _PLAIN + 2 * harmonics, lanes))
     short = np.zeros((others, _PLAIN, lanes))
@@ -191,70 +183,28 @@ def simulate_ensemble(
                 why="Statistics cover some of the last mesh cycles",
             )
         )
-    refuse_foreign(method, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
-    compiled = compile_lanes(system, frequency, steps, parameters, any_step=method != "rk4")
-    lanes, size = frequency.size, compiled.system.size
-    state = _states(start, lanes, size)
+    options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
+    lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size
     extra = np.zeros((lanes, size)) if extra_force is None else np.asarray(extra_force, float)
     extra = np.ascontiguousarray(np.broadcast_to(extra, (lanes, size)))
+    setting = Setting(system, frequency, cycles, steps, extra, parameters)
+    marcher = prepare(method, setting, **options)
+    state = _states(start, lanes, size)
+    compiled = marcher.compiled
     linear = np.zeros((0, 2 * size)) if outputs is None else np.asarray(outputs, float)
     contacts = len(compiled.system.contacts)
-    moments = _fresh_moments(contacts, size + len(linear), harmonics, lanes)
-    waves, period = _waves(compiled, harmonics), 1.0 / frequency
-    if method == "rk4":
-        advance = _runge_kutta(compiled, period, extra, parameters, linear, waves, threads)
-    else:
-        if method == "newmark":
-            law = newmark_law(gamma, beta, preset)
-            blocks = newmark_blocks(compiled, period, extra, parameters, *law)
-        else:
-            tolerance = 1e-6 if rtol is None else rtol
-            blocks = adaptive_blocks(compiled, period, cycles, extra, parameters, tolerance, atol)
-        share = 1.0 / max(averaged, 1)
-        take = moments_taker(compiled, period, extra, parameters, linear, waves, share, moments)
-        advance = _in_blocks(compiled, blocks, take, threads)
+    moments = fresh_moments(contacts, size + len(linear), harmonics, lanes)
+    statistics = Statistics(linear, _waves(compiled, harmonics), moments)
     progress.start("Marching the ensemble", cycles)
     early = cycles - averaged
-    for count, gathered, elapsed in ((early, None, 0), (averaged, moments, early)):
+    for count, gathered, elapsed in ((early, None, 0), (averaged, statistics, early)):
         if count:
-            state = advance(state, count, gathered, elapsed)
+            state = marcher.march(
+                state, count, statistics=gathered, threads=threads, elapsed=elapsed
+            )
             progress.advance(count)
     progress.finish()
     return _collect(frequency, state, moments, contacts, size, harmonics, averaged)
-
-
-def _in_blocks(
-    compiled: Compiled,
-    blocks: list[Block],
-    take: Callable[[Block, Array], None],
-    threads: int | None,
-) -> Callable[[Array, int, Array | None, int], Array]:
-    def advance(state: Array, count: int, moments: Array | None, elapsed: int) -> Array:
-        taker = None if moments is None else take
-        return march_blocks(compiled, blocks, state, count, taker, threads, elapsed)
-
-    return advance
-
-
-def _runge_kutta(
-    compiled: Compiled,
-    period: Array,
-    extra: Array,
-    parameters: LaneParameters | None,
-    outputs: Array,
-    waves: Array,
-    threads: int | None,
-) -> Callable[[Array, int, Array | None, int], Array]:
-    def advance(state: Array, count: int, moments: Array | None, elapsed: int) -> Array:
-        statistics: dict[str, Any] = {}
-        if moments is not None:
-            statistics = {"outputs": outputs, "waves": waves}
-        return march(
-            compiled, period, state, count, extra_force=extra, parameters=parameters,
-            moments=moments, threads=threads, elapsed=elapsed, **statistics,
-        )  # fmt: skip
-
-    return advance
 
 
 def _frequencies(

@@ -2,21 +2,27 @@
 
 Second order where the other engines have four or more, but stable at any step where ``2 beta >=
 gamma >= 1/2``: for stiff supports whose own motion does not matter, and for comparison with
-published results.
+published results. The acceleration is found anew at every event and contact change, and a step in
+which a contact opens or closes is split there: the scheme keeps its second order. ``gamma > 1/2``
+adds damping and leaves first order. Source: Newmark (1959); Hughes (1987), The finite element
+method, section 9.1, for the limits.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import Compiled
-from tribodyn.dynamics._engine.newmark_engine import newmark_engine
-from tribodyn.dynamics._engine.newmark_limit import refuse_newmark
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.method import Newmark
+from tribodyn.dynamics.equations.compiled import Compiled, Member, require_steps
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import largest_rate
 from tribodyn.dynamics.equations.system import System
@@ -68,10 +74,7 @@ def compile_newmark(
 ) -> Compiled:
     """Compile a system for :func:`march_newmark`: no step is too long for a stable scheme."""
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    if int(steps) != steps or steps < 1:
-        raise InputError(
-            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
-        )
+    require_steps(steps)
     grid, nodes, program = compile_system(system, int(steps))
     slowest = float(np.min(np.asarray(mesh_frequency, dtype=float)))
     number = largest_rate(system, nodes) * float(grid.width.max()) / slowest
@@ -93,71 +96,99 @@ def march_newmark(
     parameters: LaneParameters | None = None,
     record: Array | None = None,
     threads: int | None = None,
-    elapsed: int = 0,
 ) -> Array:
-    """March lanes by whole mesh cycles with Newmark's scheme; returns their new state.
-
-    Parameters
-    ----------
-    compiled : Compiled
-        From :func:`compile_newmark`, or ``compile_for`` or ``compile_lanes`` of the Runge-Kutta
-        engine.
-    period : (lanes,) array
-        Mesh period [s].
-    state : (lanes, 2 n) array
-        Position and velocity.
-    cycles : int
-        Mesh cycles.
-    gamma, beta : float
-        Parameters of the scheme [-]; :data:`NEWMARK_PRESETS` names some.
-    tolerance : float
-        Largest last correction of the contact forces, relative to them [-].
-    extra_force : (lanes, n) array, optional
-        Constant generalized force on top of the system's [N or N*m].
-    parameters : LaneParameters, optional
-        Factors by which each lane scales its system.
-    record : (steps * cycles + 1, 2 n, lanes) array, optional
-        Receives every state.
-    threads : int, optional
-        Blocks marched at a time; the number of processors by default.
-    elapsed : int
-        Mesh cycles marched before, for the report of a motion that grows beyond all bounds.
-
-    Returns
-    -------
-    (lanes, 2 n) array
-
-    Raises
-    ------
-    InputError
-        If gamma, beta or the tolerance are out of range, or the step is beyond the limit
-        ``omega * dt = 1/sqrt(gamma/2 - beta)`` of a scheme with ``2 beta < gamma``.
-    ComputationError
-        If a state grows beyond all bounds or the contact forces are not found; with the time, and
-        the coordinate that moved most.
-
-    Notes
-    -----
-    The acceleration is found anew at every event and contact change, and a step in which a contact
-    opens or closes is split there: the scheme keeps its second order. Between contact changes the
-    equations of one step are linear and the second pass of Newton's method confirms the first.
-    ``gamma > 1/2`` adds damping and leaves first order. Source: Newmark (1959); Hughes (1987),
-    The finite element method, section 9.1, for the limits.
-
-    Examples
-    --------
-    >>> free = System([[1.0]], [[0.0]], [[4.0]], [0.0])
-    >>> compiled = compile_newmark(free, 1.0, 512)
-    >>> end = march_newmark(compiled, np.array([1.0]), np.array([[1.0, 0.0]]), 1)
-    >>> bool(abs(end[0, 0] - np.cos(2.0)) < 1e-5)
-    True
-    """
+    """March lanes by whole mesh cycles; returns their new state."""
     period = np.asarray(period, dtype=float)
+    method = newmark_method(compiled, period, gamma, beta, tolerance, parameters)
+    return march(
+        compiled, period, state, cycles, method=method, extra_force=extra_force,
+        parameters=parameters, record=record, threads=threads,
+    )  # fmt: skip
+
+
+def newmark_method(
+    compiled: Compiled,
+    period: Array,
+    gamma: float,
+    beta: float,
+    tolerance: float = 1e-12,
+    parameters: LaneParameters | None = None,
+) -> Newmark:
+    """Set up the method for :func:`~tribodyn.dynamics._engine.blocks.march`."""
     refuse_newmark(compiled, period, gamma, beta, parameters)
     require_positive("tolerance", tolerance)
-    engine = newmark_engine(compiled, np.array([gamma, beta, max(tolerance, _FINEST)]), parameters)
-    return engine.march(
-        period, state, cycles, extra_force=extra_force, record=record, threads=threads,
-        elapsed=elapsed,
-        scales=None if parameters is None else parameters.table(period.size),
-    )  # fmt: skip
+    return Newmark.on(compiled.grid, gamma, beta, max(tolerance, _FINEST))
+
+
+def refuse_newmark(
+    compiled: Compiled,
+    period: Array,
+    gamma: float,
+    beta: float,
+    parameters: LaneParameters | None = None,
+) -> None:
+    """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
+    if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
+        raise InputError(
+            Problem(
+                what=f"gamma = {gamma:g}, beta = {beta:g}",
+                where="arguments gamma, beta",
+                why="With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no "
+                "meaning",
+                remedy="Average acceleration is gamma = 0.5, beta = 0.25",
+            )
+        )
+    if 2.0 * beta >= gamma:
+        return
+    scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)
+    for member in compiled.each(period.size):
+        for lane in _outermost(scales[member.lanes, 0], period[member.lanes]):
+            number = int(member.lanes[lane])
+            _refuse_step(
+                compiled, member, float(period[number]), gamma, beta, tuple(scales[number, :3]),
+                f" in lane {number}" if period.size > 1 else "",
+            )  # fmt: skip
+
+
+def _outermost(stiffness: Array, period: Array) -> list[int]:
+    """Lanes such that no other is both stiffer and slower."""
+    found: list[int] = []
+    for lane in np.lexsort((-stiffness, -period)):
+        if not found or stiffness[lane] > stiffness[found[-1]]:
+            found.append(int(lane))
+    return found
+
+
+def _undamped_rate(system: System, nodes: Nodes, factors: tuple[float, ...]) -> float:
+    """Highest natural frequency with all contacts closed [rad/s]."""
+    still = replace(system, damping=np.zeros((system.size, system.size)))
+    bare = nodes._replace(damping=np.zeros_like(nodes.damping))
+    return largest_rate(still, bare, factors)
+
+
+def _refuse_step(
+    compiled: Compiled,
+    member: Member,
+    period: float,
+    gamma: float,
+    beta: float,
+    factors: tuple[float, ...],
+    who: str,
+) -> None:
+    limit = 1.0 / math.sqrt(0.5 * gamma - beta)
+    grid = compiled.grid
+    rate = _undamped_rate(member.system, member.nodes, factors)
+    number = rate * float(grid.width.max()) * period
+    if number > limit:
+        needed = int(np.ceil(grid.steps * number / limit / 64.0)) * 64
+        raise InputError(
+            Problem(
+                what=f"omega*dt = {number:.4g} with {grid.steps} steps per mesh cycle at "
+                f"{1.0 / period:g} Hz and a highest natural frequency of {rate:.4g} rad/s{who}",
+                where="argument steps",
+                why=f"With gamma = {gamma:g} and beta = {beta:g} the limit is "
+                f"1/sqrt(gamma/2 - beta) = {limit:.4g}; any step is stable only with 2 beta >= "
+                "gamma",
+                remedy=f"Use at least {needed} steps per mesh cycle, or gamma = 0.5, beta = 0.25",
+            )
+        )

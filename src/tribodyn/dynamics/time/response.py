@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.motion import forces, has_gap, sides, with_middles
 from tribodyn.dynamics.time.response_crossings import resample_crossings
 from tribodyn.types import Array, ComplexArray

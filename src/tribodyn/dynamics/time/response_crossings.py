@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.motion import (
     Forces,
     clearance,

@@ -2,29 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Literal, get_args
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.adaptive_engine import adaptive_engine
-from tribodyn.dynamics._engine.blocks import Compiled, compile_for, march
 from tribodyn.dynamics._engine.tolerance import Tolerance
-from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.newmark import compile_newmark, march_newmark, newmark_law
+from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
-
-#: Ways to march over time.
-Method = Literal["rk4", "dormand-prince", "newmark"]
-
-#: Marches a state by some mesh cycles, after others, records it, and returns the new one.
-_March = Callable[[Array, int, Array, int], Array]
 
 #: Mesh cycles marched between two reports of progress.
 _CHUNK = 64
@@ -135,125 +122,17 @@ def simulate(
     """
     require_cycles(cycles)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    refuse_foreign(method, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     state = read_start(system, start)[None, :]
-    period = np.array([1.0 / mesh_frequency])
-    widest = [0.0]
-    if method == "dormand-prince":
-        compiled = _compile_samples(system, steps)
-        advance, rate = _adaptive(compiled, period, cycles, extra, rtol, atol, widest)
-    elif method == "newmark":
-        law = newmark_law(gamma, beta, preset)
-        compiled, advance = _newmark(system, mesh_frequency, steps, period, extra, law)
-    else:
-        compiled = compile_for(system, mesh_frequency, steps)
-        advance = _runge_kutta(compiled, period, extra)
+    frequency = np.array([float(mesh_frequency)])
+    setting = Setting(system, frequency, cycles, steps, extra[None, :])
+    marcher = prepare(method, setting, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
     record = np.empty((cycles * steps + 1, 2 * system.size, 1))
     progress.start("Marching over time", cycles)
     for first in range(0, cycles, _CHUNK):
         count = min(_CHUNK, cycles - first)
         part = record[first * steps : (first + count) * steps + 1]
-        state = advance(state, count, part, first)
+        state = marcher.march(state, count, record=part, elapsed=first)
         progress.advance(count)
     progress.finish()
-    if method == "dormand-prince":
-        compiled = replace(compiled, step_number=rate * widest[0] / mesh_frequency)
-    return build_response(compiled, mesh_frequency, record[:, :, 0], extra)
-
-
-#: The method that each option belongs to.
-_OWNERS = {
-    "rtol": "dormand-prince",
-    "atol": "dormand-prince",
-    "gamma": "newmark",
-    "beta": "newmark",
-    "preset": "newmark",
-}
-
-
-def refuse_foreign(method: str, **options: object) -> None:
-    """Refuse options of an engine that is not the one asked for."""
-    methods = get_args(Method)
-    if method not in methods:
-        raise InputError(
-            Problem(
-                what=f'method = "{method}"',
-                where="argument method",
-                why="It is one of " + ", ".join(f'"{name}"' for name in methods),
-            )
-        )
-    for name, value in options.items():
-        if value is not None and _OWNERS[name] != method:
-            raise InputError(
-                Problem(
-                    what=f'{name} = {value} with method = "{method}"',
-                    where=f"argument {name}",
-                    why=f'It belongs to "{_OWNERS[name]}"',
-                    remedy=f'Leave it out, or give method = "{_OWNERS[name]}"',
-                )
-            )
-
-
-def _runge_kutta(compiled: Compiled, period: Array, extra: Array) -> _March:
-    def advance(state: Array, count: int, part: Array, elapsed: int) -> Array:
-        return march(
-            compiled, period, state, count, extra_force=extra[None, :], record=part,
-            elapsed=elapsed,
-        )  # fmt: skip
-
-    return advance
-
-
-def _compile_samples(system: System, steps: int) -> Compiled:
-    """Compile a system on a grid that only has to resolve the response, not to march it."""
-    if int(steps) != steps or steps < 1:
-        raise InputError(
-            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
-        )
-    return Compiled(system, *compile_system(system, int(steps)), step_number=float("nan"))
-
-
-def _adaptive(
-    compiled: Compiled,
-    period: Array,
-    cycles: int,
-    extra: Array,
-    rtol: float | None,
-    atol: Tolerance | None,
-    widest: list[float],
-) -> tuple[_March, float]:
-    engine = adaptive_engine(
-        compiled.system, 1.0 / period, cycles, rtol=1e-6 if rtol is None else rtol, atol=atol
-    )
-    memory: list[Array | None] = [None]
-
-    def advance(state: Array, count: int, part: Array, elapsed: int) -> Array:
-        run = engine.march(
-            period, state, count, extra_force=extra[None, :], points=compiled.grid.left,
-            record=part, memory=memory[0], elapsed=elapsed,
-        )  # fmt: skip
-        memory[0], widest[0] = run.memory, max(widest[0], run.widest)
-        return run.state
-
-    return advance, engine.rate
-
-
-def _newmark(
-    system: System,
-    mesh_frequency: float,
-    steps: int,
-    period: Array,
-    extra: Array,
-    law: tuple[float, float],
-) -> tuple[Compiled, _March]:
-    gamma, beta = law
-    compiled = compile_newmark(system, mesh_frequency, steps, gamma=gamma, beta=beta)
-
-    def advance(state: Array, count: int, part: Array, elapsed: int) -> Array:
-        return march_newmark(
-            compiled, period, state, count, gamma=gamma, beta=beta, elapsed=elapsed,
-            extra_force=extra[None, :], record=part,
-        )  # fmt: skip
-
-    return compiled, advance
+    return build_response(marcher.compiled, mesh_frequency, record[:, :, 0], extra)

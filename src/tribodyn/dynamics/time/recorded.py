@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import Member
+from tribodyn.dynamics.equations.compiled import Member
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.motion import Scales, forces, with_middles
 from tribodyn.types import Array

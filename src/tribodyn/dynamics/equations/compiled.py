@@ -1,21 +1,104 @@
-"""Lanes that march systems of their own: one grid, one structure of terms, rows for each lane."""
+"""Systems on their grid, checked for the longest step: one for all lanes, or one for each.
+
+Lanes with systems of their own have one grid with the events of all, one structure of terms, and
+rows for each lane.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import Compiled, Member, compile_for
-from tribodyn.dynamics.equations.grid import system_events
+from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.program import compile_system
-from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes
+from tribodyn.dynamics.equations.motion import has_gap
+from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.program import Program, build_program, compile_system
+from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes, refuse_unstable_step
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.load_friction import coefficient_count
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.types import Mask
+from tribodyn.types import Index, Mask
+
+
+@dataclass(frozen=True)
+class Member:
+    """One of several systems on a common grid, with the lanes that march it."""
+
+    system: System
+    nodes: Nodes
+    lanes: Index  #: numbers of its lanes
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A system on its grid, checked for one highest step size."""
+
+    system: System
+    grid: Grid
+    nodes: Nodes
+    program: Program
+    step_number: float  #: ``omega_max * dt`` of the slowest mesh frequency [-]
+    members: tuple[Member, ...] = ()  #: systems of the lanes where these differ
+    parameters: LaneParameters | None = None  #: factors of the lanes for which the step was checked
+    _programs: dict[tuple[bool, bool], tuple[Program, ...]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+
+    def programs(self, parameters: LaneParameters | None = None) -> tuple[Program, ...]:
+        """Programs of all members, or of the one system, all with the same terms."""
+        scaled = parameters is not None and parameters.scales_contacts
+        split = parameters is not None and parameters.scales_friction
+        if not (scaled or split or self.members):
+            return (self.program,)
+        if (scaled, split) not in self._programs:
+            options = {"scaled": scaled, "split": split}
+            pairs = [(member.system, member.nodes) for member in self.each(1)]
+
+            def build(pattern: Mask | None) -> tuple[Program, ...]:
+                return tuple(
+                    build_program(system, self.grid, nodes, pattern=pattern, **options)
+                    for system, nodes in pairs
+                )
+
+            programs = build(None)
+            if len(programs) > 1:
+                programs = build(np.any([program.pattern for program in programs], axis=0))
+            self._programs[scaled, split] = programs
+        return self._programs[scaled, split]
+
+    def each(self, lanes: int) -> tuple[Member, ...]:
+        """Members, or the one system as that of all lanes."""
+        return self.members or (Member(self.system, self.nodes, np.arange(lanes)),)
+
+
+def require_steps(steps: int) -> None:
+    """Refuse steps that are no whole number of at least one."""
+    if int(steps) != steps or steps < 1:
+        raise InputError(
+            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
+        )
+
+
+def compile_for(
+    system: System,
+    mesh_frequency: ArrayLike,
+    steps: int,
+    parameters: LaneParameters | None = None,
+) -> Compiled:
+    """Compile a system and refuse a step that the integrator cannot follow."""
+    require_positive("mesh_frequency", mesh_frequency, "Hz")
+    require_steps(steps)
+    grid, nodes, program = compile_system(system, int(steps))
+    beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    if parameters is None:
+        number = refuse_unstable_step(system, nodes, grid, float(beat.min()))
+    else:
+        number = refuse_unstable_lanes(system, nodes, grid, beat, parameters)
+    return Compiled(system, grid, nodes, program, number, parameters=parameters)
 
 
 def compile_lanes(
@@ -33,10 +116,7 @@ def compile_lanes(
         return compile_for(distinct[0], mesh_frequency, steps, parameters)
     _refuse_different(given)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    if int(steps) != steps or steps < 1:
-        raise InputError(
-            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
-        )
+    require_steps(steps)
     if len(distinct) == 1:
         parts = compile_system(distinct[0], int(steps))
         return Compiled(distinct[0], *parts, step_number=float("nan"), parameters=parameters)
@@ -101,7 +181,7 @@ def _refuse_different(systems: list[System]) -> None:
 
 
 def _refuse_mixed_gaps(members: list[Member]) -> None:
-    dead: list[Mask] = [np.any(one.nodes.gap > 0.0, axis=(0, 1)) for one in members]
+    dead: list[Mask] = [has_gap(one.nodes) for one in members]
     for one, own in zip(members, dead, strict=True):
         apart = np.flatnonzero(own != dead[0])
         if apart.size:
