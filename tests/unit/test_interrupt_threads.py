@@ -85,12 +85,12 @@ def test_one_interruption_ends_a_march_and_its_process(lanes):
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize(
-    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=100000"],
-              ["bifurcation", "operation.speed=2000..3000 rpm:40", "--transient", "100000000"]]
+    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=20000"],
+              ["bifurcation", "operation.speed=2000..3000 rpm:4000", "--cycles", "2"]]
 )  # fmt: skip
 def test_one_interruption_ends_a_command(words, tmp_path: Path):
     target = tmp_path / "out"
-    command = [sys.executable, "-m", "tribodyn.cli", words[0], "potential-energy", *words[1:]]
+    command = [sys.executable, "-m", "tribodyn.cli", words[0], "time-varying-friction", *words[1:]]
     with subprocess.Popen(
         [*command, "--out", str(target)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as process:
@@ -99,12 +99,13 @@ def test_one_interruption_ends_a_command(words, tmp_path: Path):
         running = process.poll() is None
         process.send_signal(signal.SIGINT)
         try:
-            _, told = process.communicate(timeout=30.0)
+            _, told = process.communicate(timeout=60.0)
         finally:
             process.kill()
     assert running, told.decode()
     assert process.returncode == 130
-    assert not target.exists()
+    # What a diagram has of finished motions is kept; a run leaves nothing unfinished.
+    assert not target.exists() or words[0] == "bifurcation"
 
 
 def test_flags_are_of_the_threads_that_one_call_began():

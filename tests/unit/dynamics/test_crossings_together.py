@@ -7,7 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.blocks import LaneBlock, _Run, march
+from tribodyn.dynamics._engine.marching import UNPARTED
+from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.time.newmark import march_newmark
 from tribodyn.errors import ComputationError
@@ -127,24 +129,30 @@ def test_newmark_ends_its_search_and_converges_to_the_same_motion():
     assert errors[1] < errors[0] / 2.5
 
 
-def _chatter():
-    """A damper without spring in a gap that opens: it holds the mass on its boundary."""
-    contact = Contact(
-        [1.0],
-        0.0,
-        damping=20000.0,
-        gap=lambda p: 2e-5 * (2.0 - np.cos(2.0 * np.pi * np.asarray(p))),
-    )
-    return System([[0.2]], [[0.0]], [[0.0]], [20.0], [contact])
-
-
 def test_a_step_that_comes_to_no_end_is_told():
-    system = _chatter()
-    compiled = compile_for(system, 500.0, 256)
-    period, start = np.array([1 / 500.0, 1 / 500.0]), np.array([[1.9e-5, 0.0], [1.9e-5, 0.0]])
-    with pytest.raises(ComputationError, match=r"more than 20 times.*within one step") as told:
-        march(compiled, period, start, 8)
+    compiled = compile_for(Ramps(0).system, FREQUENCY, 64)
+    period, state = np.full(40, 1.0 / FREQUENCY), np.zeros((40, 2))
+    lanes, block = _Run(compiled, RungeKutta4(), None, period, state, None), np.arange(16, 32)
+    step, contact, lane = 5 * 64 + 16, 7, 3
+    code = UNPARTED + (step * 12 + contact) * 16 + lane
+    with pytest.raises(ComputationError, match="more than 64 times within one step") as told:
+        lanes.report(LaneBlock(block, 16), code, 2)
     problem = told.value.problems[0]
-    assert problem.where.startswith("contacts[0], mesh phase")
-    assert "lane 0" in problem.where
+    assert problem.where == (
+        f"contacts[7], mesh phase 0.25 of mesh cycle 8, time {7.25 / FREQUENCY:.6g} s, in lane 19"
+    )
     assert "steps" in problem.remedy
+
+
+def test_a_damper_that_holds_a_mass_on_its_boundary_comes_to_an_end():
+    # Without a spring, in a gap that opens: free, the mass follows it; touching, it is thrown back.
+    contact = Contact(
+        [1.0], 0.0, damping=20000.0,
+        gap=lambda p: 2e-5 * (2.0 - np.cos(2.0 * np.pi * np.asarray(p))),
+    )  # fmt: skip
+    system = System([[0.2]], [[0.0]], [[0.0]], [20.0], [contact])
+    ends = []
+    for steps in (1024, 2048):
+        compiled = compile_for(system, 500.0, steps)
+        ends.append(march(compiled, np.array([0.002]), np.array([[1.9e-5, 0.0]]), 1)[0])
+    assert np.abs((ends[1] - ends[0]) / [1e-5, 0.06]).max() < 0.02

@@ -106,7 +106,7 @@ def _leader(room: Array, contacts: int, start: float, sides: int, w: Array) -> t
 
 
 @nb.njit(**INNER)
-def _propose(room: Array, contacts: int, start: float, sides: int, w: Array) -> float:
+def _propose(room: Array, contacts: int, start: float, sides: int, w: Array) -> Any:
     """Next place to try; ``start`` itself ends the search there."""
     search = WIDTH * contacts
     low, high = room[search + _LOW], room[search + _HIGH]
@@ -124,13 +124,8 @@ def _propose(room: Array, contacts: int, start: float, sides: int, w: Array) -> 
 
 
 @nb.njit(**INNER)
-def begin_search(
-    room: Array, contacts: int, start: float, end: float, sides: int, w: Array
-) -> float:
-    """First place to try between ``start`` and ``end``, the last try; -1 if all keep their sides.
-
-    The compressions and gaps at the start are those at the near place.
-    """
+def begin_search(room: Array, contacts: int, start: float, end: float, sides: int, w: Array) -> Any:
+    """First place to try between ``start`` and ``end``; -1 if all keep their sides."""
     search = WIDTH * contacts
     some = False
     for j in range(contacts):
@@ -191,11 +186,11 @@ def go_on(
 @nb.njit(**INNER)
 def change_sides(
     room: Array, contacts: int, start: float, target: float, sides: int, w: Array
-) -> int:
+) -> Any:
     """Change the sides of all contacts that cross where the search ended; returns the first."""
     search = WIDTH * contacts
     narrow = room[search + _HIGH] - room[search + _LOW] < _NARROW
-    first = I64(-1)
+    first: Any = I64(-1)
     for j in range(contacts):
         at = WIDTH * j
         if room[at + KIND] < 0.0:
