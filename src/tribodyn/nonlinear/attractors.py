@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.lane_parameters import LaneParameters
-from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError

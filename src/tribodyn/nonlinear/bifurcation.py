@@ -9,9 +9,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.step_limit import LIMIT
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.step_limit import LIMIT
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.nonlinear.bifurcation_march import march_points, march_sweeps
 from tribodyn.nonlinear.bifurcation_result import Bifurcation

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array

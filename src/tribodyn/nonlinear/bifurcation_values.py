@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled
-from tribodyn.dynamics.program import compile_system
-from tribodyn.dynamics.step_limit import largest_rate
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.step_limit import largest_rate
+from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index
 
 

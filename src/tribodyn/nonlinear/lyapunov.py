@@ -13,15 +13,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.nonlinear.lyapunov_crossing import carry_over_crossings
 from tribodyn.nonlinear.lyapunov_floquet import floquet_growth, repeats_after
 from tribodyn.nonlinear.lyapunov_products import grouped_products, safe_length
-from tribodyn.nonlinear.lyapunov_tangent import TangentTables, contact_sides
+from tribodyn.nonlinear.lyapunov_tangent import TangentTables
 from tribodyn.nonlinear.verdict import exponent_verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
@@ -280,7 +281,7 @@ class _Carrier:
         def sides(q: Array, node: int) -> Array:
             q = q.reshape(-1, steps, size)
             d = np.einsum("rji,cri->crj", nodes.direction[:, node], q) - nodes.error[:, node]
-            side = contact_sides(d, nodes.gap[:, node], tables.dead)
+            side = sides(d, nodes.gap[:, node], tables.dead)
             return side.reshape(len(q) * steps, d.shape[-1])
 
         left, right = sides(place[:-1], 0), sides(place[1:], 2)

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.crossing_search import most_splits
-from tribodyn.dynamics.unparted import unparted_step
+from tribodyn.dynamics._engine.crossing import most_splits
+from tribodyn.dynamics.equations.divergence import unparted_step
 from tribodyn.errors import ComputationError
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, within
 from tribodyn.types import Array, Index, Mask

@@ -13,21 +13,16 @@ import math
 
 import numpy as np
 
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.motion import quadratic
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.load_friction import push_with_friction
-from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
-from tribodyn.dynamics.program import Nodes
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array, Index, Mask
 
 #: Terms of the exponential series of a matrix no larger than a quarter: exact to rounding.
 _TAYLOR = 12
-
-
-def contact_sides(deflection: Array, gap: Array, dead: Mask) -> Array:
-    """Tell on which side of its dead zone every contact is."""
-    side = np.where(deflection > gap, 1.0, np.where(deflection < -gap, -1.0, 0.0))
-    return np.where(dead, side, 1.0)
 
 
 class TangentTables:
@@ -116,10 +111,7 @@ def _with_friction(compiled: Compiled) -> Nodes:
 
 def within(values: Array, steps: Index, taus: Array) -> Array:
     """Interpolate rows quadratically within their steps, as the integrator does."""
-    weights = ((1 - taus) * (1 - 2 * taus), 4 * taus * (1 - taus), taus * (2 * taus - 1))
-    chosen = values[steps]
-    shape = (*taus.shape, *(1,) * (values.ndim - 2))
-    return np.asarray(sum(w.reshape(shape) * chosen[:, i, None] for i, w in enumerate(weights)))
+    return quadratic(values, steps[:, None], taus)
 
 
 def _propagate(rates: Array, width: Array) -> tuple[Array, Array]:

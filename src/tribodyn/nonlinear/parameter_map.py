@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.program import compile_system
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.step_limit import LIMIT, largest_rate
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.nonlinear.bifurcation import signal_name
 from tribodyn.nonlinear.parameter_map_march import Field, Plan, march_field

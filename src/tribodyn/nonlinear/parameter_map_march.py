@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.bifurcation_statistics import measure

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.drawing import draw
-from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.response import Response
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.response import Response
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem
 from tribodyn.nonlinear.poincare_march import (
     alternating_rms,

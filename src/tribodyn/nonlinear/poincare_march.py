@@ -6,9 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled, compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
-from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError
 from tribodyn.nonlinear.verdict import Verdict, step_verdict
 from tribodyn.types import Array

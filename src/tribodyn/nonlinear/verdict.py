@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
-from tribodyn.dynamics.step_limit import LIMIT
+from tribodyn.dynamics.equations.step_limit import LIMIT
 
 if TYPE_CHECKING:
     from tribodyn.nonlinear.lyapunov import LyapunovExponents

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.dynamics.response import FineSamples
+from tribodyn.dynamics.time.response import FineSamples
 from tribodyn.types import Array
 
 

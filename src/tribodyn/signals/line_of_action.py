@@ -7,7 +7,7 @@ damage that one direction alone does not give.
 
 from __future__ import annotations
 
-from tribodyn.dynamics.response import FineSamples
+from tribodyn.dynamics.time.response import FineSamples
 from tribodyn.signals.indicators import alternating_rms
 from tribodyn.types import Array
 

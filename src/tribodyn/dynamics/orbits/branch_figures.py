@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.start import _lowest_of_each_law
-from tribodyn.dynamics.response import Response, build_response
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

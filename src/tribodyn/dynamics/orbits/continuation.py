@@ -11,26 +11,19 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.orbits.branch_figures import OrbitFigures, measure, signal_names
-from tribodyn.dynamics.orbits.continuation_corrector import (
-    BranchPoint,
-    StalledError,
-    correct,
-)
+from tribodyn.dynamics.orbits.branch_figures import measure
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.branch_figures import OrbitFigures, signal_names
+from tribodyn.dynamics.orbits.continuation_corrector import BranchPoint, StalledError, correct
 from tribodyn.dynamics.orbits.continuation_map import Family, ParameterMap
 from tribodyn.dynamics.orbits.continuation_path import Stepping, follow, hold, with_values
-from tribodyn.dynamics.orbits.continuation_points import (
-    Located,
-    locate,
-    tests_of_multipliers,
-)
+from tribodyn.dynamics.orbits.continuation_points import Located, locate, tests_of_multipliers
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array

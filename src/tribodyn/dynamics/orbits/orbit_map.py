@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import (
     OrbitCoordinates,
     orbit_coordinates,
     refuse_disconnected,
 )
-from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array, ComplexArray
 

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.continuation_path import follow
 from tribodyn.dynamics.orbits.speed_sweep_family import SpeedFamily
-from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, follow
+from tribodyn.dynamics.orbits.speed_sweep_follow import Followed
 from tribodyn.dynamics.orbits.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress

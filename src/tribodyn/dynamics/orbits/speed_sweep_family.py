@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.dynamics.ensemble import _fresh_moments
-from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics._engine.blocks import Statistics, march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.time.ensemble import fresh_moments
 from tribodyn.types import Array, Index
 
 #: Disturbance of the matrix of a map with dead zones relative to the motion.
@@ -142,11 +143,11 @@ class SpeedFamily:
                 lanes = np.flatnonzero(inside & (periods == length))
                 compiled, beat = self.compiled(int(group[0])), self.frequency[number[lanes]]
                 state, extra = self.split(y[lanes], beat, max(int(length), 1))
-                moments = _fresh_moments(contacts, others, 0, lanes.size)
+                moments = fresh_moments(contacts, others, 0, lanes.size)
                 waves = np.zeros((compiled.grid.steps, 3, 0, 2))
                 march(
                     compiled, 1.0 / beat, state, int(length) or cycles, extra_force=extra,
-                    outputs=outputs, waves=waves, moments=moments,
+                    statistics=Statistics(outputs, waves, moments),
                 )  # fmt: skip
                 found[:, :, lanes] = moments.reshape(-1, 5, lanes.size)
         return found

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tribodyn.dynamics.march import march
+from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import newton_step
 from tribodyn.dynamics.orbits.speed_sweep_family import Orbits, SpeedFamily

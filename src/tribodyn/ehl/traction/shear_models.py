@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from tribodyn.ehl import newtonian, ree_eyring
+from tribodyn.ehl.traction import newtonian, ree_eyring
 from tribodyn.model import Registry
 from tribodyn.types import Array
 
