@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.orbits.speed_sweep_family import SpeedFamily
-from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, follow
+from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, SpeedFamily, follow
 from tribodyn.dynamics.orbits.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
@@ -149,8 +148,7 @@ def _follow_all(
     valid = _shut(family, closed.point, closed.error <= tolerance)
     begin = None
     if start is not None:
-        begin = family.coordinates.reduce(read_start(family.system, start))
-        begin = begin if family.balance is None else np.append(begin, 0.0)
+        begin = family.mapping(0, 1).start(read_start(family.system, start))
     lock = Lock()
 
     def told() -> None:
@@ -192,11 +190,7 @@ def _result(
     point = np.array([each.point for each in flat])
     period = np.array([each.period for each in flat], dtype=np.int64)
     figures = family.statistics(number, point, period, _IRREGULAR, linear)
-    state, extra = np.empty((len(flat), 2 * system.size)), np.empty((len(flat), system.size))
-    for length in np.unique(np.maximum(period, 1)):
-        lanes = np.maximum(period, 1) == length
-        beat = family.frequency[number[lanes]]
-        state[lanes], extra[lanes] = family.split(point[lanes], beat, int(length))
+    state, extra = family.split(number, point, period)
     mean, square, low, high, off = np.moveaxis(figures, 1, 0)
 
     def shaped(values: Any) -> Any:
