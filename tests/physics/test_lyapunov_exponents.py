@@ -15,8 +15,7 @@ from tribodyn.analysis import lyapunov_exponents
 from tribodyn.dynamics import Contact, System, simulate
 from tribodyn.dynamics.march import compile_for, march
 from tribodyn.errors import ComputationError, InputError
-from tribodyn.nonlinear.lyapunov import _Carrier
-from tribodyn.nonlinear.lyapunov_products import grouped_products
+from tribodyn.nonlinear.lyapunov import _Carrier, grouped_products
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables
 
 TURN = 2.0 * np.pi

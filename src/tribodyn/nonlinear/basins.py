@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,11 +12,10 @@ from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
-from tribodyn.nonlinear.attractors import Motions, settle
+from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.basins_attractors import Attractor, Catalogue, Found, multiplier_of
 from tribodyn.nonlinear.basins_result import Basins
-from tribodyn.nonlinear.bifurcation import signal_name
-from tribodyn.nonlinear.verdict import step_verdict
+from tribodyn.nonlinear.survey import Survey, signal_name, step_verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
 
@@ -118,21 +117,33 @@ def basins(
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
     least = _REST * float(np.abs(starts[:, : system.size]).max())
-    catalogue = Catalogue(signal if system.contacts else name, max(64, cycles), least)
+    kept = signal if system.contacts else name
+    survey = Survey(cycles, max(64, cycles), 2, kept, keep_partial, tolerance=_NEAR, width=_WIDTH)
+    catalogue = Catalogue(survey, least)
     progress.start("Marching the starts", len(starts) * (1 + bool(verdict)))
-    plan = _Plan(float(mesh_frequency), force, cycles, keep_partial, progress)
-    motions = _march(compiled, starts, plan)
+    beat = float(mesh_frequency)
+    motions = _motions(compiled, starts, beat, force)
+    survey.settle(motions, np.arange(len(starts)), progress)
     label = catalogue.label(motions)
-    found = [
+    attractors = [
         _attractor(catalogue, n, label[motions.finished] == n, motions, steps)
         for n in range(len(catalogue.known))
     ]
     refined = np.full(label.shape, -3)
     if verdict and motions.finished.all():
         finer = compile_for(system, mesh_frequency, 2 * steps)
-        found, refined = _refine(finer, starts, plan, catalogue, found, compiled.step_number)
+        fine = catalogue.again(finer, beat, force)
+        attractors = [
+            _judged(each, other, compiled.step_number)
+            for each, other in zip(attractors, fine.known, strict=True)
+        ]
+        again = _motions(finer, starts, beat, force)
+        survey.settle(again, np.arange(len(starts)), progress)
+        if again.finished.all():
+            refined = fine.label(again)
+            refined[refined >= len(attractors)] = -2
     progress.finish()
-    order = sorted(range(len(found)), key=lambda n: -found[n].share)
+    order = sorted(range(len(attractors)), key=lambda n: -attractors[n].share)
     rank = np.argsort(np.array(order, dtype=np.int64))
     shape = (axes[0].size, axes[1].size)
     return Basins(
@@ -141,7 +152,7 @@ def basins(
         first=axes[0],
         second=axes[1],
         attractor=_renumbered(label, rank).reshape(shape),
-        attractors=tuple(found[n] for n in order),
+        attractors=tuple(attractors[n] for n in order),
         refined_attractor=_renumbered(refined, rank).reshape(shape),
         names=tuple(system.names),
         signal=name,
@@ -152,54 +163,9 @@ def basins(
     )
 
 
-@dataclass(frozen=True)
-class _Plan:
-    """What holds for all starts."""
-
-    mesh_frequency: float
-    force: Array
-    cycles: int
-    keep_partial: bool
-    progress: Progress
-
-
-def _refine(
-    finer: Compiled, starts: Array, plan: _Plan, catalogue: Catalogue, found: list[Attractor],
-    step_number: float,
-) -> tuple[list[Attractor], Index]:  # fmt: skip
-    """Repeat everything with half the step: judged attractors, and which one each start finds."""
-    fine = Catalogue(catalogue.signal, catalogue.cycles, catalogue.least)
-    if catalogue.known:
-        begin = np.array([each.state for each in catalogue.known])
-        fine = catalogue.again(_motions(finer, begin, plan), plan.cycles, _NEAR)
-    judged = [
-        _judged(each, other, step_number) for each, other in zip(found, fine.known, strict=True)
-    ]
-    again = _march(finer, starts, plan)
-    if not again.finished.all():
-        return judged, np.full(len(starts), -3)
-    refined = fine.label(again)
-    refined[refined >= len(found)] = -2
-    return judged, refined
-
-
-def _motions(compiled: Compiled, starts: Array, plan: _Plan) -> Motions:
+def _motions(compiled: Compiled, starts: Array, beat: float, force: Array) -> Motions:
     count = len(starts)
-    frequency = np.full(count, plan.mesh_frequency)
-    return Motions(compiled, frequency, starts, np.tile(plan.force, (count, 1)))
-
-
-def _march(compiled: Compiled, starts: Array, plan: _Plan) -> Motions:
-    motions = _motions(compiled, starts, plan)
-    try:
-        settle(
-            motions, np.arange(len(starts)), plan.cycles, tolerance=_NEAR, width=_WIDTH,
-            progress=plan.progress,
-        )  # fmt: skip
-    except KeyboardInterrupt:
-        if not plan.keep_partial:
-            raise
-    return motions
+    return Motions(compiled, np.full(count, beat), starts, np.tile(force, (count, 1)))
 
 
 def _attractor(

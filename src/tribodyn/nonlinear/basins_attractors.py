@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tribodyn.dynamics.march import Compiled
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.nonlinear.attractors import Motions, settle
-from tribodyn.nonlinear.bifurcation_statistics import measure
+from tribodyn.nonlinear.survey import Survey, follow, measure
 from tribodyn.types import Array, Index, Mask
 
 #: States of one motion differ by less than this part of the largest state.
@@ -85,8 +86,8 @@ class Found:
 class Catalogue:
     """Attractors known so far."""
 
-    def __init__(self, signal: int | str, cycles: int, least: float = 0.0) -> None:
-        self.signal, self.cycles, self.least = signal, cycles, least
+    def __init__(self, survey: Survey, least: float = 0.0) -> None:
+        self.survey, self.least = survey, least
         self.known: list[Found] = []
 
     def label(self, motions: Motions) -> Index:
@@ -139,20 +140,18 @@ class Catalogue:
                 motions.compiled, motions.frequency[index], motions.state[index],
                 motions.force[index],
             )  # fmt: skip
-            settle(one, [0], self.cycles, tolerance=_EXACT, width=1)
+            settle(one, [0], self.survey.cycles, tolerance=_EXACT, width=1)
             motions, index = one, np.array([0])
             shorter = int(motions.period[0])
             period = shorter if shorter and period % shorter == 0 else period
-        facts = measure(motions, index, self.cycles, 2, self.signal)
-        states = [motions.state[index]]
-        for _ in range(max(period, 1) - 1):
-            new = motions.march(index, states[-1], 1, motions.force[index])
-            states.append(motions.coordinates.expand(motions.coordinates.reduce(new)))
-        full = np.concatenate(states)
-        rms = float(facts.rms[0])
+        path = follow(
+            motions, index, motions.state[index], period or self.survey.cycles, self.survey.signal
+        )
+        full = path.states[: max(period, 1), 0]
+        rms = float(path.rms[0])
         return Found(
             motions.coordinates.reduce(full), full[0], motions.force[index[0]].copy(), period,
-            0.0 if rms < self.least else rms, float(facts.contact_loss_share[0]), full,
+            0.0 if rms < self.least else rms, float(path.contact_loss_share[0]), full,
         )  # fmt: skip
 
     def _irregular(self, label: Index, alive: Mask, motions: Motions) -> None:
@@ -161,7 +160,7 @@ class Catalogue:
         wild = wild[motions.change[wild] > _WILD]
         if not wild.size:
             return
-        rms = measure(motions, wild, self.cycles, 2, self.signal).rms
+        rms = measure(motions, wild, self.survey).rms
         open_ = np.isfinite(rms)
         while open_.any() and len(self.known) < _MOST:
             known = [n for n, f in enumerate(self.known) if not f.period]
@@ -175,12 +174,15 @@ class Catalogue:
             self.known.append(self._trace(motions, wild[middle : middle + 1]))
             self.known[-1].rms = float(rms[middle])
 
-    def again(self, motions: Motions, transient: int, tolerance: float) -> Catalogue:
+    def again(self, compiled: Compiled, beat: float, force: Array) -> Catalogue:
         """Follow every attractor with other steps."""
-        settle(motions, np.arange(len(self.known)), transient, tolerance=tolerance)
-        new = Catalogue(self.signal, self.cycles, self.least)
-        for number in range(len(self.known)):
-            new.known.append(self._trace(motions, np.array([number])))
+        new, count = Catalogue(self.survey, self.least), len(self.known)
+        if not count:
+            return new
+        begin = np.array([attractor.state for attractor in self.known])
+        motions = Motions(compiled, np.full(count, beat), begin, np.tile(force, (count, 1)))
+        settle(motions, np.arange(count), self.survey.transient, tolerance=self.survey.tolerance)
+        new.known += [self._trace(motions, np.array([number])) for number in range(count)]
         return new
 
 

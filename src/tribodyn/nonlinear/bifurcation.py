@@ -13,11 +13,17 @@ from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.step_limit import LIMIT
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.nonlinear.bifurcation_march import march_points, march_sweeps
 from tribodyn.nonlinear.bifurcation_result import Bifurcation
-from tribodyn.nonlinear.bifurcation_values import Plan, Row, Values
+from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
-from tribodyn.nonlinear.verdict import step_verdict
+from tribodyn.nonlinear.survey import (
+    Outcomes,
+    Points,
+    Survey,
+    march_points,
+    signal_name,
+    step_verdict,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index
 
@@ -128,20 +134,22 @@ def bifurcation(
     values = _read_values(systems, mesh_frequency, steps)
     given = _read_parameter(parameter, values)
     name = signal_name(values.systems[0], signal)
-    plan = _read_plan(
-        Plan(transient, cycles, keep, signal if values.systems[0].contacts else name, keep_partial)
+    survey = _read_survey(
+        Survey(
+            transient, cycles, keep, signal if values.systems[0].contacts else name, keep_partial
+        )
     )
     first = None if start is None else read_start(values.systems[0], start)
     branches = _BRANCHES[sweep]
     work = values.count * len(branches) * (1 + bool(verdict))
     progress.start("Marching over the parameter", work)
-    rows = _rows(values, branches, first, plan, progress)
-    finer = Values(values.systems, values.mesh_frequency, _refined_steps(values))
-    fine = [Row(values.count, keep, values.size) for _ in rows]
-    if verdict and not plan.stop.is_set():
-        fine = [march_points(finer, _begin(values, r), plan, progress, r.finished) for r in rows]
+    rows = _rows(values, branches, first, survey, progress)
+    finer = values.refined(_refined_steps(values))
+    fine = [_begin(values, row, keep) for row in rows]
+    for row, new in zip(rows, fine, strict=True) if verdict and not survey.stop.is_set() else ():
+        march_points(finer, survey, new, row.finished, progress)
     largest = np.full((len(rows), values.count), np.nan)
-    if exponents and not plan.stop.is_set():
+    if exponents and not survey.stop.is_set():
         largest = _largest_exponents(values, finer, rows, fine, exponents)
     progress.finish()
     return _diagram(
@@ -150,18 +158,20 @@ def bifurcation(
     )  # fmt: skip
 
 
-def _begin(values: Values, row: Row) -> Array:
-    """Starts of the repetition: the motion itself, unless the step has made it."""
+def _begin(values: Points, row: Outcomes, keep: int) -> Outcomes:
+    """The repetition with its starts: the motion itself, unless the step has made it."""
+    fine = Outcomes(values.count, keep, values.size)
     sound = (values.step_number <= LIMIT) & np.all(np.isfinite(row.last), axis=1)
-    return np.where(sound[:, None], row.last, row.first)
+    fine.first[:] = np.where(sound[:, None], row.last, row.first)
+    return fine
 
 
 def _diagram(
-    values: Values, finer: Values, rows: list[Row], fine: list[Row], **facts: Any
+    values: Points, finer: Points, rows: list[Outcomes], fine: list[Outcomes], **facts: Any
 ) -> Bifurcation:
     """Judge every motion and put all of them together."""
 
-    def both(name: str, of: list[Row]) -> Any:
+    def both(name: str, of: list[Outcomes]) -> Any:
         return np.array([getattr(row, name) for row in of])
 
     verdicts = [
@@ -185,7 +195,7 @@ def _diagram(
     )
 
 
-def _read_parameter(parameter: ArrayLike | None, values: Values) -> Array:
+def _read_parameter(parameter: ArrayLike | None, values: Points) -> Array:
     given = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
     if given.shape not in ((), (values.count,)):
         what = f"parameter has the shape {given.shape}, and there are {values.count} values"
@@ -195,7 +205,7 @@ def _read_parameter(parameter: ArrayLike | None, values: Values) -> Array:
 
 def _read_values(
     systems: System | Sequence[System], mesh_frequency: ArrayLike, steps: ArrayLike
-) -> Values:
+) -> Points:
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     given = [systems] if isinstance(systems, System) else list(systems)
     try:
@@ -215,57 +225,43 @@ def _read_values(
         raise InputError(Problem(what, "argument systems" if not given else "argument steps"))
     frequency = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (count,)).copy()
     whole = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
-    return Values(given * count if len(given) == 1 else given, frequency, whole)
+    return Points(given * count if len(given) == 1 else given, frequency, whole)
 
 
-def _read_plan(plan: Plan) -> Plan:
-    if not 2 <= plan.keep <= plan.cycles or plan.transient < 0:
+def _read_survey(survey: Survey) -> Survey:
+    if not 2 <= survey.keep <= survey.cycles or survey.transient < 0:
         raise InputError(
             Problem(
-                f"keep = {plan.keep}, cycles = {plan.cycles}, transient = {plan.transient}",
+                f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
                 "argument keep",
                 "At least two points are kept, of as many mesh cycles or more",
             )
         )
-    return plan
-
-
-def signal_name(system: System, signal: int | str) -> str:
-    """Name of what is looked at: a contact or a coordinate."""
-    names = tuple(system.names)
-    if isinstance(signal, str) and signal in names:
-        return signal
-    if isinstance(signal, int) and 0 <= signal < len(system.contacts):
-        return f"contact {signal}"
-    if signal == 0 and not system.contacts:
-        return names[0]
-    raise InputError(
-        Problem(
-            f"signal = {signal!r}",
-            "argument signal",
-            f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
-        )
-    )
+    return survey
 
 
 def _rows(
-    values: Values, branches: tuple[str, ...], first: Array | None, plan: Plan, progress: Progress
-) -> list[Row]:
+    values: Points, branches: tuple[str, ...], first: Array | None, survey: Survey,
+    progress: Progress,
+) -> list[Outcomes]:  # fmt: skip
     """Motions of every branch."""
-    if branches == ("independent",):
-        starts = None if first is None else np.tile(first, (values.count, 1))
-        return [march_points(values, starts, plan, progress)]
-    return march_sweeps(values, first, plan, branches, progress)
+    if branches != ("independent",):
+        return march_sweeps(values, first, survey, branches, progress)
+    row = Outcomes(values.count, survey.keep, values.size)
+    if first is not None:
+        row.first[:] = first
+    march_points(values, survey, row, None, progress)
+    return [row]
 
 
-def _refined_steps(values: Values) -> Index:
+def _refined_steps(values: Points) -> Index:
     """Twice the steps, or as often doubled as it takes to be stable with a margin of two."""
     halvings = np.ceil(np.log2(np.maximum(2.0 * values.step_number / LIMIT, 2.0)))
     halvings = np.where(values.step_number > LIMIT, halvings, 1.0)
     return np.asarray(values.steps * 2 ** halvings.astype(np.int64))
 
 
-def _judge(number: float, i: int, row: Row, fine: Row) -> str:
+def _judge(number: float, i: int, row: Outcomes, fine: Outcomes) -> str:
     if not (row.finished[i] and fine.finished[i]):
         return ""
     return step_verdict(
@@ -278,7 +274,7 @@ def _judge(number: float, i: int, row: Row, fine: Row) -> str:
 
 
 def _largest_exponents(
-    values: Values, finer: Values, rows: list[Row], fine: list[Row], cycles: int
+    values: Points, finer: Points, rows: list[Outcomes], fine: list[Outcomes], cycles: int
 ) -> Array:
     """Largest exponents of all motions; of the refined ones where the step is beyond the limit."""
     limited = values.step_number > LIMIT
@@ -292,7 +288,7 @@ def _largest_exponents(
     return np.array(found)
 
 
-def _exponents(values: Values, steps: Index, last: Array, force: Array, cycles: int) -> list[float]:
+def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: int) -> list[float]:
     """Largest exponents; NaN for a motion that grew beyond all bounds or a step too long."""
     found = []
     for number, state in enumerate(last):

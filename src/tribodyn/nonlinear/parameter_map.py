@@ -14,9 +14,16 @@ from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.nonlinear.bifurcation import signal_name
-from tribodyn.nonlinear.parameter_map_march import Field, Plan, march_field
 from tribodyn.nonlinear.parameter_map_result import ParameterMap
+from tribodyn.nonlinear.survey import (
+    Outcomes,
+    Points,
+    Survey,
+    comes_back,
+    march_points,
+    signal_name,
+    step_verdict,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index
 
@@ -29,6 +36,8 @@ SCALES = (
 _NUMBER, _FEWEST = 0.5, 64
 #: Steps of the grid on which the fastest motion is looked for.
 _LOOK = 64
+#: Certified distance to the motion that repeats, relative to the state, and lanes of one block.
+_NEAR, _WIDTH = 1e-5, 64
 
 
 @dataclass(frozen=True)
@@ -133,43 +142,74 @@ def parameter_map(
     else:
         frequency = np.full(shape, mesh_frequency, dtype=float)
     number = np.zeros(shape)
-    rows = [slice(None)] if len(systems) == 1 else [slice(i, i + 1) for i in range(shape[0])]
-    for each, row in zip(systems, rows, strict=True):
-        number[row] = _rates(each, known, row, shape) / frequency[row]
+    each = [systems[0]] * frequency.size
+    if len(systems) > 1 or not isinstance(system, System):
+        each = [item for item in systems for _ in range(shape[1])]
+    flat = {key: values.ravel() for key, values in known.items()}
+    number = _rates(each, flat) / frequency.ravel()
     chosen = _steps(number, steps)
-    number = number / chosen
-    field = Field(shape, frequency, known, chosen, number)
-    plan = Plan(transient, cycles, signal if systems[0].contacts else name, verdict, keep_partial)
+    points = Points(each, frequency.ravel(), chosen, flat)
+    kept = signal if systems[0].contacts else name
+    survey = Survey(
+        transient, cycles, max(2, cycles), kept, keep_partial, tolerance=_NEAR, width=_WIDTH
+    )
     progress.start("Marching over two parameters", frequency.size * (1 + bool(verdict)))
-    march_field(field, list(zip(systems, rows, strict=True)), begin, plan, progress)
+    outcomes = Outcomes(points.count, survey.keep, points.size)
+    outcomes.first[:] = np.nan if begin is None else begin
+    march_points(points, survey, outcomes, None, progress)
+    words = np.full(points.count, "", dtype="<U12")
+    if verdict and not survey.stop.is_set():
+        words = _judged(points, number / chosen, outcomes, survey, progress)
     progress.finish()
     return ParameterMap(
         names=axes.names,
         units=units or (_unit(axes.names[0]), _unit(axes.names[1])),
         first=axes.first,
         second=axes.second,
-        period=field.period,
-        rms=field.rms,
-        contact_loss_share=field.contact_loss_share,
-        steps=chosen,
-        step_number=number,
-        verdict=field.verdict,
+        period=outcomes.period.reshape(shape),
+        rms=outcomes.rms.reshape(shape),
+        contact_loss_share=outcomes.contact_loss_share.reshape(shape),
+        steps=chosen.reshape(shape),
+        step_number=(number / chosen).reshape(shape),
+        verdict=words.reshape(shape),
         signal=name,
-        finished=field.finished,
+        finished=outcomes.finished.reshape(shape),
     )
 
 
-def _rates(
-    system: System, known: dict[str, Array], row: slice, shape: tuple[int, int]
-) -> Array | float:
-    """Fastest motion [rad/s]; a stiffness factor above one can raise it by its root at most."""
-    _, nodes, _ = compile_system(system, _LOOK)
-    rate = largest_rate(system, nodes)
-    factor = np.ones(shape)
+def _judged(
+    points: Points, step_number: Array, outcomes: Outcomes, survey: Survey, progress: Progress
+) -> Array:
+    """Judge by half the step: by one period where that is enough, else by marching anew."""
+    words = np.full(points.count, "", dtype="<U12")
+    finer = points.refined(2 * points.steps)
+    same = comes_back(finer, outcomes)
+    words[same] = "physical"
+    progress.advance(int(same.sum()))
+    alive = np.all(np.isfinite(outcomes.settled), axis=1)
+    words[outcomes.finished & ~alive] = "undecided"
+    again = Outcomes(points.count, survey.keep, points.size)
+    again.first[:], again.force[:] = outcomes.settled, outcomes.force
+    march_points(finer, survey, again, outcomes.finished & alive & ~same, progress)
+    for n in np.flatnonzero(again.finished):
+        words[n] = step_verdict(
+            float(step_number[n]), int(outcomes.period[n]), float(outcomes.rms[n]),
+            int(again.period[n]), float(again.rms[n]),
+        )  # fmt: skip
+    return words
+
+
+def _rates(systems: list[System], factors: dict[str, Array]) -> Array:
+    """Fastest motions [rad/s]; a stiffness factor above one can raise it by its root at most."""
+    rates = {id(system): system for system in systems}
+    fastest = {
+        key: largest_rate(system, compile_system(system, _LOOK)[1]) for key, system in rates.items()
+    }
+    rate = np.array([fastest[id(system)] for system in systems])
     for name, power in (("stiffness_scale", 0.5), ("damping_scale", 1.0)):
-        if name in known:
-            factor = factor * np.maximum(known[name], 1.0) ** power
-    return np.asarray(rate * factor[row])
+        if name in factors:
+            rate = rate * np.maximum(factors[name], 1.0) ** power
+    return rate
 
 
 def _steps(number: Array, steps: int | None) -> Index:
