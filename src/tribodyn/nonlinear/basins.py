@@ -13,8 +13,7 @@ from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.nonlinear.attractors import Motions
-from tribodyn.nonlinear.basins_attractors import Attractor, Catalogue, Found, multiplier_of
-from tribodyn.nonlinear.basins_result import Basins
+from tribodyn.nonlinear.basins_attractors import Attractor, Basins, Catalogue, multiplier_of
 from tribodyn.nonlinear.survey import Survey, signal_name, step_verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
@@ -108,12 +107,9 @@ def basins(
     """
     compiled = compile_for(system, mesh_frequency, steps)
     names = coordinates or (system.names[0], system.names[0] + _VELOCITY)
-    columns = _columns(system, names)
     axes = _axes(between, points, cycles)
     rest = static_start(compiled) if start is None else read_start(system, start)
-    starts = np.tile(rest, (axes[0].size * axes[1].size, 1))
-    for column, values in zip(columns, np.meshgrid(*axes, indexing="ij"), strict=True):
-        starts[:, column] = values.ravel()
+    starts = _starts(_columns(system, names), axes, rest)
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
     least = _REST * float(np.abs(starts[:, : system.size]).max())
@@ -132,16 +128,10 @@ def basins(
     refined = np.full(label.shape, -3)
     if verdict and motions.finished.all():
         finer = compile_for(system, mesh_frequency, 2 * steps)
-        fine = catalogue.again(finer, beat, force)
-        attractors = [
-            _judged(each, other, compiled.step_number)
-            for each, other in zip(attractors, fine.known, strict=True)
-        ]
         again = _motions(finer, starts, beat, force)
-        survey.settle(again, np.arange(len(starts)), progress)
-        if again.finished.all():
-            refined = fine.label(again)
-            refined[refined >= len(attractors)] = -2
+        fine = _followed_again(catalogue, again, force, progress)
+        attractors = _judged(attractors, fine, compiled.step_number)
+        refined = _labels_again(fine, again, len(attractors))
     progress.finish()
     order = sorted(range(len(attractors)), key=lambda n: -attractors[n].share)
     rank = np.argsort(np.array(order, dtype=np.int64))
@@ -161,6 +151,23 @@ def basins(
         step_number=compiled.step_number,
         finished=motions.finished.reshape(shape),
     )
+
+
+def _followed_again(
+    catalogue: Catalogue, again: Motions, force: Array, progress: Progress
+) -> Catalogue:
+    """Follow all attractors, then all starts, with shorter steps."""
+    fine = catalogue.again(again.compiled, float(again.frequency[0]), force)
+    catalogue.survey.settle(again, np.arange(again.frequency.size), progress)
+    return fine
+
+
+def _starts(columns: tuple[int, int], axes: tuple[Array, Array], rest: Array) -> Array:
+    """States of all starts of the plane."""
+    starts = np.tile(rest, (axes[0].size * axes[1].size, 1))
+    for column, values in zip(columns, np.meshgrid(*axes, indexing="ij"), strict=True):
+        starts[:, column] = values.ravel()
+    return starts
 
 
 def _motions(compiled: Compiled, starts: Array, beat: float, force: Array) -> Motions:
@@ -186,9 +193,26 @@ def _attractor(
     )
 
 
-def _judged(each: Attractor, other: Found, step_number: float) -> Attractor:
-    word = step_verdict(step_number, each.period, each.rms, other.period, other.rms)
-    return replace(each, verdict=word, refined_period=other.period, refined_rms=other.rms)
+def _judged(attractors: list[Attractor], fine: Catalogue, step_number: float) -> list[Attractor]:
+    """Attractors with what half the step says of them."""
+    return [
+        replace(
+            each,
+            verdict=step_verdict(step_number, each.period, each.rms, other.period, other.rms),
+            refined_period=other.period,
+            refined_rms=other.rms,
+        )
+        for each, other in zip(attractors, fine.known, strict=True)
+    ]
+
+
+def _labels_again(fine: Catalogue, again: Motions, known: int) -> Index:
+    """Which attractor every start comes to with shorter steps; -2 for one that is new."""
+    if not again.finished.all():
+        return np.full(again.frequency.size, -3)
+    refined = fine.label(again)
+    refined[refined >= known] = -2
+    return refined
 
 
 def _renumbered(label: Index, rank: Index) -> Index:

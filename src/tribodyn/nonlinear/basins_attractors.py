@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.survey import Survey, follow, measure
 from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    import xarray
 
 #: States of one motion differ by less than this part of the largest state.
 _SAME = 1e-3
@@ -205,3 +209,128 @@ def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
     if not orbit.converged or not orbit.floquet_multipliers.size:
         return float("nan")
     return float(np.abs(orbit.floquet_multipliers).max())
+
+
+@dataclass(frozen=True)
+class Basins:
+    """Which motion every start of a plane comes to.
+
+    Parameters
+    ----------
+    coordinates : tuple of two str
+        Components of the state that vary; a velocity ends in ``_velocity``.
+    units : tuple of two str
+        Their units.
+    first, second : (nx,), (ny,) array
+        Their values [m, rad, m/s or rad/s].
+    attractor : (nx, ny) int array
+        Number of the attractor; -1 where the motion grew beyond all bounds or has not come near
+        any motion that repeats.
+    attractors : tuple of Attractor
+        The motions, the one with the largest share first.
+    refined_attractor : (nx, ny) int array
+        The same with half the step, -2 for an attractor that the longer step does not show; all
+        -3 if not asked for.
+    names : tuple of str
+        Names of the coordinates of the system.
+    signal : str
+        Name of what rms and contact loss are of, a contact or a coordinate.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    steps : int
+        Steps per mesh cycle.
+    step_number : float
+        ``omega_max * dt`` [-].
+    finished : (nx, ny) bool array
+        Which starts were marched; all of them unless the work was interrupted.
+    """
+
+    coordinates: tuple[str, str]
+    units: tuple[str, str]
+    first: Array = field(repr=False)
+    second: Array = field(repr=False)
+    attractor: Index = field(repr=False)
+    attractors: tuple[Attractor, ...]
+    refined_attractor: Index = field(repr=False)
+    names: tuple[str, ...] = field(repr=False)
+    signal: str
+    mesh_frequency: float
+    steps: int
+    step_number: float
+    finished: Mask = field(repr=False)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every start was marched."""
+        return bool(self.finished.all())
+
+    @property
+    def unresolved(self) -> float:
+        """Part of the starts that come to no attractor [-]."""
+        return float(np.mean(self.attractor[self.finished] < 0)) if self.finished.any() else 1.0
+
+    @property
+    def changed(self) -> float:
+        """Part of the starts that come to another attractor with half the step [-]."""
+        judged = self.finished & (self.refined_attractor > -3)
+        if not judged.any():
+            return float("nan")
+        return float(np.mean(self.attractor[judged] != self.refined_attractor[judged]))
+
+    def __repr__(self) -> str:
+        """One line."""
+        kinds = [
+            f"{100.0 * a.share:.3g} % {f'period {a.period}' if a.period else 'irregular'}"
+            for a in self.attractors
+        ]
+        extra = f", {100.0 * self.unresolved:.3g} % unresolved" if self.unresolved else ""
+        count = f"{self.first.size} x {self.second.size}"
+        return (
+            f"Basins({count} starts over {' and '.join(self.coordinates)} at "
+            f"{self.mesh_frequency:.6g} Hz: {', '.join(kinds) or 'no attractor'}{extra}"
+            f"{'' if self.complete else ', interrupted'})"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the plane and its attractors as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions are the two coordinates and ``number``.
+        """
+        import xarray
+
+        plane, number = self.coordinates, ("number",)
+        data: dict[str, Any] = {
+            "attractor": (plane, self.attractor),
+            "refined_attractor": (plane, self.refined_attractor),
+            "finished": (plane, self.finished),
+        }
+        units = {"rms": "m or rad", "verdict": ""}
+        for name in ("period", "rms", "contact_loss_share", "largest_multiplier", "share"):
+            values = [getattr(each, name) for each in self.attractors]
+            data[name] = (number, values, {"units": units.get(name, "1")})
+        data["verdict"] = (number, [each.verdict for each in self.attractors])
+        axes = {
+            name: (name, values, {"units": unit})
+            for name, values, unit in zip(
+                self.coordinates, (self.first, self.second), self.units, strict=True
+            )
+        }
+        facts = {
+            "mesh_frequency": self.mesh_frequency, "steps": self.steps,
+            "step_number": self.step_number, "signal": self.signal,
+        }  # fmt: skip
+        return xarray.Dataset(data, axes, facts)
+
+    def plot(self) -> Any:
+        """Draw the plane.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["basins"](self)

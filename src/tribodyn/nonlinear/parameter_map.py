@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.dynamics.program import compile_system
 from tribodyn.dynamics.simulate import read_start
 from tribodyn.dynamics.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.nonlinear.parameter_map_result import ParameterMap
 from tribodyn.nonlinear.survey import (
     Outcomes,
     Points,
@@ -25,7 +25,10 @@ from tribodyn.nonlinear.survey import (
     step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    import xarray
 
 #: Factors of the system that a lane can have of its own.
 SCALES = (
@@ -135,31 +138,18 @@ def parameter_map(
     name = signal_name(systems[0], signal)
     begin = None if start is None else read_start(systems[0], start)
     shape = (axes.first.size, axes.second.size)
-    grid = np.meshgrid(axes.first, axes.second, indexing="ij")
-    known = {n: g for n, g in zip(axes.names, grid, strict=True) if n in SCALES}
-    if "mesh_frequency" in axes.names:
-        frequency = grid[axes.names.index("mesh_frequency")]
-    else:
-        frequency = np.full(shape, mesh_frequency, dtype=float)
-    number = np.zeros(shape)
-    each = [systems[0]] * frequency.size
-    if len(systems) > 1 or not isinstance(system, System):
-        each = [item for item in systems for _ in range(shape[1])]
-    flat = {key: values.ravel() for key, values in known.items()}
-    number = _rates(each, flat) / frequency.ravel()
-    chosen = _steps(number, steps)
-    points = Points(each, frequency.ravel(), chosen, flat)
+    points, number = _points(systems, axes, mesh_frequency, steps)
     kept = signal if systems[0].contacts else name
     survey = Survey(
         transient, cycles, max(2, cycles), kept, keep_partial, tolerance=_NEAR, width=_WIDTH
     )
-    progress.start("Marching over two parameters", frequency.size * (1 + bool(verdict)))
+    progress.start("Marching over two parameters", points.count * (1 + bool(verdict)))
     outcomes = Outcomes(points.count, survey.keep, points.size)
     outcomes.first[:] = np.nan if begin is None else begin
     march_points(points, survey, outcomes, None, progress)
     words = np.full(points.count, "", dtype="<U12")
     if verdict and not survey.stop.is_set():
-        words = _judged(points, number / chosen, outcomes, survey, progress)
+        words = _judged(points, number, outcomes, survey, progress)
     progress.finish()
     return ParameterMap(
         names=axes.names,
@@ -169,12 +159,28 @@ def parameter_map(
         period=outcomes.period.reshape(shape),
         rms=outcomes.rms.reshape(shape),
         contact_loss_share=outcomes.contact_loss_share.reshape(shape),
-        steps=chosen.reshape(shape),
-        step_number=(number / chosen).reshape(shape),
+        steps=points.steps.reshape(shape),
+        step_number=number.reshape(shape),
         verdict=words.reshape(shape),
         signal=name,
         finished=outcomes.finished.reshape(shape),
     )
+
+
+def _points(
+    systems: list[System], axes: _Axes, mesh_frequency: float | None, steps: int | None
+) -> tuple[Points, Array]:
+    """All points with their steps, and ``omega_max * dt`` of each; one system, or one per row."""
+    grid = np.meshgrid(axes.first, axes.second, indexing="ij")
+    flat = {name: values.ravel() for name, values in zip(axes.names, grid, strict=True)}
+    count = grid[0].size
+    fixed = np.nan if mesh_frequency is None else mesh_frequency
+    frequency = flat.pop("mesh_frequency", np.full(count, fixed))
+    factors = {name: values for name, values in flat.items() if name in SCALES}
+    each = [system for system in systems for _ in range(count // len(systems))]
+    number = _rates(each, factors) / frequency
+    chosen = _steps(number, steps)
+    return Points(each, frequency, chosen, factors), number / chosen
 
 
 def _judged(
@@ -266,3 +272,113 @@ def _read_axes(
 
 def _unit(name: str) -> str:
     return "Hz" if name == "mesh_frequency" else "-"
+
+
+@dataclass(frozen=True)
+class ParameterMap:
+    """Motions over two parameters; every array is (nx, ny) unless said otherwise.
+
+    Parameters
+    ----------
+    names, units : tuple of two str
+        Parameters and their units.
+    first, second : (nx,), (ny,) array
+        Their values [Hz or -, or as ``units`` says].
+    period : int array
+        Mesh cycles after which the motion repeats; 0 if it does not.
+    rms : array
+        Alternating rms of the signal [m or rad]; NaN for a motion that grew beyond all bounds.
+    contact_loss_share : array
+        Part of the time off the driving flank [-].
+    steps : int array
+        Steps per mesh cycle.
+    step_number : array
+        ``omega_max * dt`` [-].
+    verdict : str array
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not asked for.
+    signal : str
+        Name of what rms and contact loss are of, a contact or a coordinate.
+    finished : bool array
+        Which motions are there; all of them unless the work was interrupted.
+    """
+
+    names: tuple[str, str]
+    units: tuple[str, str]
+    first: Array = field(repr=False)
+    second: Array = field(repr=False)
+    period: Index = field(repr=False)
+    rms: Array = field(repr=False)
+    contact_loss_share: Array = field(repr=False)
+    steps: Index = field(repr=False)
+    step_number: Array = field(repr=False)
+    verdict: NDArray[np.str_] = field(repr=False)
+    signal: str
+    finished: Mask = field(repr=False)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every motion is there."""
+        return bool(self.finished.all())
+
+    @property
+    def ran_away(self) -> Mask:
+        """Which motions grew beyond all bounds without the step's doing, (nx, ny)."""
+        lost = self.finished & ~np.isfinite(self.rms)
+        return np.asarray(lost & (self.verdict != "step-limited"))
+
+    def verdicts(self) -> dict[str, int]:
+        """Count the verdicts.
+
+        Returns
+        -------
+        dict of str to int
+            Only those that occur.
+        """
+        words, counts = np.unique(self.verdict, return_counts=True)
+        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
+
+    def __repr__(self) -> str:
+        """One line."""
+        words = [f"{count} {word}" for word, count in self.verdicts().items()]
+        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
+        return (
+            f"ParameterMap({self.first.size} values of {self.names[0]} x {self.second.size} of "
+            f"{self.names[1]}{': ' if words else ''}{', '.join(words)}"
+            f"{'' if self.complete else ', interrupted'})"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the map as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions are the two parameters.
+        """
+        import xarray
+
+        units = {"rms": "m or rad"}
+        data: dict[str, Any] = {
+            name: (self.names, getattr(self, name), {"units": units.get(name, "1")})
+            for name in ("period", "rms", "contact_loss_share", "steps", "step_number")
+        }
+        data["verdict"] = (self.names, self.verdict)
+        data["finished"] = (self.names, self.finished)
+        axes = {
+            name: (name, values, {"units": unit})
+            for name, values, unit in zip(
+                self.names, (self.first, self.second), self.units, strict=True
+            )
+        }
+        return xarray.Dataset(data, axes, {"signal": self.signal})
+
+    def plot(self) -> Any:
+        """Draw period, rms and contact loss.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        from tribodyn.plot import FIGURES
+
+        return FIGURES["parameter_map"](self)

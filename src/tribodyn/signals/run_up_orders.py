@@ -9,8 +9,8 @@ import numpy as np
 
 from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-from tribodyn.signals.order_map_result import OrderCut, OrderMap
-from tribodyn.signals.spectrum_input import window_values
+from tribodyn.signals.order_map import OrderCut, OrderMap
+from tribodyn.signals.recorded_signal import window_values
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:

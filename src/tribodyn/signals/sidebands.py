@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, InputError, Problem, require_positive
-from tribodyn.signals.spectrum_input import checked_signal, refuse_above_half
+from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:

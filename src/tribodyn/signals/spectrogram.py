@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import require_between, require_positive
-from tribodyn.signals.spectrum_input import checked_signal, window_values
+from tribodyn.signals.recorded_signal import checked_signal, window_values
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

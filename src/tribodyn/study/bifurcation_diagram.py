@@ -18,7 +18,7 @@ from tribodyn.study.tooth_contact import mesh_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.nonlinear.bifurcation_result import Bifurcation
+    from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case import Case
 
 

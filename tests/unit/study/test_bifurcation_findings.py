@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.nonlinear.bifurcation_result import Bifurcation
+from tribodyn.nonlinear.bifurcation import Bifurcation
 from tribodyn.study.bifurcation_findings import Findings
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, SpeedFamily, follow
-from tribodyn.dynamics.orbits.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.simulate import read_start
@@ -18,10 +18,15 @@ from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, ComplexArray, Index, Mask
+
+if TYPE_CHECKING:
+    import xarray
 
 #: Mesh cycles of the figures of a motion that does not repeat.
 _IRREGULAR = 64
+#: Motions whose rms differs by more than this are different motions.
+_DIFFERENT = 1e-3
 
 
 def speed_sweep(
@@ -249,3 +254,199 @@ def _jumps(
             if new.jumped and (new.period or orbits[k - 1].period):
                 jumps.append(Jump(direction, float(beats[k - 1]), float(beats[k]), new.period))
     return tuple(jumps)
+
+
+@dataclass(frozen=True)
+class Jump:
+    """Where the motion of a slow sweep leaves its orbit.
+
+    Parameters
+    ----------
+    direction : "up" or "down"
+        Direction of the sweep.
+    before, after : float
+        The two neighbouring mesh frequencies [Hz].
+    period : int
+        Mesh cycles after which the new motion repeats; 0 if it does not.
+    """
+
+    direction: str
+    before: float
+    after: float
+    period: int
+
+
+@dataclass(frozen=True)
+class SpeedSweep:
+    """Steady motions over the speed in both directions.
+
+    Parameters
+    ----------
+    mesh_frequency : (p,) array
+        Mesh frequencies [Hz].
+    teeth : int
+        Mesh cycles per revolution of the shaft whose speed is told.
+    directions : tuple of str
+        ``"up"`` and ``"down"``, as far as they were asked for; ``b`` of them.
+    signals : tuple of str
+        Names of the signals: compressions, contact forces, accelerations, outputs.
+    units : tuple of str
+        Their units.
+    mean, rms, peak_to_peak : (b, p, signals) array
+        Mean, alternating rms and range, in the unit of the signal.
+    maximum : (b, p, signals) array
+        Largest value, in the unit of the signal.
+    contact_loss : (b, p, contacts) array
+        Part of the time off the driving flank [-].
+    period : (b, p) int array
+        Mesh cycles after which the motion repeats; 0 if it was not found to.
+    stable : (b, p) bool array
+        Whether all multipliers lie inside the unit circle.
+    floquet_multipliers : (b, p, m) complex array
+        Over one period, the largest first; NaN for motions that do not repeat.
+    error : (b, p) array
+        Certified distance to the orbit over its size [-].
+    position, velocity : (b, p, n) array
+        State at mesh phase 0 [m or rad, m/s or rad/s].
+    extra_force : (b, p, n) array
+        Generalized force that balances the drive [N or N*m].
+    jumps : tuple of Jump
+        Where the motion left its orbit.
+    names : tuple of str
+        Names of the coordinates.
+    step_number : float
+        Largest ``omega_max * dt`` [-].
+    """
+
+    mesh_frequency: Array
+    teeth: int
+    directions: tuple[str, ...]
+    signals: tuple[str, ...]
+    units: tuple[str, ...]
+    mean: Array = field(repr=False)
+    rms: Array = field(repr=False)
+    peak_to_peak: Array = field(repr=False)
+    maximum: Array = field(repr=False)
+    contact_loss: Array = field(repr=False)
+    period: Index = field(repr=False)
+    stable: Mask = field(repr=False)
+    floquet_multipliers: ComplexArray = field(repr=False)
+    error: Array = field(repr=False)
+    position: Array = field(repr=False)
+    velocity: Array = field(repr=False)
+    extra_force: Array = field(repr=False)
+    jumps: tuple[Jump, ...]
+    names: tuple[str, ...]
+    step_number: float
+
+    @property
+    def speed(self) -> Array:
+        """Speed of the shaft, (p,) [rad/s]."""
+        return 2.0 * np.pi * self.mesh_frequency / self.teeth
+
+    @property
+    def differs(self) -> Mask:
+        """Speeds at which the two directions meet different motions, (p,)."""
+        if len(self.directions) < 2:
+            return np.zeros(self.mesh_frequency.size, dtype=bool)
+        first, second = self.rms[0, :, 0], self.rms[1, :, 0]
+        largest = np.maximum(np.maximum(first, second), 1e-300)
+        return np.asarray(np.abs(first - second) > _DIFFERENT * largest)
+
+    def of(self, signal: str) -> int:
+        """Column of a signal.
+
+        Parameters
+        ----------
+        signal : str
+
+        Returns
+        -------
+        int
+
+        Raises
+        ------
+        InputError
+            If there is no such signal.
+        """
+        if signal not in self.signals:
+            raise InputError(
+                Problem(
+                    what=f'no signal "{signal}"',
+                    where="argument signal",
+                    why=f"There are {', '.join(self.signals)}",
+                )
+            )
+        return self.signals.index(signal)
+
+    def __repr__(self) -> str:
+        """One line."""
+        low, high = self.mesh_frequency.min(), self.mesh_frequency.max()
+        marks = [
+            ("not stable", int(np.count_nonzero(~self.stable))),
+            ("jumps", len(self.jumps)),
+            ("of several cycles", int(np.count_nonzero(self.period > 1))),
+            ("that do not repeat", int(np.count_nonzero(self.period == 0))),
+            ("with loss of contact", int(np.count_nonzero(self.contact_loss.max(-1, initial=0)))),
+        ]
+        told = ", ".join(f"{count} {words}" for words, count in marks if count)
+        return (
+            f"SpeedSweep({self.mesh_frequency.size} speeds, {low:.6g} to {high:.6g} Hz, "
+            f"{' and '.join(self.directions)}{': ' if told else ''}{told})"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the sweep as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``direction``, ``mesh_frequency``, ``signal``, ``contact``, ``coordinate``
+            and ``multiplier``.
+        """
+        import xarray
+
+        both = ("direction", "mesh_frequency")
+        multipliers = self.floquet_multipliers
+        data: dict[str, Any] = {
+            **{
+                name: ((*both, "signal"), getattr(self, name))
+                for name in ("mean", "rms", "peak_to_peak", "maximum")
+            },
+            "contact_loss": ((*both, "contact"), self.contact_loss, {"units": "1"}),
+            "period": (both, self.period, {"units": "1"}),
+            "stable": (both, self.stable),
+            "error": (both, self.error, {"units": "1"}),
+            "multiplier_real": ((*both, "multiplier"), multipliers.real, {"units": "1"}),
+            "multiplier_imaginary": ((*both, "multiplier"), multipliers.imag, {"units": "1"}),
+            "position": ((*both, "coordinate"), self.position, {"units": "m or rad"}),
+            "velocity": ((*both, "coordinate"), self.velocity, {"units": "m/s or rad/s"}),
+            "extra_force": ((*both, "coordinate"), self.extra_force, {"units": "N or N*m"}),
+        }
+        coords: dict[str, Any] = {
+            "direction": list(self.directions),
+            "mesh_frequency": ("mesh_frequency", self.mesh_frequency, {"units": "Hz"}),
+            "speed": ("mesh_frequency", self.speed, {"units": "rad/s"}),
+            "signal": list(self.signals),
+            "unit": ("signal", list(self.units)),
+            "coordinate": list(self.names),
+        }
+        return xarray.Dataset(data, coords, {"teeth": self.teeth})
+
+    def plot(self, **options: Any) -> Any:
+        """Draw rms and range over the speed.
+
+        Parameters
+        ----------
+        **options : object
+            ``signal``: name of the signal.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        # The one step upward of the layers: a result draws itself.
+        from tribodyn.plot import FIGURES
+
+        draw: Any = FIGURES["speed_sweep"]
+        return draw(self, **options)
