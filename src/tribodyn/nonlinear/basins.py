@@ -112,10 +112,9 @@ def basins(
     starts = _starts(_columns(system, names), axes, rest)
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
-    least = _REST * float(np.abs(starts[:, : system.size]).max())
     kept = signal if system.contacts else name
     survey = Survey(cycles, max(64, cycles), 2, kept, keep_partial, tolerance=_NEAR, width=_WIDTH)
-    catalogue = Catalogue(survey, least)
+    catalogue = Catalogue(survey, _REST * float(np.abs(starts[:, : system.size]).max()))
     progress.start("Marching the starts", len(starts) * (1 + bool(verdict)))
     beat = float(mesh_frequency)
     motions = _motions(compiled, starts, beat, force)
@@ -127,8 +126,7 @@ def basins(
     ]
     refined = np.full(label.shape, -3)
     if verdict and motions.finished.all():
-        finer = compile_for(system, mesh_frequency, 2 * steps)
-        again = _motions(finer, starts, beat, force)
+        again = _motions(compile_for(system, beat, 2 * steps), starts, beat, force)
         fine = _followed_again(catalogue, again, force, progress)
         attractors = _judged(attractors, fine, compiled.step_number)
         refined = _labels_again(fine, again, len(attractors))

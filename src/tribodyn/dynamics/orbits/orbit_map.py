@@ -269,12 +269,12 @@ def newton_step(matrix: Array, residual: Array) -> tuple[Array, float]:
     return step, float(np.linalg.norm(step) + np.linalg.norm(residual - slope @ step))
 
 
-def newton(mapping: OrbitMap, points: Array, tolerance: float) -> Orbits:
+def newton(mapping: OrbitMap, points: Array, tolerance: float, rounds: int = _ROUNDS) -> Orbits:
     """Newton's method from points (m, k) side by side; matrices are kept once an orbit is near."""
     count, size = points.shape
     orbits = Orbits(points.copy(), np.zeros((count, size, size)), np.full(count, np.inf))
     left, far = np.arange(count), np.ones(count, dtype=bool)
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         scale = np.linalg.norm(orbits.point[left], axis=1) + 1e-300
         residual = np.empty((left.size, size))
         for rows in (np.flatnonzero(far[left]), np.flatnonzero(~far[left])):

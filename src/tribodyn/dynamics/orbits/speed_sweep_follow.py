@@ -18,6 +18,8 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Mesh cycles between two looks at a motion that has left its orbit.
 _LOOK = 24
+#: Rounds of Newton's method from rest: while the flanks are in touch, the first one arrives.
+_FROM_REST = 3
 #: A motion that repeats within this is near its orbit; a part of a period that does so is one.
 _NEAR, _SAME = 5e-3, 1e-5
 #: Longest way to an orbit over what is expected, and how much closer a motion has to come.
@@ -79,7 +81,7 @@ class SpeedFamily:
         size = start.shape[1]
         orbits = Orbits(start, np.zeros((*start.shape, size)), np.zeros(len(start)))
         for group in self.groups():
-            known = newton(self.mapping(group, 1), start[group], tolerance)
+            known = newton(self.mapping(group, 1), start[group], tolerance, _FROM_REST)
             for values, new in zip(orbits, known, strict=True):
                 values[group] = new
         return orbits
