@@ -15,7 +15,7 @@ from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions, settle
-from tribodyn.nonlinear.verdict import step_verdict
+from tribodyn.nonlinear.survey import step_verdict
 
 TURN = 2.0 * np.pi
 

@@ -11,7 +11,7 @@ from tribodyn.analysis import bifurcation, poincare
 from tribodyn.dynamics import Contact, System, steady_state
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.errors import InputError
-from tribodyn.nonlinear.verdict import step_verdict
+from tribodyn.nonlinear.survey import step_verdict
 
 TURN = 2.0 * np.pi
 

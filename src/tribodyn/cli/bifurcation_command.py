@@ -12,7 +12,7 @@ from tribodyn.cli.ranges import RANGE, read_ranges
 from tribodyn.cli.screen import say, say_json, tell
 
 if TYPE_CHECKING:
-    from tribodyn.nonlinear.bifurcation_result import Bifurcation
+    from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
     from tribodyn.study.studies.bifurcation_findings import Findings
 

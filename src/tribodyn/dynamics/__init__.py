@@ -14,8 +14,7 @@ from tribodyn.dynamics.load_friction import LoadFriction
 from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.continuation import continuation
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
-from tribodyn.dynamics.orbits.speed_sweep import speed_sweep
-from tribodyn.dynamics.orbits.speed_sweep_result import Jump, SpeedSweep
+from tribodyn.dynamics.orbits.speed_sweep import Jump, SpeedSweep, speed_sweep
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.run_up import run_up
 from tribodyn.dynamics.run_up_profile import SpeedProfile, speed_ramp

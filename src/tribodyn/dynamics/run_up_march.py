@@ -11,7 +11,7 @@ from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import unparted_step
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, orbit_coordinates
-from tribodyn.dynamics.orbits.orbit_map import _balance_direction
+from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
 from tribodyn.dynamics.time.ensemble import fresh_moments
@@ -68,7 +68,7 @@ class CycleMarcher:
         self.down, self.up = lower @ free, free.T @ np.linalg.inv(lower)
         #: Free motion of a position or velocity.
         self.free = self.down @ self.up
-        self.balance = _balance_direction(system, self.coordinates)
+        self.balance = Balance.of(system, self.coordinates)
         self.torque = np.zeros(self.size)
         #: Time at the beginning of the cycle, for messages.
         self.time = 0.0

@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterator
-from concurrent.futures import FIRST_EXCEPTION, wait
 from contextlib import suppress
 from typing import Any
 
@@ -20,10 +19,9 @@ from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
-from tribodyn.dynamics.orbits.orbit_map import OrbitMap
+from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.errors import ComputationError
-from tribodyn.interrupt import Threads
-from tribodyn.nonlinear.settling import still_settles
+from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
 
@@ -41,8 +39,8 @@ _SAME = 1e-5
 _ROUNDING = 1e-12
 #: Numbers that are recorded at most; beyond, the cycles are marched one by one.
 _MOST_RECORDED = 2_000_000
-#: Seconds between two reports of the progress.
-_PATIENCE = 0.05
+#: Part of the change after fewer cycles that is left whole periods later, where it settles.
+_FALLS = 0.999
 
 
 class Motions:
@@ -63,9 +61,7 @@ class Motions:
         self.start = np.array(start, dtype=float)
         self.force = np.zeros((count, size)) if force is None else np.array(force, dtype=float)
         self.coordinates = orbit_coordinates(compiled, float(frequency.min()))
-        self.balance = None
-        if compiled.system.balance is not None:
-            self.balance = OrbitMap(compiled, float(frequency.min()), 1).balance
+        self.balance = Balance.of(compiled.system, self.coordinates)
         width = self.coordinates.elastic.shape[1] + self.coordinates.moving.shape[1]
         self.state = np.full((count, 2 * size), np.nan)
         self.period = np.zeros(count, dtype=np.int64)
@@ -73,7 +69,7 @@ class Motions:
         self.recent = np.full((count if keep_states else 0, LONGEST_PERIOD, width), np.nan)
         self.finished = np.zeros(count, dtype=bool)
         self.stop = threading.Event()
-        self.marched = 0
+        self.progress = SILENT
         self._waiting: Iterator[int] = iter(())
         self._lock = threading.Lock()
 
@@ -99,7 +95,7 @@ class Motions:
             self.recent[index] = recent
         self.finished[index] = True
         with self._lock:
-            self.marched += 1
+            self.progress.advance()
         return -1
 
     def march(self, index: Index, state: Array, cycles: int, force: Array, **options: Any) -> Array:
@@ -137,9 +133,13 @@ class _Block:
             self.record = np.empty((points, size, self.lanes))
 
     def run(self) -> None:
-        """March until the queue is empty."""
-        while self._fill() and not self.motions.stop.is_set():
-            self._advance()
+        """March until the queue is empty, or another block was stopped by an error."""
+        try:
+            while not self.motions.stop.is_set() and self._fill():
+                self._advance()
+        except BaseException:
+            self.motions.stop.set()
+            raise
 
     def _fill(self) -> bool:
         """Give a motion to every lane that has none; tell whether any lane has one."""
@@ -186,8 +186,7 @@ class _Block:
         self.state = c.expand(c.reduce(last))
         shift = np.zeros(self.width)
         if m.balance is not None:
-            direction, force, _ = m.balance
-            more = np.outer(gained @ direction * m.frequency[index] / _PART, force)
+            more = m.balance.torque(gained @ m.balance.direction, _PART / m.frequency[index])
             self.force -= more
             shift = np.abs(more).max(axis=1)
         self.part += 1
@@ -271,24 +270,19 @@ def settle(
 ) -> None:
     """March motions until they repeat, or over the whole transient."""
     motions.queue(indices)
-    told = motions.marched
-    count = threads or os.cpu_count() or 1
-    if width == 1 and len(indices) == 1:
-        _Block(motions, transient, tolerance, 1).run()
-        progress.advance(motions.marched - told)
-        return
-    with Threads(count) as pool:
-        blocks = [_Block(motions, transient, tolerance, width) for _ in range(count)]
-        running = {pool.submit(block.run) for block in blocks}
-        try:
-            while running:
-                done, running = wait(running, _PATIENCE, FIRST_EXCEPTION)
-                for item in done:
-                    item.result()
-                now = motions.marched
-                if now > told:
-                    progress.advance(now - told)
-                    told = now
-        except BaseException:
-            motions.stop.set()
-            raise
+    motions.progress = progress
+    count = 1 if width == 1 and len(indices) == 1 else threads or os.cpu_count() or 1
+    blocks = [_Block(motions, transient, tolerance, width) for _ in range(count)]
+    in_threads(_Block.run, blocks, count)
+
+
+def still_settles(states: Array, earlier: Array, apart: int, period: int) -> bool:
+    """Tell whether a motion comes nearer after fewer cycles than whole periods ago."""
+    back = period * -(-apart // period) - apart
+    for fewer in range(1, period):
+        if period % fewer == 0:
+            new = states[-1] - states[-1 - fewer]
+            old = earlier[-1 - back] - earlier[-1 - back - fewer]
+            if np.linalg.norm(new) < _FALLS * np.linalg.norm(old):
+                return True
+    return False

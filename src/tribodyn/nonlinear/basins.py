@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,11 +12,9 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem
-from tribodyn.nonlinear.attractors import Motions, settle
-from tribodyn.nonlinear.basins_attractors import Attractor, Catalogue, Found, multiplier_of
-from tribodyn.nonlinear.basins_result import Basins
-from tribodyn.nonlinear.bifurcation import signal_name
-from tribodyn.nonlinear.verdict import step_verdict
+from tribodyn.nonlinear.attractors import Motions
+from tribodyn.nonlinear.basins_attractors import Attractor, Basins, Catalogue, multiplier_of
+from tribodyn.nonlinear.survey import Survey, signal_name, step_verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
 
@@ -109,30 +107,31 @@ def basins(
     """
     compiled = compile_for(system, mesh_frequency, steps)
     names = coordinates or (system.names[0], system.names[0] + _VELOCITY)
-    columns = _columns(system, names)
     axes = _axes(between, points, cycles)
     rest = static_start(compiled) if start is None else read_start(system, start)
-    starts = np.tile(rest, (axes[0].size * axes[1].size, 1))
-    for column, values in zip(columns, np.meshgrid(*axes, indexing="ij"), strict=True):
-        starts[:, column] = values.ravel()
+    starts = _starts(_columns(system, names), axes, rest)
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
-    least = _REST * float(np.abs(starts[:, : system.size]).max())
-    catalogue = Catalogue(signal if system.contacts else name, max(64, cycles), least)
+    kept = signal if system.contacts else name
+    survey = Survey(cycles, max(64, cycles), 2, kept, keep_partial, tolerance=_NEAR, width=_WIDTH)
+    catalogue = Catalogue(survey, _REST * float(np.abs(starts[:, : system.size]).max()))
     progress.start("Marching the starts", len(starts) * (1 + bool(verdict)))
-    plan = _Plan(float(mesh_frequency), force, cycles, keep_partial, progress)
-    motions = _march(compiled, starts, plan)
+    beat = float(mesh_frequency)
+    motions = _motions(compiled, starts, beat, force)
+    survey.settle(motions, np.arange(len(starts)), progress)
     label = catalogue.label(motions)
-    found = [
+    attractors = [
         _attractor(catalogue, n, label[motions.finished] == n, motions, steps)
         for n in range(len(catalogue.known))
     ]
     refined = np.full(label.shape, -3)
     if verdict and motions.finished.all():
-        finer = compile_for(system, mesh_frequency, 2 * steps)
-        found, refined = _refine(finer, starts, plan, catalogue, found, compiled.step_number)
+        again = _motions(compile_for(system, beat, 2 * steps), starts, beat, force)
+        fine = _followed_again(catalogue, again, force, progress)
+        attractors = _judged(attractors, fine, compiled.step_number)
+        refined = _labels_again(fine, again, len(attractors))
     progress.finish()
-    order = sorted(range(len(found)), key=lambda n: -found[n].share)
+    order = sorted(range(len(attractors)), key=lambda n: -attractors[n].share)
     rank = np.argsort(np.array(order, dtype=np.int64))
     shape = (axes[0].size, axes[1].size)
     return Basins(
@@ -141,7 +140,7 @@ def basins(
         first=axes[0],
         second=axes[1],
         attractor=_renumbered(label, rank).reshape(shape),
-        attractors=tuple(found[n] for n in order),
+        attractors=tuple(attractors[n] for n in order),
         refined_attractor=_renumbered(refined, rank).reshape(shape),
         names=tuple(system.names),
         signal=name,
@@ -152,54 +151,26 @@ def basins(
     )
 
 
-@dataclass(frozen=True)
-class _Plan:
-    """What holds for all starts."""
-
-    mesh_frequency: float
-    force: Array
-    cycles: int
-    keep_partial: bool
-    progress: Progress
+def _followed_again(
+    catalogue: Catalogue, again: Motions, force: Array, progress: Progress
+) -> Catalogue:
+    """Follow all attractors, then all starts, with shorter steps."""
+    fine = catalogue.again(again.compiled, float(again.frequency[0]), force)
+    catalogue.survey.settle(again, np.arange(again.frequency.size), progress)
+    return fine
 
 
-def _refine(
-    finer: Compiled, starts: Array, plan: _Plan, catalogue: Catalogue, found: list[Attractor],
-    step_number: float,
-) -> tuple[list[Attractor], Index]:  # fmt: skip
-    """Repeat everything with half the step: judged attractors, and which one each start finds."""
-    fine = Catalogue(catalogue.signal, catalogue.cycles, catalogue.least)
-    if catalogue.known:
-        begin = np.array([each.state for each in catalogue.known])
-        fine = catalogue.again(_motions(finer, begin, plan), plan.cycles, _NEAR)
-    judged = [
-        _judged(each, other, step_number) for each, other in zip(found, fine.known, strict=True)
-    ]
-    again = _march(finer, starts, plan)
-    if not again.finished.all():
-        return judged, np.full(len(starts), -3)
-    refined = fine.label(again)
-    refined[refined >= len(found)] = -2
-    return judged, refined
+def _starts(columns: tuple[int, int], axes: tuple[Array, Array], rest: Array) -> Array:
+    """States of all starts of the plane."""
+    starts = np.tile(rest, (axes[0].size * axes[1].size, 1))
+    for column, values in zip(columns, np.meshgrid(*axes, indexing="ij"), strict=True):
+        starts[:, column] = values.ravel()
+    return starts
 
 
-def _motions(compiled: Compiled, starts: Array, plan: _Plan) -> Motions:
+def _motions(compiled: Compiled, starts: Array, beat: float, force: Array) -> Motions:
     count = len(starts)
-    frequency = np.full(count, plan.mesh_frequency)
-    return Motions(compiled, frequency, starts, np.tile(plan.force, (count, 1)))
-
-
-def _march(compiled: Compiled, starts: Array, plan: _Plan) -> Motions:
-    motions = _motions(compiled, starts, plan)
-    try:
-        settle(
-            motions, np.arange(len(starts)), plan.cycles, tolerance=_NEAR, width=_WIDTH,
-            progress=plan.progress,
-        )  # fmt: skip
-    except KeyboardInterrupt:
-        if not plan.keep_partial:
-            raise
-    return motions
+    return Motions(compiled, np.full(count, beat), starts, np.tile(force, (count, 1)))
 
 
 def _attractor(
@@ -220,9 +191,26 @@ def _attractor(
     )
 
 
-def _judged(each: Attractor, other: Found, step_number: float) -> Attractor:
-    word = step_verdict(step_number, each.period, each.rms, other.period, other.rms)
-    return replace(each, verdict=word, refined_period=other.period, refined_rms=other.rms)
+def _judged(attractors: list[Attractor], fine: Catalogue, step_number: float) -> list[Attractor]:
+    """Attractors with what half the step says of them."""
+    return [
+        replace(
+            each,
+            verdict=step_verdict(step_number, each.period, each.rms, other.period, other.rms),
+            refined_period=other.period,
+            refined_rms=other.rms,
+        )
+        for each, other in zip(attractors, fine.known, strict=True)
+    ]
+
+
+def _labels_again(fine: Catalogue, again: Motions, known: int) -> Index:
+    """Which attractor every start comes to with shorter steps; -2 for one that is new."""
+    if not again.finished.all():
+        return np.full(again.frequency.size, -3)
+    refined = fine.label(again)
+    refined[refined >= known] = -2
+    return refined
 
 
 def _renumbered(label: Index, rank: Index) -> Index:

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.nonlinear.attractors import Motions, settle
-from tribodyn.nonlinear.bifurcation_statistics import measure
+from tribodyn.nonlinear.survey import Survey, follow, measure
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    pass
 
 #: States of one motion differ by less than this part of the largest state.
 _SAME = 1e-3
@@ -85,8 +91,8 @@ class Found:
 class Catalogue:
     """Attractors known so far."""
 
-    def __init__(self, signal: int | str, cycles: int, least: float = 0.0) -> None:
-        self.signal, self.cycles, self.least = signal, cycles, least
+    def __init__(self, survey: Survey, least: float = 0.0) -> None:
+        self.survey, self.least = survey, least
         self.known: list[Found] = []
 
     def label(self, motions: Motions) -> Index:
@@ -139,20 +145,18 @@ class Catalogue:
                 motions.compiled, motions.frequency[index], motions.state[index],
                 motions.force[index],
             )  # fmt: skip
-            settle(one, [0], self.cycles, tolerance=_EXACT, width=1)
+            settle(one, [0], self.survey.cycles, tolerance=_EXACT, width=1)
             motions, index = one, np.array([0])
             shorter = int(motions.period[0])
             period = shorter if shorter and period % shorter == 0 else period
-        facts = measure(motions, index, self.cycles, 2, self.signal)
-        states = [motions.state[index]]
-        for _ in range(max(period, 1) - 1):
-            new = motions.march(index, states[-1], 1, motions.force[index])
-            states.append(motions.coordinates.expand(motions.coordinates.reduce(new)))
-        full = np.concatenate(states)
-        rms = float(facts.rms[0])
+        path = follow(
+            motions, index, motions.state[index], period or self.survey.cycles, self.survey.signal
+        )
+        full = path.states[: max(period, 1), 0]
+        rms = float(path.rms[0])
         return Found(
             motions.coordinates.reduce(full), full[0], motions.force[index[0]].copy(), period,
-            0.0 if rms < self.least else rms, float(facts.contact_loss_share[0]), full,
+            0.0 if rms < self.least else rms, float(path.contact_loss_share[0]), full,
         )  # fmt: skip
 
     def _irregular(self, label: Index, alive: Mask, motions: Motions) -> None:
@@ -161,7 +165,7 @@ class Catalogue:
         wild = wild[motions.change[wild] > _WILD]
         if not wild.size:
             return
-        rms = measure(motions, wild, self.cycles, 2, self.signal).rms
+        rms = measure(motions, wild, self.survey).rms
         open_ = np.isfinite(rms)
         while open_.any() and len(self.known) < _MOST:
             known = [n for n, f in enumerate(self.known) if not f.period]
@@ -175,12 +179,15 @@ class Catalogue:
             self.known.append(self._trace(motions, wild[middle : middle + 1]))
             self.known[-1].rms = float(rms[middle])
 
-    def again(self, motions: Motions, transient: int, tolerance: float) -> Catalogue:
+    def again(self, compiled: Compiled, beat: float, force: Array) -> Catalogue:
         """Follow every attractor with other steps."""
-        settle(motions, np.arange(len(self.known)), transient, tolerance=tolerance)
-        new = Catalogue(self.signal, self.cycles, self.least)
-        for number in range(len(self.known)):
-            new.known.append(self._trace(motions, np.array([number])))
+        new, count = Catalogue(self.survey, self.least), len(self.known)
+        if not count:
+            return new
+        begin = np.array([attractor.state for attractor in self.known])
+        motions = Motions(compiled, np.full(count, beat), begin, np.tile(force, (count, 1)))
+        settle(motions, np.arange(count), self.survey.transient, tolerance=self.survey.tolerance)
+        new.known += [self._trace(motions, np.array([number])) for number in range(count)]
         return new
 
 
@@ -203,3 +210,93 @@ def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
     if not orbit.converged or not orbit.floquet_multipliers.size:
         return float("nan")
     return float(np.abs(orbit.floquet_multipliers).max())
+
+
+@record
+class Basins(Record):
+    """Which motion every start of a plane comes to.
+
+    Parameters
+    ----------
+    coordinates : tuple of two str
+        Components of the state that vary; a velocity ends in ``_velocity``.
+    units : tuple of two str
+        Their units.
+    first, second : (nx,), (ny,) array
+        Their values [m, rad, m/s or rad/s].
+    attractor : (nx, ny) int array
+        Number of the attractor; -1 where the motion grew beyond all bounds or has not come near
+        any motion that repeats.
+    attractors : tuple of Attractor
+        The motions, the one with the largest share first.
+    refined_attractor : (nx, ny) int array
+        The same with half the step, -2 for an attractor that the longer step does not show; all
+        -3 if not asked for.
+    names : tuple of str
+        Names of the coordinates of the system.
+    signal : str
+        Name of what rms and contact loss are of, a contact or a coordinate.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    steps : int
+        Steps per mesh cycle.
+    step_number : float
+        ``omega_max * dt`` [-].
+    finished : (nx, ny) bool array
+        Which starts were marched; all of them unless the work was interrupted.
+    """
+
+    coordinates: tuple[str, str]
+    units: tuple[str, str]
+    first: Array = quantity("first", axis=True)
+    second: Array = quantity("second", axis=True)
+    attractor: Index = quantity("first", "second")
+    attractors: tuple[Attractor, ...]
+    refined_attractor: Index = quantity("first", "second")
+    names: tuple[str, ...]
+    signal: str = fact()
+    mesh_frequency: float = fact()
+    steps: int = fact()
+    step_number: float = fact()
+    finished: Mask = quantity("first", "second")
+
+    @property
+    def complete(self) -> bool:
+        """Whether every start was marched."""
+        return bool(self.finished.all())
+
+    @property
+    def unresolved(self) -> float:
+        """Part of the starts that come to no attractor [-]."""
+        return float(np.mean(self.attractor[self.finished] < 0)) if self.finished.any() else 1.0
+
+    @property
+    def changed(self) -> float:
+        """Part of the starts that come to another attractor with half the step [-]."""
+        judged = self.finished & (self.refined_attractor > -3)
+        if not judged.any():
+            return float("nan")
+        return float(np.mean(self.attractor[judged] != self.refined_attractor[judged]))
+
+    def __repr__(self) -> str:
+        """One line."""
+        kinds = [
+            f"{100.0 * a.share:.3g} % {f'period {a.period}' if a.period else 'irregular'}"
+            for a in self.attractors
+        ]
+        extra = f", {100.0 * self.unresolved:.3g} % unresolved" if self.unresolved else ""
+        count = f"{self.first.size} x {self.second.size}"
+        return (
+            f"Basins({count} starts over {' and '.join(self.coordinates)} at "
+            f"{self.mesh_frequency:.6g} Hz: {', '.join(kinds) or 'no attractor'}{extra}"
+            f"{'' if self.complete else ', interrupted'})"
+        )
+
+    def _parts(self) -> Parts:
+        parts = super()._parts().over(self.coordinates, self.units)
+        units = {"rms": "m or rad"}
+        for name in ("period", "rms", "contact_loss_share", "largest_multiplier", "share"):
+            values = [getattr(each, name) for each in self.attractors]
+            parts.variables[name] = ("number", values, {"units": units.get(name, "1")})
+        parts.variables["verdict"] = ("number", [each.verdict for each in self.attractors])
+        return parts

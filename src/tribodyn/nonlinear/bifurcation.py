@@ -4,22 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.nonlinear.bifurcation_march import march_points, march_sweeps
-from tribodyn.nonlinear.bifurcation_result import Bifurcation
-from tribodyn.nonlinear.bifurcation_values import Plan, Row, Values
+from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
-from tribodyn.nonlinear.verdict import step_verdict
+from tribodyn.nonlinear.survey import (
+    Outcomes,
+    Points,
+    Survey,
+    march_points,
+    signal_name,
+    step_verdict,
+)
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, Index
+from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    pass
 
 Sweep = Literal["up", "down", "both", "independent"]
 
@@ -128,20 +137,22 @@ def bifurcation(
     values = _read_values(systems, mesh_frequency, steps)
     given = _read_parameter(parameter, values)
     name = signal_name(values.systems[0], signal)
-    plan = _read_plan(
-        Plan(transient, cycles, keep, signal if values.systems[0].contacts else name, keep_partial)
+    survey = _read_survey(
+        Survey(
+            transient, cycles, keep, signal if values.systems[0].contacts else name, keep_partial
+        )
     )
     first = None if start is None else read_start(values.systems[0], start)
     branches = _BRANCHES[sweep]
     work = values.count * len(branches) * (1 + bool(verdict))
     progress.start("Marching over the parameter", work)
-    rows = _rows(values, branches, first, plan, progress)
-    finer = Values(values.systems, values.mesh_frequency, _refined_steps(values))
-    fine = [Row(values.count, keep, values.size) for _ in rows]
-    if verdict and not plan.stop.is_set():
-        fine = [march_points(finer, _begin(values, r), plan, progress, r.finished) for r in rows]
+    rows = _rows(values, branches, first, survey, progress)
+    finer = values.refined(_refined_steps(values))
+    fine = [_begin(values, row, keep) for row in rows]
+    for row, new in zip(rows, fine, strict=True) if verdict and not survey.stop.is_set() else ():
+        march_points(finer, survey, new, row.finished, progress)
     largest = np.full((len(rows), values.count), np.nan)
-    if exponents and not plan.stop.is_set():
+    if exponents and not survey.stop.is_set():
         largest = _largest_exponents(values, finer, rows, fine, exponents)
     progress.finish()
     return _diagram(
@@ -150,18 +161,20 @@ def bifurcation(
     )  # fmt: skip
 
 
-def _begin(values: Values, row: Row) -> Array:
-    """Starts of the repetition: the motion itself, unless the step has made it."""
+def _begin(values: Points, row: Outcomes, keep: int) -> Outcomes:
+    """The repetition with its starts: the motion itself, unless the step has made it."""
+    fine = Outcomes(values.count, keep, values.size)
     sound = (values.step_number <= LIMIT) & np.all(np.isfinite(row.last), axis=1)
-    return np.where(sound[:, None], row.last, row.first)
+    fine.first[:] = np.where(sound[:, None], row.last, row.first)
+    return fine
 
 
 def _diagram(
-    values: Values, finer: Values, rows: list[Row], fine: list[Row], **facts: Any
+    values: Points, finer: Points, rows: list[Outcomes], fine: list[Outcomes], **facts: Any
 ) -> Bifurcation:
     """Judge every motion and put all of them together."""
 
-    def both(name: str, of: list[Row]) -> Any:
+    def both(name: str, of: list[Outcomes]) -> Any:
         return np.array([getattr(row, name) for row in of])
 
     verdicts = [
@@ -185,7 +198,7 @@ def _diagram(
     )
 
 
-def _read_parameter(parameter: ArrayLike | None, values: Values) -> Array:
+def _read_parameter(parameter: ArrayLike | None, values: Points) -> Array:
     given = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
     if given.shape not in ((), (values.count,)):
         what = f"parameter has the shape {given.shape}, and there are {values.count} values"
@@ -195,7 +208,7 @@ def _read_parameter(parameter: ArrayLike | None, values: Values) -> Array:
 
 def _read_values(
     systems: System | Sequence[System], mesh_frequency: ArrayLike, steps: ArrayLike
-) -> Values:
+) -> Points:
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     given = [systems] if isinstance(systems, System) else list(systems)
     try:
@@ -215,57 +228,43 @@ def _read_values(
         raise InputError(Problem(what, "argument systems" if not given else "argument steps"))
     frequency = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (count,)).copy()
     whole = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
-    return Values(given * count if len(given) == 1 else given, frequency, whole)
+    return Points(given * count if len(given) == 1 else given, frequency, whole)
 
 
-def _read_plan(plan: Plan) -> Plan:
-    if not 2 <= plan.keep <= plan.cycles or plan.transient < 0:
+def _read_survey(survey: Survey) -> Survey:
+    if not 2 <= survey.keep <= survey.cycles or survey.transient < 0:
         raise InputError(
             Problem(
-                f"keep = {plan.keep}, cycles = {plan.cycles}, transient = {plan.transient}",
+                f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
                 "argument keep",
                 "At least two points are kept, of as many mesh cycles or more",
             )
         )
-    return plan
-
-
-def signal_name(system: System, signal: int | str) -> str:
-    """Name of what is looked at: a contact or a coordinate."""
-    names = tuple(system.names)
-    if isinstance(signal, str) and signal in names:
-        return signal
-    if isinstance(signal, int) and 0 <= signal < len(system.contacts):
-        return f"contact {signal}"
-    if signal == 0 and not system.contacts:
-        return names[0]
-    raise InputError(
-        Problem(
-            f"signal = {signal!r}",
-            "argument signal",
-            f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
-        )
-    )
+    return survey
 
 
 def _rows(
-    values: Values, branches: tuple[str, ...], first: Array | None, plan: Plan, progress: Progress
-) -> list[Row]:
+    values: Points, branches: tuple[str, ...], first: Array | None, survey: Survey,
+    progress: Progress,
+) -> list[Outcomes]:  # fmt: skip
     """Motions of every branch."""
-    if branches == ("independent",):
-        starts = None if first is None else np.tile(first, (values.count, 1))
-        return [march_points(values, starts, plan, progress)]
-    return march_sweeps(values, first, plan, branches, progress)
+    if branches != ("independent",):
+        return march_sweeps(values, first, survey, branches, progress)
+    row = Outcomes(values.count, survey.keep, values.size)
+    if first is not None:
+        row.first[:] = first
+    march_points(values, survey, row, None, progress)
+    return [row]
 
 
-def _refined_steps(values: Values) -> Index:
+def _refined_steps(values: Points) -> Index:
     """Twice the steps, or as often doubled as it takes to be stable with a margin of two."""
     halvings = np.ceil(np.log2(np.maximum(2.0 * values.step_number / LIMIT, 2.0)))
     halvings = np.where(values.step_number > LIMIT, halvings, 1.0)
     return np.asarray(values.steps * 2 ** halvings.astype(np.int64))
 
 
-def _judge(number: float, i: int, row: Row, fine: Row) -> str:
+def _judge(number: float, i: int, row: Outcomes, fine: Outcomes) -> str:
     if not (row.finished[i] and fine.finished[i]):
         return ""
     return step_verdict(
@@ -278,7 +277,7 @@ def _judge(number: float, i: int, row: Row, fine: Row) -> str:
 
 
 def _largest_exponents(
-    values: Values, finer: Values, rows: list[Row], fine: list[Row], cycles: int
+    values: Points, finer: Points, rows: list[Outcomes], fine: list[Outcomes], cycles: int
 ) -> Array:
     """Largest exponents of all motions; of the refined ones where the step is beyond the limit."""
     limited = values.step_number > LIMIT
@@ -292,7 +291,7 @@ def _largest_exponents(
     return np.array(found)
 
 
-def _exponents(values: Values, steps: Index, last: Array, force: Array, cycles: int) -> list[float]:
+def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: int) -> list[float]:
     """Largest exponents; NaN for a motion that grew beyond all bounds or a step too long."""
     found = []
     for number, state in enumerate(last):
@@ -312,3 +311,105 @@ def _exponents(values: Values, steps: Index, last: Array, force: Array, cycles: 
                 ).vibrating[0]
         found.append(float(largest))
     return found
+
+
+@record
+class Bifurcation(Record):
+    """Motions over a parameter; the first axis of every result is the branch.
+
+    Parameters
+    ----------
+    parameter : (points,) array
+        Values of the parameter, in the unit of ``parameter_unit``.
+    parameter_name, parameter_unit : str
+        What it is.
+    mesh_frequency : (points,) array
+        Mesh frequency [Hz].
+    branches : tuple of str
+        ``"up"``, ``"down"`` or ``"independent"``.
+    signal : str
+        Name of what was looked at, a contact or a coordinate.
+    section : (branches, points, keep) array
+        It once per mesh cycle, at the mesh phase 0 [m or rad].
+    period : (branches, points) int array
+        Mesh cycles after which the motion repeats; 0 if it does not repeat within 16.
+    rms : (branches, points) array
+        Its alternating rms [m or rad]; NaN for a motion that grew beyond all bounds.
+    contact_loss_share : (branches, points) array
+        Part of the time off the driving flank [-].
+    step_number : (points,) array
+        ``omega_max * dt`` [-].
+    steps : (points,) int array
+        Steps per mesh cycle.
+    verdict : (branches, points) str array
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty words if not asked for.
+    refined_period : (branches, points) int array
+        Period of the same computation with ``refined_steps`` steps.
+    refined_rms : (branches, points) array
+        Rms of the same computation [m or rad].
+    refined_steps : (points,) int array
+        Twice the steps, or more where that is not yet stable.
+    largest_exponent : (branches, points) array
+        Largest Lyapunov exponent [1/s]; NaN if not asked for.
+    finished : (branches, points) bool array
+        Which motions are there; all of them unless the work was interrupted. The others have NaN,
+        period 0 and an empty verdict.
+    """
+
+    parameter: Array = quantity("value", unit="@parameter_unit")
+    parameter_name: str = fact()
+    parameter_unit: str
+    mesh_frequency: Array = quantity("value", unit="Hz")
+    branches: tuple[str, ...]
+    signal: str = fact()
+    section: Array = quantity("branch", "value", "mesh_cycle", unit="m or rad")
+    period: Index = quantity("branch", "value", unit="1")
+    rms: Array = quantity("branch", "value", unit="m or rad")
+    contact_loss_share: Array = quantity("branch", "value", unit="1")
+    step_number: Array = quantity("value", unit="1")
+    steps: Index = quantity("value", unit="1")
+    verdict: NDArray[np.str_] = quantity("branch", "value")
+    refined_period: Index = quantity("branch", "value", unit="1")
+    refined_rms: Array = quantity("branch", "value", unit="m or rad")
+    refined_steps: Index = quantity("value", unit="1")
+    largest_exponent: Array = quantity("branch", "value", unit="1/s")
+    finished: Mask = quantity("branch", "value")
+
+    @property
+    def complete(self) -> bool:
+        """Whether every motion is there."""
+        return bool(self.finished.all())
+
+    @property
+    def ran_away(self) -> Mask:
+        """Which motions grew beyond all bounds without the step's doing, (branches, points)."""
+        lost = self.finished & ~np.isfinite(self.rms)
+        return np.asarray(lost & (self.verdict != "step-limited"))
+
+    def __repr__(self) -> str:
+        """One line."""
+        low, high = self.parameter.min(), self.parameter.max()
+        words = [f"{count} {word}" for word, count in self.verdicts().items()]
+        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
+        return (
+            f"Bifurcation({self.parameter.size} values of {self.parameter_name} from {low:.6g} to "
+            f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}"
+            f"{': ' if words else ''}{', '.join(words)}{'' if self.complete else ', interrupted'})"
+        )
+
+    def verdicts(self) -> dict[str, int]:
+        """Count the verdicts.
+
+        Returns
+        -------
+        dict of str to int
+            Only those that occur.
+        """
+        words, counts = np.unique(self.verdict, return_counts=True)
+        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
+
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["branch"] = list(self.branches)
+        parts.variables["parameter"] = ("value", self.parameter, {"units": self.parameter_unit})
+        return parts

@@ -1,9 +1,10 @@
-"""Sweeps in stretches: pieces of a sweep side by side, joined where their motions are the same.
+"""Sweeps over a parameter: every value from the last state of the one before.
 
-A sweep takes every value of the parameter from the last state of the one before, so it would have
-to march one motion at a time. Here all stretches of it begin at once, from rest. Then every stretch
-is entered from the end of the one before, and marched again until it meets a motion that is there
-already; if it never does, the following stretch is entered anew.
+So it would have to march one motion at a time. Where one system serves all values, pieces of the
+sweep are marched side by side and joined where their motions are the same: all stretches begin at
+once, from rest. Then every stretch is entered from the end of the one before, and marched again
+until it meets a motion that is there already; if it never does, the following stretch is entered
+anew.
 """
 
 from __future__ import annotations
@@ -11,7 +12,15 @@ from __future__ import annotations
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.nonlinear.attractors import Motions, settle
+from tribodyn.nonlinear.survey import (
+    Outcomes,
+    Points,
+    Survey,
+    each_in_threads,
+    march_group,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -143,3 +152,46 @@ def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> No
             for part in cut[doubtful:]:
                 sweeps.finished[part] = False
         raise
+
+
+def march_sweeps(
+    points: Points, first: Array | None, survey: Survey, branches: tuple[str, ...],
+    progress: Progress,
+) -> list[Outcomes]:  # fmt: skip
+    """March the values of the parameter each from the end of the last, on every branch."""
+    outcomes = [Outcomes(points.count, survey.keep, points.size) for _ in branches]
+    if len(points.groups) > 1:
+
+        def sweep(task: tuple[str, Outcomes]) -> None:
+            _sweep(points, first, survey, task, progress)
+
+        tasks = list(zip(branches, outcomes, strict=True))
+        survey.uninterrupted(lambda: each_in_threads(sweep, tasks))
+        return outcomes
+    count = points.count
+    compiled = points.compiled(points.groups[0])
+    rest = static_start(compiled)
+    begin = rest if first is None else first
+    sweeps = Stretches(compiled, points.mesh_frequency, begin, rest, branches)
+    survey.uninterrupted(lambda: march_stretches(sweeps, survey.transient, progress))
+    for number, outcome in enumerate(outcomes):
+        numbers = np.arange(count)
+        outcome.fill(survey, sweeps, numbers + number * count, numbers)
+    return outcomes
+
+
+def _sweep(
+    points: Points, first: Array | None, survey: Survey, task: tuple[str, Outcomes],
+    progress: Progress,
+) -> None:  # fmt: skip
+    """One value after the other, each with its own system."""
+    (branch, outcomes), state = task, first
+    for number in range(points.count)[::-1] if branch == "down" else range(points.count):
+        if survey.stop.is_set():
+            return
+        if state is not None:
+            outcomes.first[number] = state
+        march_group(points, survey, outcomes, np.array([number]))
+        last = outcomes.last[number]
+        state = last if np.all(np.isfinite(last)) else None
+        progress.advance()

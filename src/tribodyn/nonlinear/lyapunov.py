@@ -7,26 +7,32 @@ made orthogonal again before they become parallel. Growth per time is the spectr
 
 from __future__ import annotations
 
+import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem
-from tribodyn.nonlinear.lyapunov_crossing import carry_over_crossings
-from tribodyn.nonlinear.lyapunov_floquet import floquet_growth, repeats_after
-from tribodyn.nonlinear.lyapunov_products import grouped_products, safe_length
-from tribodyn.nonlinear.lyapunov_tangent import TangentTables
-from tribodyn.nonlinear.verdict import exponent_verdict
+from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
+from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    pass
+
 
 #: Numbers kept at a time while disturbances are carried.
 _ROOM = 6_000_000
@@ -39,6 +45,15 @@ _FEW = 64
 _KEPT = 32
 #: Standard errors by which the largest exponent of a chaotic motion is above zero.
 _SURE = 3.0
+#: Largest exponents agree within this many standard errors of their difference, or this share, or
+#: this share of the mesh frequency, which is how well an exponent of zero is known.
+_ERRORS, _EXPONENT, _ZERO = 3.0, 0.05, 1e-3
+#: Mesh cycles after which matrices may repeat, and how closely.
+_PERIODS, _REPEATS = 16, 1e-8
+#: Blocks of the frame are apart when they exchange less than this.
+_APART = 1e-10
+#: A product whose singular values differ by more loses the small disturbances to rounding.
+_SPREAD = 1e6
 
 
 @record
@@ -278,13 +293,13 @@ class _Carrier:
         size, steps = self.extra.size, tables.compiled.grid.steps
         place = states[:, :size].reshape(-1, size)
 
-        def sides(q: Array, node: int) -> Array:
+        def sides_at(q: Array, node: int) -> Array:
             q = q.reshape(-1, steps, size)
             d = np.einsum("rji,cri->crj", nodes.direction[:, node], q) - nodes.error[:, node]
             side = sides(d, nodes.gap[:, node], tables.dead)
             return side.reshape(len(q) * steps, d.shape[-1])
 
-        left, right = sides(place[:-1], 0), sides(place[1:], 2)
+        left, right = sides_at(place[:-1], 0), sides_at(place[1:], 2)
         number = np.tile(np.arange(steps), len(left) // steps)
         crossed = np.any(left != right, axis=1)
         touching = left != 0.0
@@ -348,3 +363,75 @@ def _windowed(values: Array) -> Array:
     t = (np.arange(len(values)) + 0.5) / len(values)
     weight = np.exp(-1.0 / (t * (1.0 - t)))
     return np.asarray(weight @ values / weight.sum())
+
+
+def exponent_verdict(found: LyapunovExponents, refined: LyapunovExponents) -> Verdict:
+    """Judge Lyapunov exponents by those with shorter steps."""
+    both_repeat = found.repeats > 0 and refined.repeats > 0
+    if found.chaotic != refined.chaotic or (both_repeat and found.repeats != refined.repeats):
+        return "step-limited"
+    one, other = float(found.vibrating[0]), float(refined.vibrating[0])
+    errors = (float(item.standard_error[0]) for item in (found, refined))
+    spread = math.hypot(*(0.0 if math.isnan(error) else error for error in errors))
+    allowed = max(
+        _EXPONENT * max(abs(one), abs(other)), _ERRORS * spread, _ZERO * found.mesh_frequency
+    )
+    return "physical" if abs(one - other) <= allowed else "undecided"
+
+
+def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
+    """Tell after how many mesh cycles the matrices repeat."""
+    known = np.asarray(cycles)
+    size = np.linalg.norm(known, axis=(-2, -1))
+    for period in range(1, min(_PERIODS, len(known) // 2) + 1):
+        apart = np.linalg.norm(known[period:] - known[:-period], axis=(-2, -1)) / size[period:]
+        if apart.max() <= _REPEATS:
+            return period, float(apart.max())
+    return 0, float("nan")
+
+
+def floquet_growth(cycles: Sequence[Array], frame: Array) -> Array:
+    """Growth of disturbances over one period, from matrices and a frame that has turned in."""
+    old, uppers = frame, []
+    for product in (product for groups in cycles for product in groups):
+        frame, upper = np.linalg.qr(product @ frame)
+        uppers.append(upper)
+    turn = old.T @ frame
+    size = turn.shape[0]
+    edges = [0, *(i for i in range(1, size) if np.abs(turn[i:, :i]).max() < _APART), size]
+    growth = np.zeros(size)
+    for first, last in pairwise(edges):
+        block, scale = np.eye(last - first), 0.0
+        for upper in uppers:
+            block = upper[first:last, first:last] @ block
+            norm = float(np.linalg.norm(block))
+            block, scale = block / norm, scale + float(np.log(norm))
+        values = np.linalg.eigvals(turn[first:last, first:last] @ block)
+        growth[first:last] = np.log(np.abs(values)) + scale
+    return np.asarray(np.sort(growth)[::-1])
+
+
+def _pairwise(matrices: Array) -> Array:
+    """Products of neighbours (cycles, steps, k, k), the later step on the left."""
+    if matrices.shape[1] % 2:
+        unit = np.broadcast_to(np.eye(matrices.shape[-1]), (len(matrices), 1, *matrices.shape[2:]))
+        matrices = np.concatenate((matrices, unit), axis=1)
+    return np.asarray(matrices[:, 1::2] @ matrices[:, ::2])
+
+
+def safe_length(matrices: Array) -> int:
+    """Steps that may be multiplied before disturbances are made orthogonal again."""
+    product, length = matrices[None], 1
+    while product.shape[1] > 1:
+        longer = _pairwise(product)
+        if not np.all(np.linalg.cond(longer) <= _SPREAD):
+            break
+        product, length = longer, 2 * length
+    return length
+
+
+def grouped_products(matrices: Array, length: int) -> Array:
+    """Products of every ``length`` steps of every mesh cycle."""
+    while length > 1:
+        matrices, length = _pairwise(matrices), length // 2
+    return matrices

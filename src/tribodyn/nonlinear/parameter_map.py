@@ -5,20 +5,31 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.nonlinear.bifurcation import signal_name
-from tribodyn.nonlinear.parameter_map_march import Field, Plan, march_field
-from tribodyn.nonlinear.parameter_map_result import ParameterMap
+from tribodyn.nonlinear.survey import (
+    Outcomes,
+    Points,
+    Survey,
+    comes_back,
+    march_points,
+    signal_name,
+    step_verdict,
+)
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, Index
+from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    pass
 
 #: Factors of the system that a lane can have of its own.
 SCALES = (
@@ -29,6 +40,8 @@ SCALES = (
 _NUMBER, _FEWEST = 0.5, 64
 #: Steps of the grid on which the fastest motion is looked for.
 _LOOK = 64
+#: Certified distance to the motion that repeats, relative to the state, and lanes of one block.
+_NEAR, _WIDTH = 1e-5, 64
 
 
 @dataclass(frozen=True)
@@ -126,50 +139,84 @@ def parameter_map(
     name = signal_name(systems[0], signal)
     begin = None if start is None else read_start(systems[0], start)
     shape = (axes.first.size, axes.second.size)
-    grid = np.meshgrid(axes.first, axes.second, indexing="ij")
-    known = {n: g for n, g in zip(axes.names, grid, strict=True) if n in SCALES}
-    if "mesh_frequency" in axes.names:
-        frequency = grid[axes.names.index("mesh_frequency")]
-    else:
-        frequency = np.full(shape, mesh_frequency, dtype=float)
-    number = np.zeros(shape)
-    rows = [slice(None)] if len(systems) == 1 else [slice(i, i + 1) for i in range(shape[0])]
-    for each, row in zip(systems, rows, strict=True):
-        number[row] = _rates(each, known, row, shape) / frequency[row]
-    chosen = _steps(number, steps)
-    number = number / chosen
-    field = Field(shape, frequency, known, chosen, number)
-    plan = Plan(transient, cycles, signal if systems[0].contacts else name, verdict, keep_partial)
-    progress.start("Marching over two parameters", frequency.size * (1 + bool(verdict)))
-    march_field(field, list(zip(systems, rows, strict=True)), begin, plan, progress)
+    points, number = _points(systems, axes, mesh_frequency, steps)
+    kept = signal if systems[0].contacts else name
+    survey = Survey(
+        transient, cycles, max(2, cycles), kept, keep_partial, tolerance=_NEAR, width=_WIDTH
+    )
+    progress.start("Marching over two parameters", points.count * (1 + bool(verdict)))
+    outcomes = Outcomes(points.count, survey.keep, points.size)
+    outcomes.first[:] = np.nan if begin is None else begin
+    march_points(points, survey, outcomes, None, progress)
+    words = np.full(points.count, "", dtype="<U12")
+    if verdict and not survey.stop.is_set():
+        words = _judged(points, number, outcomes, survey, progress)
     progress.finish()
     return ParameterMap(
         names=axes.names,
         units=units or (_unit(axes.names[0]), _unit(axes.names[1])),
         first=axes.first,
         second=axes.second,
-        period=field.period,
-        rms=field.rms,
-        contact_loss_share=field.contact_loss_share,
-        steps=chosen,
-        step_number=number,
-        verdict=field.verdict,
+        period=outcomes.period.reshape(shape),
+        rms=outcomes.rms.reshape(shape),
+        contact_loss_share=outcomes.contact_loss_share.reshape(shape),
+        steps=points.steps.reshape(shape),
+        step_number=number.reshape(shape),
+        verdict=words.reshape(shape),
         signal=name,
-        finished=field.finished,
+        finished=outcomes.finished.reshape(shape),
     )
 
 
-def _rates(
-    system: System, known: dict[str, Array], row: slice, shape: tuple[int, int]
-) -> Array | float:
-    """Fastest motion [rad/s]; a stiffness factor above one can raise it by its root at most."""
-    _, nodes, _ = compile_system(system, _LOOK)
-    rate = largest_rate(system, nodes)
-    factor = np.ones(shape)
+def _points(
+    systems: list[System], axes: _Axes, mesh_frequency: float | None, steps: int | None
+) -> tuple[Points, Array]:
+    """All points with their steps, and ``omega_max * dt`` of each; one system, or one per row."""
+    grid = np.meshgrid(axes.first, axes.second, indexing="ij")
+    flat = {name: values.ravel() for name, values in zip(axes.names, grid, strict=True)}
+    count = grid[0].size
+    fixed = np.nan if mesh_frequency is None else mesh_frequency
+    frequency = flat.pop("mesh_frequency", np.full(count, fixed))
+    factors = {name: values for name, values in flat.items() if name in SCALES}
+    each = [system for system in systems for _ in range(count // len(systems))]
+    number = _rates(each, factors) / frequency
+    chosen = _steps(number, steps)
+    return Points(each, frequency, chosen, factors), number / chosen
+
+
+def _judged(
+    points: Points, step_number: Array, outcomes: Outcomes, survey: Survey, progress: Progress
+) -> Array:
+    """Judge by half the step: by one period where that is enough, else by marching anew."""
+    words = np.full(points.count, "", dtype="<U12")
+    finer = points.refined(2 * points.steps)
+    same = comes_back(finer, outcomes)
+    words[same] = "physical"
+    progress.advance(int(same.sum()))
+    alive = np.all(np.isfinite(outcomes.settled), axis=1)
+    words[outcomes.finished & ~alive] = "undecided"
+    again = Outcomes(points.count, survey.keep, points.size)
+    again.first[:], again.force[:] = outcomes.settled, outcomes.force
+    march_points(finer, survey, again, outcomes.finished & alive & ~same, progress)
+    for n in np.flatnonzero(again.finished):
+        words[n] = step_verdict(
+            float(step_number[n]), int(outcomes.period[n]), float(outcomes.rms[n]),
+            int(again.period[n]), float(again.rms[n]),
+        )  # fmt: skip
+    return words
+
+
+def _rates(systems: list[System], factors: dict[str, Array]) -> Array:
+    """Fastest motions [rad/s]; a stiffness factor above one can raise it by its root at most."""
+    rates = {id(system): system for system in systems}
+    fastest = {
+        key: largest_rate(system, compile_system(system, _LOOK)[1]) for key, system in rates.items()
+    }
+    rate = np.array([fastest[id(system)] for system in systems])
     for name, power in (("stiffness_scale", 0.5), ("damping_scale", 1.0)):
-        if name in known:
-            factor = factor * np.maximum(known[name], 1.0) ** power
-    return np.asarray(rate * factor[row])
+        if name in factors:
+            rate = rate * np.maximum(factors[name], 1.0) ** power
+    return rate
 
 
 def _steps(number: Array, steps: int | None) -> Index:
@@ -226,3 +273,80 @@ def _read_axes(
 
 def _unit(name: str) -> str:
     return "Hz" if name == "mesh_frequency" else "-"
+
+
+@record
+class ParameterMap(Record):
+    """Motions over two parameters; every array is (nx, ny) unless said otherwise.
+
+    Parameters
+    ----------
+    names, units : tuple of two str
+        Parameters and their units.
+    first, second : (nx,), (ny,) array
+        Their values [Hz or -, or as ``units`` says].
+    period : int array
+        Mesh cycles after which the motion repeats; 0 if it does not.
+    rms : array
+        Alternating rms of the signal [m or rad]; NaN for a motion that grew beyond all bounds.
+    contact_loss_share : array
+        Part of the time off the driving flank [-].
+    steps : int array
+        Steps per mesh cycle.
+    step_number : array
+        ``omega_max * dt`` [-].
+    verdict : str array
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not asked for.
+    signal : str
+        Name of what rms and contact loss are of, a contact or a coordinate.
+    finished : bool array
+        Which motions are there; all of them unless the work was interrupted.
+    """
+
+    names: tuple[str, str]
+    units: tuple[str, str]
+    first: Array = quantity("first", axis=True)
+    second: Array = quantity("second", axis=True)
+    period: Index = quantity("first", "second", unit="1")
+    rms: Array = quantity("first", "second", unit="m or rad")
+    contact_loss_share: Array = quantity("first", "second", unit="1")
+    steps: Index = quantity("first", "second", unit="1")
+    step_number: Array = quantity("first", "second", unit="1")
+    verdict: NDArray[np.str_] = quantity("first", "second")
+    signal: str = fact()
+    finished: Mask = quantity("first", "second")
+
+    @property
+    def complete(self) -> bool:
+        """Whether every motion is there."""
+        return bool(self.finished.all())
+
+    @property
+    def ran_away(self) -> Mask:
+        """Which motions grew beyond all bounds without the step's doing, (nx, ny)."""
+        lost = self.finished & ~np.isfinite(self.rms)
+        return np.asarray(lost & (self.verdict != "step-limited"))
+
+    def verdicts(self) -> dict[str, int]:
+        """Count the verdicts.
+
+        Returns
+        -------
+        dict of str to int
+            Only those that occur.
+        """
+        words, counts = np.unique(self.verdict, return_counts=True)
+        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
+
+    def __repr__(self) -> str:
+        """One line."""
+        words = [f"{count} {word}" for word, count in self.verdicts().items()]
+        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
+        return (
+            f"ParameterMap({self.first.size} values of {self.names[0]} x {self.second.size} of "
+            f"{self.names[1]}{': ' if words else ''}{', '.join(words)}"
+            f"{'' if self.complete else ', interrupted'})"
+        )
+
+    def _parts(self) -> Parts:
+        return super()._parts().over(self.names, self.units)

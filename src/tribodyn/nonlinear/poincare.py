@@ -3,29 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.drawing import draw
-from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
+from tribodyn.dynamics.orbits.periods import closed_period, open_period
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.response import Response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem
-from tribodyn.nonlinear.poincare_march import (
-    alternating_rms,
-    judge_section,
-    march_section,
-    repeat_period,
-)
+from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.nonlinear.attractors import Motions
+from tribodyn.nonlinear.survey import Path, Verdict, follow, step_verdict
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
 
-#: Points that differ by less than this, relative to their size, are the same.
-_SAME = 1e-5
+if TYPE_CHECKING:
+    pass
+
+
+#: An rms below this share of the largest compression is that of a motion at rest: means of squares
+#: do not tell smaller ones.
+_REST = 1e-7
 #: Mesh cycles in which an orbit becomes that of shorter steps.
 _ORBIT = 100
 
@@ -152,24 +155,76 @@ def poincare(
     compiled = compile_for(motion, mesh_frequency, steps)
     state = static_start(compiled) if start is None else read_start(motion, start)
     force = np.zeros(motion.size) if extra_force is None else np.asarray(extra_force, dtype=float)
-    found = march_section(compiled, mesh_frequency, state, force, cycles, transient, verdict)
+    path = _march(compiled, float(mesh_frequency), (state, force), transient, cycles)
     nodes = compiled.nodes
-    position = found.states[:, : motion.size]
+    position = path.states[:, 0, : motion.size]
     section = PoincareSection(
         position=position,
-        velocity=found.states[:, motion.size :],
+        velocity=path.states[:, 0, motion.size :],
         deflection=position @ nodes.direction[0, 0].T - nodes.error[0, 0],
         names=tuple(motion.names),
         mesh_frequency=float(mesh_frequency),
-        period=repeat_period(found.reduced),
+        period=_period(compiled, float(mesh_frequency), path),
     )
     if not verdict:
         return section
+    known = (compiled.step_number, section.period, _path_rms(path))
     judged = judge_section(
-        motion, mesh_frequency, state, force, 2 * steps, transient, cycles,
-        (compiled.step_number, section.period, found.rms),
+        motion, mesh_frequency, (state, force), 2 * steps, transient, cycles, known
     )  # fmt: skip
     return replace(section, verdict=judged)
+
+
+def _march(
+    compiled: Compiled, mesh_frequency: float, start: tuple[Array, Array], transient: int,
+    cycles: int,
+) -> Path:  # fmt: skip
+    """One motion over a transient, then once per mesh cycle."""
+    state, force = (item[None, :] for item in start)
+    motions, lane = Motions(compiled, np.array([mesh_frequency]), state, force), np.zeros(1, int)
+    signal = 0 if compiled.system.contacts else compiled.system.names[0]
+    for cycle in range(transient):
+        state = motions.march(lane, state, 1, force, elapsed=cycle)
+        state = motions.coordinates.expand(motions.coordinates.reduce(state))
+    return follow(motions, lane, state, cycles, signal, transient)
+
+
+def _period(compiled: Compiled, mesh_frequency: float, path: Path) -> int:
+    return open_period(orbit_coordinates(compiled, mesh_frequency).reduce(path.states[:, 0]))
+
+
+def _path_rms(path: Path) -> float:
+    """Alternating rms; zero for rounding."""
+    rms = float(path.rms[0])
+    return 0.0 if rms < _REST * float(path.largest[0]) else rms
+
+
+def judge_section(
+    system: System,
+    mesh_frequency: float,
+    start: tuple[Array, Array],
+    steps: int,
+    transient: int,
+    cycles: int,
+    known: tuple[float, int, float],
+) -> Verdict:
+    """Judge a section by one with shorter steps."""
+    compiled = compile_for(system, mesh_frequency, steps)
+    try:
+        path = _march(compiled, float(mesh_frequency), start, transient, cycles)
+    except ComputationError:
+        return "step-limited"
+    number, period, rms = known
+    refined = _period(compiled, float(mesh_frequency), path)
+    return step_verdict(number, period, rms, refined, _path_rms(path))
+
+
+def alternating_rms(signal: Array, weight: Array) -> float:
+    """Alternating rms; zero for rounding."""
+    weight = weight / weight.sum()
+    mean = float(weight @ signal)
+    rms = float(np.sqrt(weight @ (signal - mean) ** 2))
+    return 0.0 if rms < _REST * float(np.abs(signal).max(initial=0.0)) else rms
 
 
 def _judged_response(
@@ -192,7 +247,7 @@ def _judged_response(
     )
     # An orbit is followed until it has become that of the shorter steps.
     judged = judge_section(
-        system, response.mesh_frequency, state, response.extra_force, 2 * steps,
+        system, response.mesh_frequency, (state, response.extra_force), 2 * steps,
         _ORBIT if orbit and response.stable else 0,
         2 * response.periods if orbit else response.periods - skipped, known,
     )  # fmt: skip
@@ -209,22 +264,12 @@ def _section_of(response: Response, transient: int) -> PoincareSection:
     deflection = response.deflection[rows]
     place = deflection if deflection.shape[1] else response.position[rows]
     known = response.floquet_multipliers.size and response.converged
+    size = float(np.linalg.norm(place, axis=1).max()) or 1.0
     return PoincareSection(
         position=response.position[rows],
         velocity=response.velocity[rows],
         deflection=deflection,
         names=response.names,
         mesh_frequency=response.mesh_frequency,
-        period=_least_period(response, place) if known else repeat_period(place),
+        period=closed_period(place, size) if known else open_period(place),
     )
-
-
-def _least_period(orbit: Response, points: Array) -> int:
-    """Mesh cycles of an orbit, fewer than it has where its points repeat."""
-    size = float(np.linalg.norm(points, axis=1).max()) or 1.0
-    for period in range(1, orbit.periods):
-        if orbit.periods % period == 0:
-            apart = np.linalg.norm(np.roll(points, -period, axis=0) - points, axis=1)
-            if apart.max() <= _SAME * size:
-                return period
-    return orbit.periods

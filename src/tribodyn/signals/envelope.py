@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.signals.spectrum import spectrum
-from tribodyn.signals.spectrum_input import checked_signal, refuse_above_half
-from tribodyn.signals.spectrum_result import SignalSpectrum
+from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
+from tribodyn.signals.spectrum import SignalSpectrum, spectrum
 from tribodyn.types import Array
 
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.record import Record, quantity, record
-from tribodyn.signals.order_map_result import OrderCut, OrderMap
-from tribodyn.signals.spectrum_input import window_values
+from tribodyn.signals.order_map import OrderCut, OrderMap
+from tribodyn.signals.recorded_signal import window_values
 from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    pass
+
 
 Part = Literal["all", "up", "down"]
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, InputError, Problem, require_positive
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.signals.spectrum_input import checked_signal, refuse_above_half
+from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
 from tribodyn.types import Array, ComplexArray
+
+if TYPE_CHECKING:
+    pass
+
 
 #: Points over one period of the modulation.
 _POINTS = 1024

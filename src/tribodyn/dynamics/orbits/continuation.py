@@ -7,22 +7,32 @@ then Newton's method in the plane across it, so that the branch may turn back in
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.orbits.branch_figures import measure
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.branch_figures import OrbitFigures, signal_names
-from tribodyn.dynamics.orbits.continuation_corrector import BranchPoint, StalledError, correct
-from tribodyn.dynamics.orbits.continuation_map import Family, ParameterMap
-from tribodyn.dynamics.orbits.continuation_path import Stepping, follow, hold, with_values
-from tribodyn.dynamics.orbits.continuation_points import Located, locate, tests_of_multipliers
+from tribodyn.dynamics.orbits.continuation_path import (
+    BranchPoint,
+    Family,
+    FamilyMap,
+    Located,
+    StalledError,
+    Stepping,
+    correct,
+    follow,
+    hold,
+    locate,
+    tests_of_multipliers,
+    with_values,
+)
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
-from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.orbits.start import _lowest_of_each_law, static_start
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
+from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem, warn
 from tribodyn.progress import SILENT, Progress
@@ -119,7 +129,7 @@ def continuation(
         periods = 2 * start.period
     low = min(between) if isinstance(start, SpecialPoint) else between[0]
     family = Family(make_system, mesh_frequency, steps, min(between))
-    function = ParameterMap(family, int(periods), (float(low), float(sum(between) - low)))
+    function = FamilyMap(family, int(periods), (float(low), float(sum(between) - low)))
     progress.start("Following the branch", None)
     names = signal_names(function.at(low).compiled.system, signals)
     first = _first(function, start, between, tolerance)
@@ -150,7 +160,7 @@ def _check(between: tuple[float, float], periods: int, longest: float, points: i
 
 
 def _first(
-    function: ParameterMap,
+    function: FamilyMap,
     start: tuple[ArrayLike, ArrayLike] | SpecialPoint | None,
     between: tuple[float, float],
     tolerance: float,
@@ -160,7 +170,7 @@ def _first(
     mapping = function.at(between[0])
     system = mapping.compiled.system
     state = static_start(mapping.compiled) if start is None else read_start(system, start)
-    y = _vector(mapping, state)
+    y = mapping.start(state)
     if start is not None:
         # A given state may be that of an unstable orbit, which no search would keep.
         function.size = _motion(mapping, y)
@@ -186,25 +196,12 @@ def _first(
     return correct(function, x, hold(x.size), None, tolerance)
 
 
-def _vector(mapping: OrbitMap, state: Array) -> Array:
-    y = mapping.coordinates.reduce(state)
-    if y.size == 0:
-        raise InputError(
-            Problem(
-                what="no coordinate is held by a spring, a damper or a contact",
-                where="System.stiffness",
-                why="Nothing vibrates, so that no periodic orbit exists",
-            )
-        )
-    return y if mapping.balance is None else np.append(y, 0.0)
-
-
 def _motion(mapping: OrbitMap, y: Array) -> float:
     reduced = mapping.coordinates.reduce(mapping.record(y)[0])
     return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
 
 
-def _aside(function: ParameterMap, start: SpecialPoint, tolerance: float) -> BranchPoint:
+def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> BranchPoint:
     """First point of the branch of twice the period, beside the point where it begins."""
     if not 0.0 <= (start.parameter - function.origin) / function.range <= 1.0:
         raise InputError(
@@ -215,7 +212,7 @@ def _aside(function: ParameterMap, start: SpecialPoint, tolerance: float) -> Bra
             )
         )
     mapping = function.at(start.parameter)
-    y = _vector(mapping, np.concatenate((start.position, start.velocity)))
+    y = mapping.start(np.concatenate((start.position, start.velocity)))
     function.size = _motion(mapping, y)
     x = np.append(y / function.size, (start.parameter - function.origin) / function.range)
     # Over twice the period the multiplier is +1: the direction is that in which nothing changes.
@@ -243,7 +240,7 @@ def _aside(function: ParameterMap, start: SpecialPoint, tolerance: float) -> Bra
 
 
 def _collect(
-    function: ParameterMap,
+    function: FamilyMap,
     found: list[BranchPoint],
     signals: tuple[str, ...],
     name: str,
@@ -297,4 +294,84 @@ def _collect(
         ending=ending[0],
         complete=ending[1],
         cycles_used=function.cycles,
+    )
+
+
+@dataclass(frozen=True)
+class OrbitFigures:
+    """Figures of one orbit."""
+
+    mesh_frequency: float  #: mesh frequency [Hz]
+    position: Array  #: [m or rad, m/s or rad/s]
+    velocity: Array  #: [m or rad, m/s or rad/s]
+    mean: Array
+    rms: Array
+    peak_to_peak: Array
+    peak_force: Array  #: largest force [N]
+    contact_loss: Array  #: part of the time off the driving flank [-]
+    clearance: Array  #: least compression beyond the gap [m]
+    opening: float  #: the least clearance of those contacts that can open [m]
+
+
+def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """Names of the signals to measure."""
+    count = len(system.contacts)
+    known = ("deflection",)[:count] + tuple(f"deflection {j}" for j in range(1, count))
+    if wanted is None:
+        return known[:1] or tuple(system.names)
+    for name in wanted:
+        if name not in (*known, *system.names):
+            raise InputError(
+                Problem(
+                    what=f'no signal is called "{name}"',
+                    where="argument signals",
+                    why=f"Known: {', '.join((*known, *system.names))}",
+                )
+            )
+    return tuple(wanted)
+
+
+def _signal(response: Response, name: str) -> Array:
+    if name in response.names:
+        return response.fine.position[:, response.index(name)]
+    return response.fine.deflection[:, int(name.partition(" ")[2] or 0)]
+
+
+def _extremes(signal: Array) -> tuple[Array, Array]:
+    """Least and greatest value of (3 s, ...) of the parabolas through the samples of each step."""
+    left, middle, right = np.moveaxis(signal.reshape(-1, 3, *signal.shape[1:]), 1, 0)
+    bend, rise = left - 2.0 * middle + right, 0.5 * (right - left)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        place = np.where(bend != 0.0, -rise / bend, 0.0)
+    inner = np.where(np.abs(place) < 1.0, middle + 0.5 * rise * place, middle)
+    every = np.concatenate((left, middle, right, inner))
+    return every.min(axis=0), every.max(axis=0)
+
+
+def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures:
+    """Record one orbit and measure it."""
+    states, extra = mapping.record(y)
+    frequency = float(1.0 / mapping.period)
+    response = build_response(mapping.compiled, frequency, states, extra)
+    fine, nodes = response.fine, mapping.compiled.nodes
+    values = np.stack([_signal(response, name) for name in signals], axis=1)
+    mean = fine.mean(values)
+    low, high = _extremes(values)
+    count = nodes.gap.shape[2]
+    gap = np.tile(nodes.gap, (response.periods, 1, 1))
+    beyond = fine.deflection - gap.reshape(fine.deflection.shape)
+    dead = np.any(nodes.gap > 0.0, axis=(0, 1))
+    clearance = _extremes(beyond)[0] if count else np.zeros(0)
+    able = dead & _lowest_of_each_law(nodes) if count else dead
+    return OrbitFigures(
+        mesh_frequency=frequency,
+        position=states[0, : response.position.shape[1]].copy(),
+        velocity=response.velocity[0].copy(),
+        mean=mean,
+        rms=np.sqrt(fine.mean((values - mean) ** 2)),
+        peak_to_peak=high - low,
+        peak_force=_extremes(fine.contact_force)[1] if count else np.zeros(0),
+        contact_loss=fine.mean(1.0 * ((beyond <= 0.0) & dead)),
+        clearance=clearance,
+        opening=float(clearance[able].min()) if able.any() else float("nan"),
     )

@@ -16,8 +16,11 @@ from tribodyn.dynamics.orbits.search import (
 )
 from tribodyn.types import Array
 
-#: States one period apart that differ by less than this part of the motion are the same.
-_REPEATS = 1e-5
+#: Points that differ by less than this, relative to the motion, are the same; those that still
+#: approach each other are when this near and so much nearer than at first.
+SAME, _NEARLY, _CALMS_DOWN = 1e-5, 1e-3, 0.5
+#: Points beyond this are on their way beyond all bounds.
+_HUGE = 1e100
 #: Mesh cycles of the longest period that is tried.
 MOST_PERIODS = 8
 #: Plain mesh cycles before the periods are compared, and again if none of them is an orbit.
@@ -44,13 +47,38 @@ class AnyOrbit:
 def shortest_period(mapping: OrbitMap, states: Array) -> int:
     """Mesh cycles after which a recorded orbit repeats: a divisor of those recorded."""
     steps, whole = mapping.compiled.grid.steps, mapping.periods
-    reduced = mapping.coordinates.reduce(states[: whole * steps : steps])
-    size = max(float(np.linalg.norm(mapping.coordinates.reduce(states), axis=1).max()), 1e-300)
-    for count in range(1, whole):
-        apart = np.linalg.norm(np.roll(reduced, count, axis=0) - reduced, axis=1).max()
-        if whole % count == 0 and apart <= _REPEATS * size:
-            return count
-    return whole
+    size = float(np.linalg.norm(mapping.coordinates.reduce(states), axis=1).max())
+    return closed_period(mapping.coordinates.reduce(states[: whole * steps : steps]), size)
+
+
+def closed_period(points: Array, size: float) -> int:
+    """Least divisor of the points of a closed orbit after which they come again."""
+    for period in range(1, len(points)):
+        if len(points) % period == 0:
+            apart = np.linalg.norm(np.roll(points, -period, axis=0) - points, axis=1)
+            if apart.max() <= SAME * size:
+                return period
+    return len(points)
+
+
+def open_period(points: Array, longest: int = 16) -> int:
+    """Points after which a sequence repeats, or comes nearer to doing so; 0 if none."""
+    largest = float(np.abs(points).max(initial=0.0))
+    if not largest < _HUGE:
+        return 0
+    size = float(np.linalg.norm(points, axis=1).max(initial=0.0)) or 1.0
+    for period in range(1, min(longest, len(points) // 2) + 1):
+        apart = distance_from(points, period) / size
+        third = max(1, len(apart) // 3)
+        first, last = float(apart[:third].max()), float(apart[-third:].max())
+        if last <= SAME or (last <= _NEARLY and last <= _CALMS_DOWN * first):
+            return period
+    return 0
+
+
+def distance_from(points: Array, period: int) -> Array:
+    """Distances of points from those ``period`` earlier."""
+    return np.asarray(np.linalg.norm(points[period:] - points[:-period], axis=1))
 
 
 def _march(mapping: OrbitMap, y: Array, cycles: int) -> tuple[Array, Array]:
@@ -67,7 +95,7 @@ def _apart(points: Array) -> Array:
     spread = np.linalg.norm(points, axis=1).max() or 1.0
     return np.array(
         [
-            np.linalg.norm(points[count:] - points[:-count], axis=1)[-_COMPARED:].max() / spread
+            distance_from(points, count)[-_COMPARED:].max() / spread
             for count in range(1, MOST_PERIODS + 1)
         ]
     )
@@ -81,12 +109,8 @@ def _finish(
     first: OrbitMap, periods: int, y: Array, tolerance: float, given: int = 1
 ) -> tuple[OrbitMap, OrbitPoint]:
     """Newton's method over several mesh cycles, from a vector of the map over ``given``."""
-    mapping = OrbitMap(first.compiled, 1.0 / first.period, periods, first.coordinates, first.width)
-    y = y.copy()
-    if mapping.balance is not None:
-        # The last number is the speed that the balancing torque gives within the period.
-        y[-1] *= periods / given
-    return mapping, finish_orbit(mapping, y, tolerance)
+    mapping = first.over(periods)
+    return mapping, finish_orbit(mapping, mapping.rescaled(y, given), tolerance)
 
 
 def find_any_orbit(first: OrbitMap, y: Array, tolerance: float) -> AnyOrbit:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tribodyn.dynamics.orbits.anderson import anderson
-from tribodyn.dynamics.orbits.orbit_map import OrbitMap
+from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
 from tribodyn.dynamics.orbits.touch import FlankWatch
 from tribodyn.types import Array, ComplexArray
 
@@ -58,13 +58,6 @@ class OrbitPoint:
         return bool(np.abs(self.multipliers[:1]).max(initial=0.0) <= 1.0 + 1e-6)
 
 
-def newton_step(matrix: Array, residual: Array) -> tuple[Array, float]:
-    """Step to the fixed point of a map, and the distance to it."""
-    slope = np.eye(matrix.shape[0]) - matrix
-    step = np.asarray(np.linalg.lstsq(slope, residual, rcond=None)[0], dtype=float)
-    return step, float(np.linalg.norm(step) + np.linalg.norm(residual - slope @ step))
-
-
 def motion_size(mapping: OrbitMap, states: Array) -> float:
     """Size of a motion, free of drift."""
     reduced = mapping.coordinates.reduce(mapping.without_drift(states.copy()))
@@ -79,15 +72,11 @@ def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> Or
         matrix, slopes = known.matrix, known.slopes
     elif mapping.affine:
         # Of a linear map any difference is exact, and a large one loses no digits.
-        matrix = (mapping(y + scale * np.eye(y.size)) - image).T / scale
-        slopes = np.zeros((0, *states.shape))
+        matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((0, *states.shape))
     else:
-        step, before = _DISTURBANCE * scale, mapping.cycles
-        beside = [mapping.follow(y + step * row) for row in np.eye(y.size)]
-        # The disturbed motions are lanes of one march; they count once.
-        mapping.cycles = before + mapping.periods
-        matrix = np.array([each - image for each, _ in beside]).T / step
-        slopes = np.array([motion - states for _, motion in beside]) / step
+        step = _DISTURBANCE * scale
+        images, motions = mapping.follow(y + step * np.eye(y.size))
+        matrix, slopes = (images - image).T / step, (motions - states) / step
     return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix), states, slopes)
 
 

@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.continuation_path import follow
-from tribodyn.dynamics.orbits.speed_sweep_family import SpeedFamily
-from tribodyn.dynamics.orbits.speed_sweep_follow import Followed
-from tribodyn.dynamics.orbits.speed_sweep_result import Jump, SpeedSweep
+from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, SpeedFamily, follow
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, Mask
+from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.types import Array, ComplexArray, Index, Mask
+
+if TYPE_CHECKING:
+    pass
 
 #: Mesh cycles of the figures of a motion that does not repeat.
 _IRREGULAR = 64
+#: Motions whose rms differs by more than this are different motions.
+_DIFFERENT = 1e-3
 
 
 def speed_sweep(
@@ -150,8 +154,7 @@ def _follow_all(
     valid = _shut(family, closed.point, closed.error <= tolerance)
     begin = None
     if start is not None:
-        begin = family.coordinates.reduce(read_start(family.system, start))
-        begin = begin if family.balance is None else np.append(begin, 0.0)
+        begin = family.mapping(0, 1).start(read_start(family.system, start))
     lock = Lock()
 
     def told() -> None:
@@ -193,11 +196,7 @@ def _result(
     point = np.array([each.point for each in flat])
     period = np.array([each.period for each in flat], dtype=np.int64)
     figures = family.statistics(number, point, period, _IRREGULAR, linear)
-    state, extra = np.empty((len(flat), 2 * system.size)), np.empty((len(flat), system.size))
-    for length in np.unique(np.maximum(period, 1)):
-        lanes = np.maximum(period, 1) == length
-        beat = family.frequency[number[lanes]]
-        state[lanes], extra[lanes] = family.split(point[lanes], beat, int(length))
+    state, extra = family.split(number, point, period)
     mean, square, low, high, off = np.moveaxis(figures, 1, 0)
 
     def shaped(values: Any) -> Any:
@@ -256,3 +255,154 @@ def _jumps(
             if new.jumped and (new.period or orbits[k - 1].period):
                 jumps.append(Jump(direction, float(beats[k - 1]), float(beats[k]), new.period))
     return tuple(jumps)
+
+
+@dataclass(frozen=True)
+class Jump:
+    """Where the motion of a slow sweep leaves its orbit.
+
+    Parameters
+    ----------
+    direction : "up" or "down"
+        Direction of the sweep.
+    before, after : float
+        The two neighbouring mesh frequencies [Hz].
+    period : int
+        Mesh cycles after which the new motion repeats; 0 if it does not.
+    """
+
+    direction: str
+    before: float
+    after: float
+    period: int
+
+
+@record
+class SpeedSweep(Record):
+    """Steady motions over the speed in both directions.
+
+    Parameters
+    ----------
+    mesh_frequency : (p,) array
+        Mesh frequencies [Hz].
+    teeth : int
+        Mesh cycles per revolution of the shaft whose speed is told.
+    directions : tuple of str
+        ``"up"`` and ``"down"``, as far as they were asked for; ``b`` of them.
+    signals : tuple of str
+        Names of the signals: compressions, contact forces, accelerations, outputs.
+    units : tuple of str
+        Their units.
+    mean, rms, peak_to_peak : (b, p, signals) array
+        Mean, alternating rms and range, in the unit of the signal.
+    maximum : (b, p, signals) array
+        Largest value, in the unit of the signal.
+    contact_loss : (b, p, contacts) array
+        Part of the time off the driving flank [-].
+    period : (b, p) int array
+        Mesh cycles after which the motion repeats; 0 if it was not found to.
+    stable : (b, p) bool array
+        Whether all multipliers lie inside the unit circle.
+    floquet_multipliers : (b, p, m) complex array
+        Over one period, the largest first; NaN for motions that do not repeat.
+    error : (b, p) array
+        Certified distance to the orbit over its size [-].
+    position, velocity : (b, p, n) array
+        State at mesh phase 0 [m or rad, m/s or rad/s].
+    extra_force : (b, p, n) array
+        Generalized force that balances the drive [N or N*m].
+    jumps : tuple of Jump
+        Where the motion left its orbit.
+    names : tuple of str
+        Names of the coordinates.
+    step_number : float
+        Largest ``omega_max * dt`` [-].
+    """
+
+    mesh_frequency: Array = quantity("mesh_frequency", unit="Hz", axis=True)
+    teeth: int = fact()
+    directions: tuple[str, ...]
+    signals: tuple[str, ...]
+    units: tuple[str, ...]
+    mean: Array = quantity("direction", "mesh_frequency", "signal")
+    rms: Array = quantity("direction", "mesh_frequency", "signal")
+    peak_to_peak: Array = quantity("direction", "mesh_frequency", "signal")
+    maximum: Array = quantity("direction", "mesh_frequency", "signal")
+    contact_loss: Array = quantity("direction", "mesh_frequency", "contact", unit="1")
+    period: Index = quantity("direction", "mesh_frequency", unit="1")
+    stable: Mask = quantity("direction", "mesh_frequency")
+    floquet_multipliers: ComplexArray
+    error: Array = quantity("direction", "mesh_frequency", unit="1")
+    position: Array = quantity("direction", "mesh_frequency", "coordinate", unit="m or rad")
+    velocity: Array = quantity("direction", "mesh_frequency", "coordinate", unit="m/s or rad/s")
+    extra_force: Array = quantity("direction", "mesh_frequency", "coordinate", unit="N or N*m")
+    jumps: tuple[Jump, ...]
+    names: tuple[str, ...]
+    step_number: float
+
+    @property
+    def speed(self) -> Array:
+        """Speed of the shaft, (p,) [rad/s]."""
+        return 2.0 * np.pi * self.mesh_frequency / self.teeth
+
+    @property
+    def differs(self) -> Mask:
+        """Speeds at which the two directions meet different motions, (p,)."""
+        if len(self.directions) < 2:
+            return np.zeros(self.mesh_frequency.size, dtype=bool)
+        first, second = self.rms[0, :, 0], self.rms[1, :, 0]
+        largest = np.maximum(np.maximum(first, second), 1e-300)
+        return np.asarray(np.abs(first - second) > _DIFFERENT * largest)
+
+    def of(self, signal: str) -> int:
+        """Column of a signal.
+
+        Parameters
+        ----------
+        signal : str
+
+        Returns
+        -------
+        int
+
+        Raises
+        ------
+        InputError
+            If there is no such signal.
+        """
+        if signal not in self.signals:
+            raise InputError(
+                Problem(
+                    what=f'no signal "{signal}"',
+                    where="argument signal",
+                    why=f"There are {', '.join(self.signals)}",
+                )
+            )
+        return self.signals.index(signal)
+
+    def __repr__(self) -> str:
+        """One line."""
+        low, high = self.mesh_frequency.min(), self.mesh_frequency.max()
+        marks = [
+            ("not stable", int(np.count_nonzero(~self.stable))),
+            ("jumps", len(self.jumps)),
+            ("of several cycles", int(np.count_nonzero(self.period > 1))),
+            ("that do not repeat", int(np.count_nonzero(self.period == 0))),
+            ("with loss of contact", int(np.count_nonzero(self.contact_loss.max(-1, initial=0)))),
+        ]
+        told = ", ".join(f"{count} {words}" for words, count in marks if count)
+        return (
+            f"SpeedSweep({self.mesh_frequency.size} speeds, {low:.6g} to {high:.6g} Hz, "
+            f"{' and '.join(self.directions)}{': ' if told else ''}{told})"
+        )
+
+    def _parts(self) -> Parts:
+        variables, coordinates, _ = parts = super()._parts()
+        both = ("direction", "mesh_frequency", "multiplier")
+        variables["multiplier_real"] = (both, self.floquet_multipliers.real, {"units": "1"})
+        variables["multiplier_imaginary"] = (both, self.floquet_multipliers.imag, {"units": "1"})
+        coordinates["direction"] = list(self.directions)
+        coordinates["speed"] = ("mesh_frequency", self.speed, {"units": "rad/s"})
+        coordinates["signal"], coordinates["coordinate"] = list(self.signals), list(self.names)
+        coordinates["unit"] = ("signal", list(self.units))
+        return parts

@@ -94,18 +94,7 @@ def steady_state(
     compiled = compile_for(system, mesh_frequency, steps)
     mapping = OrbitMap(compiled, mesh_frequency, count or 1)
     state = static_start(compiled) if start is None else read_start(system, start)
-    y = mapping.coordinates.reduce(state)
-    if y.size == 0:
-        raise InputError(
-            Problem(
-                what="no coordinate is held by a spring, a damper or a contact",
-                where="System.stiffness",
-                why="Nothing vibrates, so that no periodic orbit exists",
-                remedy="Use simulate for a free motion",
-            )
-        )
-    if mapping.balance is not None:
-        y = np.append(y, 0.0)
+    y = mapping.start(state)
     progress.start("Searching the steady state", None)
     if count is None:
         any_orbit = find_any_orbit(mapping, y, tolerance)

@@ -18,7 +18,7 @@ from tribodyn.study.studies.grid import ends_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.nonlinear.bifurcation_result import Bifurcation
+    from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
 
 

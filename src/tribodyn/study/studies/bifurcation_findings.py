@@ -13,7 +13,7 @@ from tribodyn.study.studies.grid import Axis
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.nonlinear.bifurcation_result import Bifurcation
+    from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.signals.spectrum_input import (
+from tribodyn.signals.recorded_signal import (
     checked_rising,
     checked_signal,
     refuse_above_half,
