@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from tribodyn.drawing import FIGURES, draw, figures_of
+from tribodyn.drawing import FIGURES, Drawing, draw, figures_of
 from tribodyn.record import Parts, Record, record
 from tribodyn.reporting import write_report_of
 from tribodyn.study.assembly import static_error
@@ -116,7 +116,7 @@ class Result(Record):
 
     def _parts(self) -> Parts:
         """Parts of the motion with the force of all ramps of a force law, and the summary."""
-        motion = self.response.to_xarray()
+        motion: Any = self.response.to_xarray()
         force = ("time", self.response.contact_force.sum(axis=1), {"units": "N"})
         facts = {**motion.attrs, "title": self.case.title, **self._summary}
         return Parts({**motion.data_vars, "mesh_force": force}, dict(motion.coords), facts)
@@ -186,8 +186,9 @@ class Result(Record):
         figure, known = name.removeprefix(_PLOT), figures_of(self)
         if figure in known:
             return partial(draw, self, figure)
-        if figure in FIGURES:
-            raise AttributeError(f"Result has no {name}. {FIGURES[figure].missing(self)}")
+        other = FIGURES[figure] if figure in FIGURES else None
+        if isinstance(other, Drawing):
+            raise AttributeError(f"Result has no {name}. {other.missing(self)}")
         listed = ", ".join(f"{_PLOT}{each}" for each in known)
         raise AttributeError(f"Result has no figure {name!r}; it has {listed}")
 

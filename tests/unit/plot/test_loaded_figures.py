@@ -184,9 +184,21 @@ def test_a_run_has_no_such_figure_and_says_which_call_has(drawable: Any, name: s
         FIGURES[name](drawable())
 
 
-def study(**more: Any) -> Any:
+class HarrisMap(SimpleNamespace):
+    """Stand-in of that name."""
+
+
+class TipReliefOptimum(SimpleNamespace):
+    """Stand-in of that name."""
+
+
+class ComprehensiveStiffness(SimpleNamespace):
+    """Stand-in of that name."""
+
+
+def study(kind: type[Any], **more: Any) -> Any:
     contact = loaded([50.0, 100.0, 150.0])
-    return SimpleNamespace(gear_pair=contact.gear_pair, torque=contact.torque, **more)
+    return kind(gear_pair=contact.gear_pair, torque=contact.torque, **more)
 
 
 def test_harris_map_shows_each_torque_and_the_quietest() -> None:
@@ -195,6 +207,7 @@ def test_harris_map_shows_each_torque_and_the_quietest() -> None:
     error = 10e-6 + swing[:, None] * np.array([0.0, 1.0, 0.0, 0.0])
     figure = FIGURES["harris_map"](
         study(
+            HarrisMap,
             phase=phase,
             mesh_cycles=1,
             transmission_error=error,
@@ -235,7 +248,7 @@ def relief(**more: Any) -> Any:
         "transmission_error_before": flat,
         "transmission_error_after": 2.0 * flat,
     }
-    return study(**{**given, **more})
+    return study(TipReliefOptimum, **{**given, **more})
 
 
 def test_tip_relief_map_has_amount_across_and_length_upwards() -> None:
@@ -280,7 +293,7 @@ def test_film_and_teeth_have_a_curve_for_each_point(
     shape = (len(torques), len(speeds), 3)
     size = np.arange(np.prod(shape), dtype=float).reshape(shape)
     figure = FIGURES["comprehensive_stiffness"](
-        SimpleNamespace(
+        ComprehensiveStiffness(
             gear_pair=loaded(90.0).gear_pair,
             kind="tangent",
             pinion_torque=np.array(torques),
