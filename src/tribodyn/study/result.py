@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from tribodyn.drawing import FIGURES, Drawing, draw, figures_of
+from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.record import Parts, Record, record
 from tribodyn.reporting import write_report_of
 from tribodyn.study.assembly import static_error
@@ -186,8 +186,8 @@ class Result(Record):
         figure, known = name.removeprefix(_PLOT), figures_of(self)
         if figure in known:
             return partial(draw, self, figure)
-        other = FIGURES[figure] if figure in FIGURES else None
-        if isinstance(other, Drawing):
+        if figure in FIGURES:
+            other: Any = FIGURES[figure]
             raise AttributeError(f"Result has no {name}. {other.missing(self)}")
         listed = ", ".join(f"{_PLOT}{each}" for each in known)
         raise AttributeError(f"Result has no figure {name!r}; it has {listed}")
