@@ -13,9 +13,8 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, spur_pair
 from tribodyn.plot import FIGURES, Drawing
-from tribodyn.plot.deformed_mesh import bent_mesh, loads_at
-from tribodyn.plot.gear_drawing import on_line_of_action
-from tribodyn.plot.loaded_life import Life, roll_angle_of, span
+from tribodyn.plot.gear.outlines import bent_mesh, loads_at, on_line_of_action
+from tribodyn.plot.mesh.loaded_contact import Life, roll_angle_of, span
 from tribodyn.stiffness import loaded_contact
 
 STUDIES = ("loaded_contact", "loaded_sharing", "mesh_deformation", "harris_map", "tip_relief_map")

@@ -21,7 +21,7 @@ from tribodyn.plot import (
     film_transient,
     line_contact,
 )
-from tribodyn.plot.contact_scales import thinned
+from tribodyn.plot.film.line_contact import thinned
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)
 LOADS = (49267.5, 147802.0, 295604.0)  # N/m

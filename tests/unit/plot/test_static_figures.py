@@ -13,8 +13,8 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, SpurPair, spur_pair
 from tribodyn.plot import FIGURES, Drawing, flank_modification
-from tribodyn.plot.load_sharing import whole_life
-from tribodyn.plot.loaded_life import pair_letters, roll_angle_of
+from tribodyn.plot.mesh.loaded_contact import pair_letters, roll_angle_of
+from tribodyn.plot.mesh.table import whole_life
 
 
 @pytest.fixture(scope="module")
