@@ -21,21 +21,11 @@ from tribodyn.mesh.teeth import LEAST_SHARE, teeth_of
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, quantity, record
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 #: Positions for the models that have no such option.
 _POSITIONS = 30
-#: Dimensions of the arrays of a result by their number of axes, and of those with fewer.
-_AXES = {
-    "pinion_torque": ("torque",),
-    "pinion_speed": ("speed",),
-    "roll_angle": ("position",),
-    "path": ("position",),
-    "load_per_width": ("torque", "position"),
-    "hertz_pressure": ("torque", "position"),
-    "entrainment_speed": ("speed", "position"),
-}
 
 
 @record
@@ -62,7 +52,8 @@ class FilmOverOperation(Record):
     entrainment_speed : array (speeds, positions) [m/s]
         HALF the sum of the surface speeds.
     central_film, minimum_film : array (torques, speeds, positions) [m] or None
-        Oil film, where the model gives it.
+        Oil film, where the model gives it; NaN where the pair carries less than a thousandth of
+        the load.
     film_ratio : array (torques, speeds, positions) or None
         Least known film over the composite roughness.
     film_pressure : array (torques, speeds, positions) [Pa] or None
@@ -88,7 +79,7 @@ class FilmOverOperation(Record):
         """One line."""
         shape = (self.pinion_torque.size, self.pinion_speed.size, self.path.size)
         film = self.minimum_film if self.minimum_film is not None else self.central_film
-        least = "no film" if film is None else f"films from {film.min() * 1e6:.4g} um"
+        least = "no film" if film is None else f"films from {np.nanmin(film) * 1e6:.4g} um"
         return "FilmOverOperation({} torques, {} speeds, {} positions, {})".format(*shape, least)
 
     def _parts(self) -> Parts:
@@ -180,7 +171,9 @@ def film_over_operation(
     path = contact.A + contact.direction * places.age * pair.base_pitch
     share = _shares(pair, material, places, torque, stiffness_model, stiffness_options)
     total_load = torque / (pair.pinion.base_radius * pair.common_face_width)
-    load = total_load[:, None] * share
+    # A pair that its relief keeps apart has no film; the solver is given a little load instead.
+    load = total_load[:, None] * np.maximum(share, LEAST_SHARE)
+    touches = (share > LEAST_SHARE)[:, None, :]
     motion = contact.kinematics(path, speed[:, None])
     modulus = effective_modulus(material, material)
     angle = _roll_angle(pair, motion)
@@ -204,8 +197,12 @@ def film_over_operation(
         load_per_width=load,
         hertz_pressure=hertz_line(load, motion.equivalent_radius[0], modulus).maximum_pressure,
         entrainment_speed=motion.entrainment_speed,
-        **as_columns(films, composite_roughness),
+        **_masked(as_columns(films, composite_roughness), touches),
     )
+
+
+def _masked(columns: dict[str, Array], touches: Mask) -> dict[str, Array]:
+    return {name: np.where(touches, column, np.nan) for name, column in columns.items()}
 
 
 def _check(speed: Array, torque: Array, composite_roughness: float) -> None:
@@ -246,5 +243,5 @@ def _shares(
     for force in torque / pair.pinion.base_radius:
         teeth = teeth_of(contact, (phase, path, in_contact), material, force, model, options)
         share = teeth.carried().share[np.arange(age.size), number]
-        found.append(np.maximum(share, LEAST_SHARE))
+        found.append(share)
     return np.array(found)

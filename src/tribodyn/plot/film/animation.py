@@ -127,11 +127,7 @@ def _axes(contacts: Sequence[Any], scales: Scales, track: Track) -> dict[str, An
             "range": [0.0, 1.05 * highest],
             "title": {"text": scales.pressure_label},
         },
-        "yaxis2": {
-            "domain": _FILM,
-            "range": [0.0, height],
-            "title": {"text": scales.film_label},
-        },
+        "yaxis2": {"domain": _FILM, "range": [0.0, height], "title": {"text": scales.film_label}},
         "xaxis3": track.axis((0.0, _HALF), "y3"),
         "yaxis3": {**low, "anchor": "x3", "title": {"text": labels[0]}},
         "xaxis4": track.axis((1.0 - _HALF, 1.0), "y4"),

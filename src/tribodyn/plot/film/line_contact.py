@@ -282,9 +282,7 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
         scales.position_label,
         [
             Panel(
-                scales.pressure_label,
-                _pressure(solution, kept, scales),
-                {"rangemode": "tozero"},
+                scales.pressure_label, _pressure(solution, kept, scales), {"rangemode": "tozero"}
             ),
             Panel(scales.film_label, _film(solution, kept, scales), view),
         ],

@@ -51,6 +51,9 @@ _QUANTITIES = {"stiffness": "pair_stiffness"}
 _SPRINGS = ("tangent", "secant")
 #: Axes that begin at zero, and that mark their zero.
 _FROM_ZERO, _ZERO = {"rangemode": "tozero"}, {"zeroline": True}
+_LOGARITHMIC = {"type": "log", "dtick": 1}
+#: Film over the usual one above which both are not seen on one linear scale.
+_VERY_THICK = 10.0
 
 
 class Path:
@@ -190,6 +193,12 @@ _has_film = Need(
 )
 
 
+def _film_axis(films: list[Array]) -> dict[str, Any]:
+    """From zero, or logarithmic where a pair that hardly carries has a very thick film."""
+    thickest = max(float(np.nanmax(film)) for film in films)
+    return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else _FROM_ZERO
+
+
 @drawing(
     "film",
     heading="Oil film",
@@ -217,15 +226,14 @@ def film(mesh: MeshTable) -> Any:
     column, place = known[-1][:2]
     least = rounded("film_thickness", float(np.nanmin(path.life(column))))
     roughness = float(displayed("film_thickness", mesh.composite_roughness))
-    curves = [
-        *path.curves(known, "film_thickness"),
-        path.level(roughness, "roughness", unit),
-    ]
-    panels = [Panel(axis_label("film_thickness"), curves, _FROM_ZERO, height=1.3)]
+    curves = [*path.curves(known, "film_thickness"), path.level(roughness, "roughness", unit)]
+    axis = _film_axis([path.life(row[0]) for row in known])
+    panels = [Panel(axis_label("film_thickness"), curves, axis, height=1.3)]
     if mesh.film_ratio is not None:  # there is none for ideal flanks
         ratio = line(path.angle, path.life("film_ratio"), "film ratio", TOTAL)
         curves = [ratio, path.level(1.0, "mixed below")]
-        panels.append(Panel(axis_label("film_ratio"), curves, _FROM_ZERO, height=0.8))
+        axis = _film_axis([path.life("film_ratio")])
+        panels.append(Panel(axis_label("film_ratio"), curves, axis, height=0.8))
     return path.figure(f"The oil film {place} is never below {least}", panels)
 
 
@@ -323,8 +331,8 @@ def film_stiffness(mesh: MeshTable) -> Any:
     plotly.graph_objects.Figure
     """
     path = Path(mesh)
-    label, logarithmic = axis_label("film_stiffness", "Stiffness"), {"type": "log", "dtick": 1}
-    panels = [Panel(label, path.curves((*_OIL, *_TEETH)), logarithmic)]
+    label = axis_label("film_stiffness", "Stiffness")
+    panels = [Panel(label, path.curves((*_OIL, *_TEETH)), _LOGARITHMIC)]
     if mesh.film_stiffness_kind in _SPRINGS:
         panels.append(Panel(axis_label("pair_stiffness"), path.curves((*_TEETH, *_BOTH))))
     oil, teeth = path.life("film_stiffness"), path.life("tooth_stiffness")

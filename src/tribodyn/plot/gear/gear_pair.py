@@ -189,12 +189,7 @@ def _window(pair: SpurPair, path: PathOfContact) -> dict[str, Any]:
             "title": {"text": label[0]},
             **common,
         },
-        "yaxis": {
-            "scaleanchor": "x",
-            "constrain": "domain",
-            "title": {"text": label[1]},
-            **common,
-        },
+        "yaxis": {"scaleanchor": "x", "constrain": "domain", "title": {"text": label[1]}, **common},
         "xaxis2": {
             "domain": [0.7, 1.0],
             "anchor": "y2",

@@ -26,12 +26,7 @@ FILLS = {PINION: "rgba(0, 114, 178, 0.14)", WHEEL: "rgba(213, 94, 0, 0.14)"}
 #: Pixels above and below the panels of a figure.
 TOP, BOTTOM = 74, 58
 #: The line that follows the pointer, and the number that it points at.
-_SPIKE = {
-    "spikecolor": MUTED,
-    "spikethickness": 1,
-    "spikedash": "solid",
-    "hoverformat": ".4g",
-}
+_SPIKE = {"spikecolor": MUTED, "spikethickness": 1, "spikedash": "solid", "hoverformat": ".4g"}
 
 
 def _axis(**more: Any) -> dict[str, Any]:

@@ -9,12 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.gear.path import (
-    corner_shades,
-    pair_letters,
-    roll_angle_of,
-    roll_label,
-)
+from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import TOTAL, Trace, line

@@ -11,12 +11,7 @@ from tribodyn.plot.gear.path import mesh_marks, pair_letters, roll_label
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.look.panels import Panel, Row, event_lines, stack, stack_rows
 from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, WHEEL, line
-from tribodyn.plot.mesh.loaded_contact import (
-    named,
-    torque_colors,
-    torque_names,
-    whole_cycles,
-)
+from tribodyn.plot.mesh.loaded_contact import named, torque_colors, torque_names, whole_cycles
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

@@ -73,13 +73,7 @@ def _force_caption(result: Result) -> str:
     return " ".join(filter(None, sentences))
 
 
-@drawing(
-    "mesh_force",
-    heading="Mesh force",
-    caption=_force_caption,
-    of="Result",
-    made_by=RUN,
-)
+@drawing("mesh_force", heading="Mesh force", caption=_force_caption, of="Result", made_by=RUN)
 def mesh_force(result: Result) -> Any:
     """Draw the dynamic and the static mesh force.
 

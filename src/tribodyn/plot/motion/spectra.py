@@ -44,10 +44,7 @@ def _spectrum(result: Result, signal: Array) -> Spectrum:
 
 
 def _panel(
-    result: Result,
-    quantity: str,
-    label: str,
-    signals: Sequence[tuple[str, str, Array]],
+    result: Result, quantity: str, label: str, signals: Sequence[tuple[str, str, Array]]
 ) -> Panel:
     """Show the harmonics of one or two signals side by side."""
     hertz, unit = display_unit("frequency"), display_unit(quantity)
