@@ -26,16 +26,6 @@ from tribodyn.types import Array, Mask
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 #: Positions for the models that have no such option.
 _POSITIONS = 30
-#: Dimensions of the arrays of a result by their number of axes, and of those with fewer.
-_AXES = {
-    "pinion_torque": ("torque",),
-    "pinion_speed": ("speed",),
-    "roll_angle": ("position",),
-    "path": ("position",),
-    "load_per_width": ("torque", "position"),
-    "hertz_pressure": ("torque", "position"),
-    "entrainment_speed": ("speed", "position"),
-}
 
 
 @record

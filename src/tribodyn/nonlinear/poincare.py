@@ -71,19 +71,21 @@ class PoincareSection(Record):
             f"{', ' + self.verdict if self.verdict else ''})"
         )
 
-    def plot(self, coordinate: int | str = 0) -> Any:
+    def plot(self, coordinate: int | str = 0, **options: Any) -> Any:
         """Draw the points of one coordinate in its phase plane.
 
         Parameters
         ----------
         coordinate : int or str
             Number or name of the coordinate.
+        **options
+            None are known.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        return draw(self, coordinate=coordinate)
+        return draw(self, coordinate=coordinate, **options)
 
     def _parts(self) -> Parts:
         parts = super()._parts()

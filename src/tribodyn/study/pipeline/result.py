@@ -116,7 +116,7 @@ class Result(Record):
 
     def _parts(self) -> Parts:
         """Parts of the motion with the force of all ramps of a force law, and the summary."""
-        motion = self.response.to_xarray()
+        motion: Any = self.response.to_xarray()
         force = ("time", self.response.contact_force.sum(axis=1), {"units": "N"})
         facts = {**motion.attrs, "title": self.case.title, **self._summary}
         return Parts({**motion.data_vars, "mesh_force": force}, dict(motion.coords), facts)
@@ -187,7 +187,8 @@ class Result(Record):
         if figure in known:
             return partial(draw, self, figure)
         if figure in FIGURES:
-            raise AttributeError(f"Result has no {name}. {FIGURES[figure].missing(self)}")
+            other: Any = FIGURES[figure]
+            raise AttributeError(f"Result has no {name}. {other.missing(self)}")
         listed = ", ".join(f"{_PLOT}{each}" for each in known)
         raise AttributeError(f"Result has no figure {name!r}; it has {listed}")
 

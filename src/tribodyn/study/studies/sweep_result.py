@@ -141,19 +141,21 @@ class Sweep(Record):
         alone = len(taken) == len(short) + len(self.figures)
         return short if alone else [axis.key.replace(".", "_") for axis in self.axes]
 
-    def plot(self, figure: str = "rms_mesh_force") -> Any:
+    def plot(self, figure: str = "rms_mesh_force", **options: Any) -> Any:
         """Draw one figure of the summary over the keys.
 
         Parameters
         ----------
         figure : str
             Name in the summary.
+        **options
+            None are known.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        return draw(self, figure=figure)
+        return draw(self, figure=figure, **options)
 
     def to_csv(self) -> str:
         """Write what is done as comma-separated values in SI.
