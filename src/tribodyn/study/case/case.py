@@ -14,7 +14,7 @@ from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.given import Given, Source, plain
 from tribodyn.study.case.provenance import effective_values, provenance
-from tribodyn.study.case.section import Section, Table, read_fields
+from tribodyn.study.case.section import Section, Table, read_fields, table
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -75,15 +75,15 @@ class Case(Section, whole=True):
     origin: str | None = text(
         None, meaning="the document that the values come from", example='"Drawing 4711"'
     )
-    gears: Gears = Table(Gears, "the gear pair")
-    material: MaterialData = Table(MaterialData, "material of the gears", "empty")
-    lubricant: LubricantData | None = Table(LubricantData, "the oil", "none")
-    operation: Operation = Table(Operation, "speed and load")
-    film: Film = Table(Film, "oil film", "empty")
-    stiffness: Stiffness = Table(Stiffness, "stiffness of the teeth", "empty")
-    friction: Friction = Table(Friction, "friction of the teeth", "empty")
-    dynamics: Dynamics = Table(Dynamics, "the vibrating structure", "empty")
-    solver: Solver = Table(Solver, "how the motion is computed", "empty")
+    gears: Gears = table(Gears, "the gear pair")
+    material: MaterialData = table(MaterialData, "material of the gears", "empty")
+    lubricant: LubricantData | None = table(LubricantData, "the oil", "none")
+    operation: Operation = table(Operation, "speed and load")
+    film: Film = table(Film, "oil film", "empty")
+    stiffness: Stiffness = table(Stiffness, "stiffness of the teeth", "empty")
+    friction: Friction = table(Friction, "friction of the teeth", "empty")
+    dynamics: Dynamics = table(Dynamics, "the vibrating structure", "empty")
+    solver: Solver = table(Solver, "how the motion is computed", "empty")
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         given = Given(data if source is not None else plain(data))

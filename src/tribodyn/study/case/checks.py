@@ -285,7 +285,7 @@ def _grid(given: Given) -> Found:
         what = f'{given.show(key)} does not belong to inlet = "flooded"'
         why = "A flooded contact has the domain that its film demands"
         yield key, Problem(what, "", why, 'Remove it, or add inlet = "zero"')
-    ends = given.get(key)
+    ends = given[key]
     if len(ends) != 2 or not (ends[0] <= -1.5 and ends[1] >= 1.1):
         why = "It is two numbers in Hertzian half widths: -1.5 or less, and 1.1 or more"
         yield key, Problem(given.show(key), "", why, "Write for example domain = [-2.5, 1.5]")

@@ -213,8 +213,8 @@ def _key_in(case: Case, problem: Problem) -> str:
         section = getattr(case, place.kind, None)
         if not isinstance(section, Section) or not place.model:
             return ""
-        known = place.name in section.known().keys
-        return f"{place.kind}.{place.name if known else section.selector}"
+        option = place.name if place.name in section.known().keys else section.selector
+        return f"{place.kind}.{option}"
     argument = _argument(problem)
     if argument is None:
         return ""

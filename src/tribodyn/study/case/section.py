@@ -27,6 +27,11 @@ class Table:
     default: str = "required"  #: "required", "empty" for all defaults, or "none"
 
 
+def table(kind: type[Section], meaning: str, default: str = "required") -> Any:
+    """Declare a table inside a table; arguments as those of :class:`Table`."""
+    return Table(kind, meaning, default)
+
+
 class Known(NamedTuple):
     """Models that a table may name, all keys that it can have, and the models of each option."""
 
@@ -36,7 +41,8 @@ class Known(NamedTuple):
 
 
 def _known(fields: Mapping[str, Option | Table], models: Mapping[str, Any]) -> Known:
-    keys, owners = dict(fields), {}
+    keys = dict(fields)
+    owners: dict[str, list[str]] = {}
     for name, model in models.items():
         for key, option in model.case_options.items():
             keys.setdefault(key, option)
@@ -106,11 +112,10 @@ class Section:
         if not isinstance(names, Models):
             return Known({}, cls.fields, {})
         registry = names.registry()
-        version, known = vars(cls).get("_known", (None, None))
-        if version != registry.version:
-            known = _known(cls.fields, registry.all())
-            cls._known = (registry.version, known)
-        return known  # type: ignore[return-value]
+        if vars(cls).get("_known", (None,))[0] != registry.version:
+            models = registry.all()
+            cls._known = (registry.version, _known(cls.fields, models))
+        return cls._known[1]
 
     @classmethod
     def model_named(cls, name: Any) -> Model | None:

@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.pipeline.damping import damping_of
 from tribodyn.study.pipeline.geometry import geometry
-from tribodyn.study.pipeline.tooth_contact import chosen_options, load_friction_of, mesh_law_of
+from tribodyn.study.pipeline.tooth_contact import chosen_options, load_friction_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.case import Case
-    from tribodyn.study.pipeline.damping import Damping
+    from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.pipeline.damping import Damping
 
 
 def static_error(case: Case, phase: Array | float) -> Array:

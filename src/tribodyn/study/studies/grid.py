@@ -156,7 +156,7 @@ def operation_values(name: str, given: Any, case: Case) -> list[float]:
     if given is None:
         return [getattr(case.operation, name)]
     several = isinstance(given, Iterable) and not isinstance(given, str)
-    spec = Operation.fields[name]
+    spec = dict(Operation.specs())[name]
     try:
         return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]
     except FaultError as fault:

@@ -129,7 +129,7 @@ def _lengths(name: str, given: Any) -> tuple[float, float] | None:
     """Read the two ends of a range of lengths."""
     if given is None:
         return None
-    spec = Modification.fields["tip_relief" if name == "amount" else "tip_relief_length"]
+    spec = dict(Modification.specs())["tip_relief" if name == "amount" else "tip_relief_length"]
     try:
         low, high = (float(read_value(spec, name, Plain(item))) for item in given)
     except FaultError as fault:
