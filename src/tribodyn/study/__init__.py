@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.loaded_teeth import loaded_contact
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
-    from tribodyn.study.pipeline.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary_names import SUMMARY, summary_figure
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.study.studies.static import (
@@ -37,6 +37,7 @@ __all__ = [
     "read_case",
     "run",
     "run_up",
+    "summary_figure",
     "sweep",
 ]
 
@@ -53,6 +54,7 @@ _HOMES = {
     "run_up": "studies.run_up",
     "Result": "pipeline.result",
     "SUMMARY": "pipeline.summary_names",
+    "summary_figure": "pipeline.summary_names",
     "Sweep": "studies.sweep_result",
     "sweep": "studies.sweep",
 }

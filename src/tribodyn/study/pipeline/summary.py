@@ -19,6 +19,7 @@ from tribodyn.study.pipeline.record import (
     support_forces,
     transmission_error,
 )
+from tribodyn.study.pipeline.summary_names import MEASURES
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples
@@ -53,7 +54,9 @@ def summarize(result: Result) -> dict[str, float]:
     values["omega_max_dt"] = result.response.step_number
     if is_steady(result.response):
         values["steady_state_error"] = result.response.error
-    return {name: float(value) for name, value in values.items()}
+    measures = MEASURES.all().items()
+    values |= {name: measure(result) for name, measure in measures}
+    return {name: float(value) for name, value in values.items() if value is not None}
 
 
 def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
