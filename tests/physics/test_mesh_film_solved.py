@@ -198,8 +198,7 @@ def test_a_nearly_unloaded_entry_is_solved() -> None:
     middle = 0.5 * (angles["A"] + angles["E"])
     entry = {"roll_angle": [angles["A"], middle, angles["E"]], "pair_stiffness": [4e7, 3e8, 4e7]}
     options = {"stiffness_model": "table", "stiffness_options": entry}
-    with pytest.warns(ModelWarning, match=r"film-positions.*positions = 60"):
-        mesh = table(**options)
+    mesh = table(**options)
     here = mesh.in_contact
     assert mesh.load_share[here].min() < 0.2
     direct = touching(mesh)[0].films("newton", mesh.load_per_width[here])
@@ -226,14 +225,6 @@ def test_a_film_that_cannot_be_solved_names_its_place(monkeypatch: pytest.Monkey
             PAIRS["pinion drives"][0], material=STEEL, lubricant=OIL,
             pinion_speed=[200.0], pinion_torque=[100.0],
         )  # fmt: skip
-
-
-def test_too_few_positions_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tribodyn.mesh.positions import PathPositions
-
-    monkeypatch.setattr(PathPositions, "truncation", lambda self, values: 0.004)
-    with pytest.warns(ModelWarning, match=r"film-positions.*30 positions.*0\.4 %.*positions = 60"):
-        table()
 
 
 def test_films_over_operation_are_those_of_each_mesh() -> None:
@@ -270,7 +261,9 @@ def test_progress_is_told_of_every_position() -> None:
 
     table(film_options={"positions": 20}, progress=Listener())
     assert told[0][1] == 20
-    assert sum(steps for task, steps in told if task == "step") == 20
+    # the positions, then the contacts in between that are checked
+    promised = sum(total for task, total in told if task not in ("step", "end"))
+    assert sum(steps for task, steps in told if task == "step") == promised
     assert told[-1][0] == "end"
 
 

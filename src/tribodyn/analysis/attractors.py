@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterator
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_EXCEPTION, wait
 from contextlib import suppress
 from typing import Any
 
@@ -22,6 +22,7 @@ from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.march import Compiled, march
 from tribodyn.dynamics.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError
+from tribodyn.interrupt import Threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
 
@@ -275,7 +276,7 @@ def settle(
         _Block(motions, transient, tolerance, 1).run()
         progress.advance(motions.marched - told)
         return
-    with ThreadPoolExecutor(count) as pool:
+    with Threads(count) as pool:
         blocks = [_Block(motions, transient, tolerance, width) for _ in range(count)]
         running = {pool.submit(block.run) for block in blocks}
         try:

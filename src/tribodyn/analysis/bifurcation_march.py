@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_EXCEPTION, wait
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from tribodyn.analysis.bifurcation_statistics import measure
 from tribodyn.analysis.bifurcation_sweep import Stretches, march_stretches
 from tribodyn.analysis.bifurcation_values import Plan, Row, Values
 from tribodyn.dynamics.start import static_start
+from tribodyn.interrupt import Threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index
 
@@ -118,7 +119,7 @@ def _in_threads(plan: Plan, tasks: Sequence[Callable[[], None]], progress: Progr
             task()
 
     def work() -> None:
-        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        with Threads(os.cpu_count() or 1) as pool:
             running = {pool.submit(guarded, task) for task in tasks}
             try:
                 while running:

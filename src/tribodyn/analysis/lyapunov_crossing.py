@@ -12,10 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.analysis.lyapunov_tangent import TangentTables, within
+from tribodyn.dynamics.crossing_search import most_splits
+from tribodyn.dynamics.unparted import unparted_step
+from tribodyn.errors import ComputationError
 from tribodyn.types import Array, Index, Mask
 
-#: A step is split at most this often; more means a grazing contact that does not matter.
-_MOST_CROSSINGS = 16
 _ROOT_LIMIT = 60
 _NAMES = (
     "stiffness", "damping", "error", "error_slope", "gap", "direction", "direction_slope",
@@ -99,13 +100,16 @@ def carry_over_crossings(
     trace = np.zeros(count)
     lanes = _Lanes(steps, np.zeros(count), state, side.copy())
     waiting = np.arange(count)
-    for number in range(_MOST_CROSSINGS + 1):
+    most = most_splits(tables.dead.size)
+    for number in range(most + 1):
         ends = engine.advance(lanes, np.ones(waiting.size))
         place, _ = engine.compression(ends, ends.begin)
         leaving = np.where(place > 0.0, 1.0, -1.0)
         beyond = tables.dead & (engine.clearance(ends, leaving) < 0.0)
         stop, contact = _first_crossing(engine, lanes, leaving, beyond)
-        crossed = (stop <= 1.0) & (number < _MOST_CROSSINGS)
+        crossed = stop <= 1.0
+        if number == most and crossed.any():
+            raise _unparted(tables, int(lanes.steps[crossed][0]), int(contact[crossed][0]))
         stop = np.where(crossed, stop, 1.0)
         part, gained = tables.part_steps(lanes.steps, lanes.begin, stop, lanes.side != 0.0)
         matrix[waiting] = part @ matrix[waiting]
@@ -122,6 +126,11 @@ def carry_over_crossings(
         new = leaving[which, contact[which]]
         lanes.side[row, contact[which]] = np.where(old != 0.0, 0.0, new)
     return matrix, trace
+
+
+def _unparted(tables: TangentTables, step: int, contact: int) -> ComputationError:
+    phase = float(tables.compiled.grid.left[step])
+    return unparted_step(contact, tables.dead.size, phase, phase / tables.mesh_frequency, None)
 
 
 def _first_crossing(

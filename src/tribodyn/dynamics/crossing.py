@@ -12,15 +12,18 @@ from typing import Any
 import numba as nb
 import numpy as np
 
+from tribodyn.dynamics.crossing_search import (
+    NEAR,
+    NOW,
+    WIDTH,
+    begin_search,
+    change_sides,
+    go_on,
+    most_splits,
+)
 from tribodyn.dynamics.kernel import I64, INNER, compression, dead_zone, step
 from tribodyn.dynamics.lanes import above, first_lane, store
 from tribodyn.types import Array, Index
-
-#: A step is split at most this often. More means a grazing contact, whose excursions within one
-#: step are then too small to matter; the step is taken as it stands.
-MAX_SPLITS = 16
-#: A crossing is found within a dozen tries, or never.
-MAX_TRIES = 200
 
 
 @nb.njit(**INNER)
@@ -47,26 +50,6 @@ def find_sides(code: Index, reads: Index, rows: Array, base: int, buffer: int, w
 
 
 @nb.njit(**INNER)
-def _place(
-    code: Index, reads: Index, rows: Array, base: int, buffer: int, w: Array, contact: int
-) -> tuple[float, float]:
-    """Compression and gap of one contact."""
-    at, read, row = I64(4), buffer * code[3], base
-    for _ in range(contact):
-        row += 5 + code[at] + code[at + 1]
-        read += code[at] + code[at + 1]
-        at += 4
-    d = first_lane(compression((0.0,), code, reads, rows, at, read, row, w))
-    return d, first_lane(dead_zone((0.0,), code, rows, row, w))
-
-
-@nb.njit(**INNER)
-def _clearance(d: float, gap: float, side: float, leaving: float) -> float:
-    """Distance to the boundary of a side; in the gap, to the boundary in direction ``leaving``."""
-    return side * d - gap if side != 0.0 else gap - leaving * d
-
-
-@nb.njit(**INNER)
 def row_within(code: Index, rows: Array, base: int, tau: float, part: Array, node: int) -> None:
     """Interpolate the three rows of a step quadratically at the fraction ``tau``."""
     columns = code[2]
@@ -81,26 +64,20 @@ def row_within(code: Index, rows: Array, base: int, tau: float, part: Array, nod
 
 
 @nb.njit(**INNER)
-def _first_beyond(
-    code: Index, reads: Index, part: Array, w: Array, known: int
-) -> tuple[Any, float, float, float]:
-    """Contact that seems to have left its side first: its number, direction, clearances."""
-    found: Any = I64(-1)
-    direction, g_start, g_end, least = 0.0, 0.0, 0.0, 2.0
+def _measure(
+    code: Index, reads: Index, rows: Array, base: int, buffer: int, w: Array, room: Array,
+    place: int,
+) -> None:  # fmt: skip
+    """Compression and gap of every contact with a dead zone, from ``place`` of its numbers."""
+    at, read, row = I64(4), buffer * code[3], base
     for j in range(code[1]):
-        if j == known or code[4 + 4 * j + 2] == 0:
-            continue
-        side = w[8 * code[0] + code[1] + j]
-        d, gap = _place(code, reads, part, 2 * code[2], I64(2), w, j)
-        leaving = 1.0 if d > 0.0 else -1.0
-        after = _clearance(d, gap, side, leaving)
-        if after < 0.0:
-            d, gap = _place(code, reads, part, I64(0), I64(0), w, j)
-            before = _clearance(d, gap, side, leaving)
-            at = before / (before - after) if before > 0.0 else 0.0
-            if at < least:
-                found, direction, g_start, g_end, least = j, leaving, before, after, at
-    return found, direction, g_start, g_end
+        if code[at + 2] != 0:
+            d = compression((0.0,), code, reads, rows, at, read, row, w)
+            room[WIDTH * j + place] = first_lane(d)
+            room[WIDTH * j + place + 1] = first_lane(dead_zone((0.0,), code, rows, row, w))
+        row += 5 + code[at] + code[at + 1]
+        read += code[at] + code[at + 1]
+        at += 4
 
 
 @nb.njit(**INNER)
@@ -119,6 +96,19 @@ def _note(code: Index, start: float, end: float, w: Array, parts: Array) -> None
 
 
 @nb.njit(**INNER)
+def _try(
+    code: Index, reads: Index, rows: Array, base: int, width: float, part: Array, w: Array,
+    room: Array, start: float, target: float,
+) -> None:  # fmt: skip
+    """March the part of a step from ``start`` to ``target`` with the sides at its beginning."""
+    for node in range(3):
+        row_within(code, rows, base, start + 0.5 * node * (target - start), part, I64(node))
+    w[9 * code[0] + 2 * code[1] + 1] = width * (target - start)
+    step((0.0,), code, reads, part, I64(0), w)
+    _measure(code, reads, part, 2 * code[2], I64(2), w, room, I64(NOW))
+
+
+@nb.njit(**INNER)
 def split_step(
     code: Index,
     reads: Index,
@@ -128,67 +118,34 @@ def split_step(
     part: Array,
     w: Array,
     parts: Array,
-) -> int:
-    """March one lane by one step in parts; returns the number of crossings."""
-    n, right, sides = code[0], 2 * code[2], 8 * code[0] + code[1]
-    start, target, contact, splits, probe, tries = 0.0, 1.0, I64(-1), 0, 0, 0
+    room: Array,
+) -> Any:
+    """March one lane by one step in parts; returns -1, or a contact that comes to no end."""
+    n, contacts, sides = code[0], code[1], 8 * code[0] + code[1]
+    start, contact = 0.0, I64(-1)
     parts[0] = 0.0
-    low = high = g_low = g_high = leaving = scale = 0.0
-    while True:
-        for node in range(3):
-            row_within(code, rows, base, start + 0.5 * node * (target - start), part, I64(node))
-        w[9 * n + 2 * code[1] + 1] = width * (target - start)
-        step((0.0,), code, reads, part, I64(0), w)
-        if contact >= 0:
-            d, gap = _place(code, reads, part, right, I64(2), w, contact)
-            g = _clearance(d, gap, w[sides + contact], leaving)
-            done = target == start or abs(g) <= 1e-14 * scale or abs(high - low) < 1e-15
-            # A motion beyond all bounds has no crossing to be found; the caller reports it.
-            tries += 1
-            done = done or tries > MAX_TRIES or not np.isfinite(g)
-            if probe > 0 and not done:
-                # A contact just made starts on its boundary, to rounding: look for a point inside.
-                if g > 0.0:
-                    low, g_low, probe = target, g, 0
-                elif probe == 7:
-                    target = start
-                    continue
-                else:
-                    probe += 1
-                    target = start + 0.125 * probe * (1.0 - start)
-                    continue
-            elif not done:
-                if g * g_high < 0.0:
-                    low, g_low = high, g_high
-                else:
-                    g_low *= 0.5
-                high, g_high = target, g
-            if not done:
-                target = (low * g_high - high * g_low) / (g_high - g_low)
-                continue
-        other, direction, before, after = _first_beyond(code, reads, part, w, contact)
-        if other >= 0 and splits < MAX_SPLITS and not (contact >= 0 and target == start):
-            # Another contact crossed, earlier than the one just found if there was one.
-            contact, leaving, scale, tries = other, direction, abs(before - after), 0
-            low, g_low, high, g_high = start, before, target, after
-            if before > 0.0:
-                probe = 0
-                target = (low * g_high - high * g_low) / (g_high - g_low)
-            else:
-                probe = 1
-                target = start + 0.125 * (1.0 - start)
-            continue
+    for j in range(contacts):
+        room[WIDTH * j] = 0.0 if code[4 + 4 * j + 2] != 0 else -1.0
+    row_within(code, rows, base, 0.0, part, I64(0))
+    _measure(code, reads, part, I64(0), I64(0), w, room, I64(NEAR))
+    for _ in range(most_splits(contacts) + 1):
+        _try(code, reads, rows, base, width, part, w, room, start, 1.0)
+        target = begin_search(room, contacts, start, 1.0, sides, w)
+        if target < 0.0:
+            _note(code, start, 1.0, w, parts)
+            return I64(-1)
+        there = False
+        while not there:
+            _try(code, reads, rows, base, width, part, w, room, start, target)
+            there, following = go_on(room, contacts, start, target, sides, w)
+            if not there:
+                target = following
         _note(code, start, target, w, parts)
-        if contact < 0:
-            break
+        contact = change_sides(room, contacts, start, target, sides, w)
         for i in range(2 * n):
             w[i] = w[4 * n + i]
-        if w[sides + contact] != 0.0:
-            w[sides + contact] = 0.0
-        else:
-            w[sides + contact] = leaving
-        start, target, contact, probe = target, 1.0, I64(-1), 0
-        splits += 1
-    if splits == MAX_SPLITS:
-        find_sides(code, reads, part, right, I64(2), w)
-    return splits
+        start = target
+    for i in range(2 * n):
+        if not np.isfinite(w[i]):
+            return I64(-1)
+    return contact

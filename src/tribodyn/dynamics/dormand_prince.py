@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +24,7 @@ from tribodyn.dynamics.program import compile_system, lane_load
 from tribodyn.dynamics.step_limit import largest_rate
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
 #: Lanes of one block.
@@ -105,12 +105,7 @@ class AdaptiveEngine:
                 record[:, :, first : first + count] = kept[:, :, :count]
 
         threads = threads or os.cpu_count() or 1
-        if len(starts) == 1 or threads == 1:
-            for number in range(len(starts)):
-                block(number)
-        else:
-            with ThreadPoolExecutor(threads) as pool:
-                list(pool.map(block, range(len(starts))))
+        in_threads(block, range(len(starts)), threads)
         total = reports.sum(axis=0)
         return AdaptiveRun(
             new, int(total[0]), int(total[1]), int(total[2]), float(reports[:, 3].max()),
@@ -152,7 +147,9 @@ class AdaptiveEngine:
             table.start, table.coefficients, table.varying, table.events, table.first, work,
             own, slots, np.ascontiguousarray(period), np.ascontiguousarray(load), state, memory,
             self.safety * self.rtol, self.safety * self.atol, cycles, points, record, trail, report,
+            stop_flag(),
         )  # fmt: skip
+        refuse_stopped(int(report[4]))
         if report[4]:
             report[9] += elapsed
             lane = int(report[6])

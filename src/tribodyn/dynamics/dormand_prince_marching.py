@@ -30,6 +30,7 @@ from tribodyn.dynamics.dormand_prince_kernel import (
 )
 from tribodyn.dynamics.kernel import I64, INNER, JIT, acceleration
 from tribodyn.dynamics.lanes import address
+from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
@@ -129,6 +130,7 @@ def _build(digest: str) -> Any:
         record: Array,
         trail: Array,
         report: Array,
+        stop: Index,
     ) -> None:
         """March every lane by ``cycles`` mesh cycles."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -160,6 +162,9 @@ def _build(digest: str) -> Any:
                 cell, last = first[segment], first[segment + 1]
                 anew = True
                 while phase < end:
+                    if stop[0] != 0:
+                        report[4] = STOPPED
+                        return
                     if anew:
                         fill_row(cells, count, cell, phase, row)
                         if switching and phase == events[segment]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.march import Compiled, Member
 from tribodyn.dynamics.newmark_engine import newmark_engine
 from tribodyn.dynamics.newmark_limit import refuse_newmark
+from tribodyn.interrupt import in_threads
 from tribodyn.types import Array, Index
 
 #: Marches the lanes of one block by some mesh cycles, after others, records them, and returns the
@@ -131,12 +131,7 @@ def march_blocks(
         new[block.lanes] = part
 
     threads = threads or os.cpu_count() or 1
-    if len(blocks) == 1 or threads == 1:
-        for block in blocks:
-            march(block)
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(march, blocks))
+    in_threads(march, blocks, threads)
     return new
 
 

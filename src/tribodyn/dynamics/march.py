@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,7 +14,9 @@ from tribodyn.dynamics.lane_parameters import LaneParameters
 from tribodyn.dynamics.program import Nodes, Program, build_program, compile_system, lane_load
 from tribodyn.dynamics.step_limit import refuse_unstable_lanes, refuse_unstable_step
 from tribodyn.dynamics.system import System
+from tribodyn.dynamics.unparted import unparted_step
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index, Mask
 
 #: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
@@ -23,6 +24,8 @@ from tribodyn.types import Array, Index, Mask
 _WIDTHS = (1, 16)
 #: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
 _OWN_ROWS = 4
+#: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
+_BRIEF = 200_000
 
 
 @dataclass(frozen=True)
@@ -134,15 +137,18 @@ def march(
 
     starts = range(0, lanes, width)
     threads = threads or os.cpu_count() or 1
-    if len(starts) == 1 or threads == 1:
-        failures = [block(first) for first in starts]
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            failures = list(pool.map(block, starts))
+    failures = in_threads(block, starts, threads, brief=is_brief(compiled, lanes, cycles))
     if max(failures) >= 0:
         first = starts[int(np.argmax(failures))]
+        _refuse_unparted(run, first, width, max(failures), elapsed)
         _report(run, np.arange(first, min(first + width, lanes)), max(failures), elapsed)
     return new
+
+
+def is_brief(compiled: Compiled, lanes: int, cycles: int) -> bool:
+    """Tell whether a march is over before an interruption is missed."""
+    size = compiled.system.size + len(compiled.system.contacts)
+    return lanes * cycles * compiled.grid.steps * size <= _BRIEF
 
 
 def _choose_width(lanes: int, own_rows: bool) -> int:
@@ -208,13 +214,29 @@ class _Run:
         linear = np.zeros((0, double)) if outputs is None else outputs
         harmonics = 0 if waves is None else waves.shape[2]
         work = np.zeros(program.slots.count * (width + 1) + 6 * int(program.code[2]))
-        return int(
-            march_block(
-                (0.0,) * width, program.code, program.reads, rows, program.width, program.restart,
-                work, self.period[index], self.load[index], state, cycles, keep, linear, table,
-                harmonics, moments,
-            )
+        code = march_block(
+            (0.0,) * width, program.code, program.reads, rows, program.width, program.restart,
+            work, self.period[index], self.load[index], state, cycles, keep, linear, table,
+            harmonics, moments, stop_flag(),
         )  # fmt: skip
+        return refuse_stopped(int(code))
+
+
+def _refuse_unparted(run: _Run, first: int, width: int, code: int, elapsed: int) -> None:
+    """Tell of a step that comes to no end, if that is what ended the block from lane ``first``."""
+    from tribodyn.dynamics.marching import UNPARTED
+
+    if code < UNPARTED:
+        return
+    grid, contacts = run.compiled.grid, len(run.compiled.system.contacts)
+    place, lane = divmod(code - UNPARTED, width)
+    cycle, step = divmod(place // contacts, grid.steps)
+    phase = elapsed + cycle + float(grid.left[step])
+    lane = min(first + lane, run.period.size - 1)
+    raise unparted_step(
+        place % contacts, contacts, phase, phase * float(run.period[lane]),
+        lane if run.period.size > 1 else None,
+    )  # fmt: skip
 
 
 def _report(run: _Run, lanes: Index, step: int, elapsed: int) -> None:

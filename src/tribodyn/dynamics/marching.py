@@ -11,14 +11,18 @@ from numba import types
 from numba.extending import overload
 
 from tribodyn.compiled import source_digest
-from tribodyn.dynamics.crossing import MAX_SPLITS, set_sides, split_step
+from tribodyn.dynamics.crossing import set_sides, split_step
+from tribodyn.dynamics.crossing_search import WIDTH, most_splits
 from tribodyn.dynamics.kernel import I64, INNER, JIT, left_side, step
 from tribodyn.dynamics.lanes import address, open_rows
 from tribodyn.dynamics.moments import gather, gather_parts
+from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
-_SOURCES = ("lanes", "kernel", "crossing", "moments", "marching")
+_SOURCES = ("lanes", "kernel", "crossing_search", "crossing", "moments", "marching")
+#: What :func:`march_block` returns from here on tells of a step that comes to no end.
+UNPARTED = 1 << 40
 
 
 @nb.njit(**INNER)
@@ -68,15 +72,18 @@ def _repair(
     part: Array,
     room: Array,
     parts: Array,
-) -> None:
-    """Repeat the step in parts for a lane that crossed a boundary."""
+    search: Array,
+) -> int:
+    """Repeat the step in parts for a lane that crossed a boundary; returns as `split_step` does."""
     n, side, width = code[0], 8 * code[0] + code[1], len(lanes)
     h = 9 * n + 2 * code[1] + 1
     _take(lane, width, slots, w, single)
     own, start = _own_rows(rows, base, code[2], width, lane, room)
-    split_step(code, reads, own, start, w[h * width + lane], part, single, parts)
+    whole = w[h * width + lane]
+    contact: int = split_step(code, reads, own, start, whole, part, single, parts, search)
     _put(lane, width, 4 * n, 6 * n, w, single)
     _put(lane, width, side, side + code[1], w, single)
+    return contact
 
 
 def _room_aside(first: int, moments: Any, waves: int) -> Array:
@@ -142,6 +149,7 @@ def _build(digest: str) -> Any:
         waves: Array,
         harmonics: int,
         moments: Any,
+        stop: Index,
     ) -> int:
         """March every lane by ``cycles`` mesh cycles."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -152,9 +160,10 @@ def _build(digest: str) -> Any:
         room = address(work[slots * (width + 1) + 3 * columns :])
         w, code, reads, table = address(work), address(code), address(reads), open_rows(rows)
         # A list of the parts of a step, moments of the lanes that were split, waves of a part.
-        most = 1 + (MAX_SPLITS + 1) * (2 + code[1] + 4 * n)
+        listed = 1 + (most_splits(code[1]) + 1) * (2 + code[1] + 4 * n)
+        most = listed + WIDTH * (code[1] + 1)
         kept = _room_aside(most, moments, 6 * harmonics)
-        parts, wave = address(kept), address(waves)
+        parts, search, wave = address(kept), address(kept[listed:]), address(waves)
         _set_up(lanes, code, period, load, state, w)
         switching = np.bool_(False)
         for j in range(code[1]):
@@ -163,6 +172,8 @@ def _build(digest: str) -> Any:
         point = 0
         for _cycle in range(cycles):
             for r in range(share.size):
+                if stop[0] != 0:
+                    return STOPPED
                 base = 3 * columns * r
                 for lane in range(width):
                     w[h * width + lane] = period[lane] * share[r]
@@ -180,7 +191,7 @@ def _build(digest: str) -> Any:
                     for lane in range(width):
                         if not (gone >> lane) & 1:
                             continue
-                        _repair(
+                        contact = _repair(
                             lane,
                             slots,
                             lanes,
@@ -193,7 +204,11 @@ def _build(digest: str) -> Any:
                             part,
                             room,
                             parts,
+                            search,
                         )
+                        if contact >= 0:
+                            place: int = (point * code[1] + contact) * width + lane
+                            return UNPARTED + place
                         if moments is not None:
                             count = moments.size // width
                             own = address(kept[most + lane * count :])

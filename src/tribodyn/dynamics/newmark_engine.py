@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from tribodyn.dynamics.divergence import probable_cause
 from tribodyn.dynamics.lane_parameters import LaneParameters
-from tribodyn.dynamics.march import Compiled, Member
+from tribodyn.dynamics.march import Compiled, Member, is_brief
 from tribodyn.dynamics.newmark_tables import NewmarkTables, newmark_tables
+from tribodyn.dynamics.unparted import unparted_step
 from tribodyn.errors import ComputationError, Problem
+from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
 #: Lanes of one block.
@@ -80,13 +81,11 @@ class NewmarkEngine:
             return failed
 
         threads = threads or os.cpu_count() or 1
-        if len(blocks) == 1 or threads == 1:
-            failures = [block(place) for place in range(len(blocks))]
-        else:
-            with ThreadPoolExecutor(threads) as pool:
-                failures = list(pool.map(block, range(len(blocks))))
+        brief = is_brief(self.compiled, lanes, cycles)
+        failures = in_threads(block, range(len(blocks)), threads, brief=brief)
         for (number, index), failed in zip(blocks, failures, strict=True):
             if failed >= 0:
+                self._refuse_unparted(number, index, called, period, failed, elapsed)
                 self._report(number, index, called, period, load, state, cycles, elapsed)
         return new
 
@@ -100,6 +99,7 @@ class NewmarkEngine:
         record: Array | None,
         count: int,
     ) -> int:
+        from tribodyn.dynamics.crossing_search import WIDTH
         from tribodyn.dynamics.newmark_force import SINGLE
         from tribodyn.dynamics.newmark_marching import newmark_block
 
@@ -113,17 +113,43 @@ class NewmarkEngine:
         )
         h = (tables.widths[:, None] * period)[:, :, None, None]
         effective = np.linalg.inv(mass + law[0] * h * damping + law[1] * h * h * stiffness)
-        work = np.zeros((inner + kinds * n * n) * width + inner + 2 * n * n + 2 * length + n * n)
+        search = WIDTH * (m + 1)
+        rest = inner + 2 * n * n + 2 * length + search + n * n
+        work = np.zeros((inner + kinds * n * n) * width + rest)
         shared = work[inner * width : (inner + kinds * n * n) * width]
         shared[:] = np.moveaxis(effective, 1, -1).reshape(-1)
         keep = np.zeros((0, 2 * n, 1)) if record is None else record
-        return int(
-            newmark_block(
-                (0.0,) * width, tables.shape, law, *tables.structure, tables.matrices, tables.rows,
-                grid.width, tables.kind, grid.after_event, tables.dead, tables.facts, work,
-                np.ascontiguousarray(period), np.ascontiguousarray(load), state, cycles, keep, 0,
-                count,
-            )
+        code = newmark_block(
+            (0.0,) * width, tables.shape, law, *tables.structure, tables.matrices, tables.rows,
+            grid.width, tables.kind, grid.after_event, tables.dead, tables.facts, work,
+            np.ascontiguousarray(period), np.ascontiguousarray(load), state, cycles, keep, 0,
+            count, stop_flag(),
+        )  # fmt: skip
+        return refuse_stopped(int(code))
+
+    def _refuse_unparted(
+        self,
+        number: int,
+        index: Index,
+        called: Index,
+        period: Array,
+        code: int,
+        elapsed: int,
+    ) -> None:
+        """Tell of a step that comes to no end, if that is what ended a block."""
+        from tribodyn.dynamics.newmark_marching import UNPARTED
+
+        if code < UNPARTED:
+            return
+        grid, contacts = self.compiled.grid, len(self.members[number].system.contacts)
+        width = _WIDTHS[0] if index.size == 1 else _WIDTHS[1]
+        place, item = divmod(code - UNPARTED, width)
+        cycle, step = divmod(place // contacts, grid.steps)
+        lane = int(index[min(item, index.size - 1)])
+        phase = elapsed + cycle + float(grid.left[step])
+        raise unparted_step(
+            place % contacts, contacts, phase, phase * float(period[lane]),
+            int(called[lane]) if called[lane] >= 0 else None,
         )  # fmt: skip
 
     def _report(

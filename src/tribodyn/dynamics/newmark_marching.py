@@ -14,16 +14,27 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import source_digest
-from tribodyn.dynamics.crossing import MAX_SPLITS, MAX_TRIES
+from tribodyn.dynamics.crossing_search import (
+    NEAR,
+    NOW,
+    WIDTH,
+    begin_search,
+    change_sides,
+    go_on,
+    most_splits,
+)
 from tribodyn.dynamics.kernel import I64, INNER, JIT
 from tribodyn.dynamics.lanes import address, first_lane, load
 from tribodyn.dynamics.newmark_force import SINGLE, compression, row_length, slots
 from tribodyn.dynamics.newmark_kernel import beyond, newmark_step, start_acceleration
+from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
 #: Every file whose code or constants end up in the compiled kernel.
 _OWN = ("newmark_lanes", "newmark_force", "newmark_kernel", "newmark_marching")
-_SOURCES = ("lanes", "kernel", "crossing", *_OWN)
+_SOURCES = ("lanes", "kernel", "crossing_search", *_OWN)
+#: What the kernel returns from here on tells of a step that comes to no end.
+UNPARTED = 1 << 40
 
 
 @nb.njit(**INNER)
@@ -94,39 +105,37 @@ def _row_within(columns: int, rows: Array, base: int, tau: float, part: Array, p
 
 
 @nb.njit(**INNER)
-def _clearance(
-    n: int, part: Array, at: int, q: int, side: float, leaving: float, single: int, w: Array
-) -> float:
-    """Distance to the boundary of a side; in the gap, to the boundary in direction ``leaving``."""
-    error, gap = load((0.0,), w, single + 6), w[single + 7] * part[at + 4]
-    d = first_lane(compression((0.0,), n, part, at, q, error, w))
-    away: float = side * d - gap if side != 0.0 else gap - leaving * d
-    return away
+def _measure(
+    shape: tuple[int, int, int, int], dead: Index, part: Array, row: int, q: int, w: Array,
+    room: Array, place: int,
+) -> None:  # fmt: skip
+    """Compression and gap of every contact with a dead zone, from ``place`` of its numbers."""
+    n, m = shape[0], shape[1]
+    _, _, _, _, _, _, _, _, _, single = slots(shape)
+    error = load((0.0,), w, single + 6)
+    for j in range(m):
+        if dead[j] != 0:
+            at = row + j * (5 + 3 * n)
+            room[WIDTH * j + place] = first_lane(compression((0.0,), n, part, at, q, error, w))
+            room[WIDTH * j + place + 1] = w[single + 7] * part[at + 4]
 
 
 @nb.njit(**INNER)
-def _first_beyond(
-    shape: tuple[int, int, int, int], dead: Index, part: Array, right: int, known: int, w: Array
-) -> tuple[Any, float, float, float]:
-    """Contact that seems to have left its side first: its number, direction, clearances."""
-    n, m = shape[0], shape[1]
-    sides, _, _, _, _, _, _, _, _, single = slots(shape)
-    found: Any = I64(-1)
-    direction, g_start, g_end, least = 0.0, 0.0, 0.0, 2.0
-    for j in range(m):
-        if j == known or dead[j] == 0:
-            continue
-        at, side = j * (5 + 3 * n), w[sides + j]
-        error = load((0.0,), w, single + 6)
-        d = first_lane(compression((0.0,), n, part, right + at, 3 * n, error, w))
-        leaving = 1.0 if d > 0.0 else -1.0
-        after = _clearance(n, part, right + at, 3 * n, side, leaving, single, w)
-        if after < 0.0:
-            before = _clearance(n, part, at, 0, side, leaving, single, w)
-            share = before / (before - after) if before > 0.0 else 0.0
-            if share < least:
-                found, direction, g_start, g_end, least = j, leaving, before, after, share
-    return found, direction, g_start, g_end
+def _try(
+    shape: tuple[int, int, int, int], law: Array, structure: Any, matrices: Array, rows: Array,
+    base: int, width: float, facts: Array, dead: Index, part: Array, w: Array, room: Array,
+    start: float, target: float,
+) -> bool:  # fmt: skip
+    """March the part of a step from ``start`` to ``target`` with the sides at its beginning."""
+    n, columns = shape[0], row_length(shape)
+    _, _, _, _, _, _, _, _, _, single = slots(shape)
+    inverse = single + SINGLE
+    _row_within(columns, rows, base, target, part, columns)
+    w[single] = width * (target - start)
+    _invert(n, law, matrices, w[single], inverse, inverse + n * n, w)
+    good: bool = newmark_step((0.0,), shape, law, structure, part, columns, facts, inverse, w)
+    _measure(shape, dead, part, columns, 3 * n, w, room, I64(NOW))
+    return good
 
 
 @nb.njit(**INNER)
@@ -142,78 +151,47 @@ def _split_step(
     dead: Index,
     part: Array,
     w: Array,
-) -> bool:
-    """March one lane by one step in parts; returns False if contact forces were not found."""
-    n = shape[0]
+    room: Array,
+) -> tuple[bool, Any]:
+    """March one lane by one step in parts; returns whether all contact forces were found."""
+    n, m = shape[0], shape[1]
     columns = row_length(shape)
-    sides, _, _, _, _, _, _, _, _, single = slots(shape)
-    inverse = single + SINGLE
-    spare = inverse + n * n
-    start, target, contact, splits, probe, tries = 0.0, 1.0, I64(-1), 0, 0, 0
-    low = high = g_low = g_high = leaving = scale = 0.0
-    ok = True
+    sides, _, _, _, _, _, _, _, _, _ = slots(shape)
+    start, ok, contact = 0.0, True, I64(-1)
+    for j in range(m):
+        room[WIDTH * j] = 0.0 if dead[j] != 0 else -1.0
     _row_within(columns, rows, base, 0.0, part, I64(0))
-    while True:
-        _row_within(columns, rows, base, target, part, columns)
-        w[single] = width * (target - start)
-        _invert(n, law, matrices, w[single], inverse, spare, w)
-        good = newmark_step((0.0,), shape, law, structure, part, columns, facts, inverse, w)
+    _measure(shape, dead, part, I64(0), I64(0), w, room, I64(NEAR))
+    for _ in range(most_splits(m) + 1):
+        good = _try(
+            shape, law, structure, matrices, rows, base, width, facts, dead, part, w, room,
+            start, 1.0,
+        )  # fmt: skip
         ok = ok and good
-        if contact >= 0:
-            at = columns + contact * (5 + 3 * n)
-            g = _clearance(n, part, at, 3 * n, w[sides + contact], leaving, single, w)
-            done = target == start or abs(g) <= 1e-14 * scale or abs(high - low) < 1e-15
-            # A motion beyond all bounds has no crossing to be found; the caller reports it.
-            tries += 1
-            done = done or tries > MAX_TRIES or not np.isfinite(g)
-            if probe > 0 and not done:
-                # A contact just made starts on its boundary, to rounding: look for a point inside.
-                if g > 0.0:
-                    low, g_low, probe = target, g, 0
-                elif probe == 7:
-                    target = start
-                    continue
-                else:
-                    probe += 1
-                    target = start + 0.125 * probe * (1.0 - start)
-                    continue
-            elif not done:
-                if g * g_high < 0.0:
-                    low, g_low = high, g_high
-                else:
-                    g_low *= 0.5
-                high, g_high = target, g
-            if not done:
-                target = (low * g_high - high * g_low) / (g_high - g_low)
-                continue
-        other, direction, before, after = _first_beyond(shape, dead, part, columns, contact, w)
-        if other >= 0 and splits < MAX_SPLITS and not (contact >= 0 and target == start):
-            # Another contact crossed, earlier than the one just found if there was one.
-            contact, leaving, scale, tries = other, direction, abs(before - after), 0
-            low, g_low, high, g_high = start, before, target, after
-            if before > 0.0:
-                probe = 0
-                target = (low * g_high - high * g_low) / (g_high - g_low)
-            else:
-                probe = 1
-                target = start + 0.125 * (1.0 - start)
-            continue
-        if contact < 0:
-            break
+        target = begin_search(room, m, start, 1.0, sides, w)
+        if target < 0.0:
+            return ok, I64(-1)
+        there = False
+        while not there:
+            good = _try(
+                shape, law, structure, matrices, rows, base, width, facts, dead, part, w, room,
+                start, target,
+            )  # fmt: skip
+            ok = ok and good
+            there, following = go_on(room, m, start, target, sides, w)
+            if not there:
+                target = following
+        contact = change_sides(room, m, start, target, sides, w)
         for i in range(3 * n):
             w[i] = w[3 * n + i]
-        if w[sides + contact] != 0.0:
-            w[sides + contact] = 0.0
-        else:
-            w[sides + contact] = leaving
         for column in range(columns):
             part[column] = part[columns + column]
         start_acceleration((0.0,), shape, structure, part, I64(0), facts, w)
-        start, target, contact, probe = target, 1.0, I64(-1), 0
-        splits += 1
-    if splits == MAX_SPLITS:
-        _find_sides(shape, dead, part, columns, 3 * n, w)
-    return ok
+        start = target
+    for i in range(2 * n):
+        if not np.isfinite(w[i]):
+            return ok, I64(-1)
+    return ok, contact
 
 
 def _build(digest: str) -> Any:
@@ -240,6 +218,7 @@ def _build(digest: str) -> Any:
         record: Array,
         place: int,
         count: int,
+        stop: Index,
     ) -> int:
         """March every lane by ``cycles`` mesh cycles."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -253,6 +232,7 @@ def _build(digest: str) -> Any:
             kinds = max(kinds, kind[r] + 1)
         own = (inverse + kinds * n * n) * width
         one, part = address(work[own:]), address(work[own + inverse + 2 * n * n :])
+        room = address(work[own + inverse + 2 * n * n + 2 * length :])
         w, rows, matrices, law = address(work), address(rows), address(matrices), address(law)
         structure = (
             address(first),
@@ -280,6 +260,8 @@ def _build(digest: str) -> Any:
         point = 0
         for cycle in range(cycles):
             for r in range(share.size):
+                if stop[0] != 0:
+                    return STOPPED
                 base = 3 * length * r
                 for lane in range(width):
                     w[single * width + lane] = period[lane] * share[r]
@@ -310,10 +292,13 @@ def _build(digest: str) -> Any:
                             one[slot] = w[slot * width + lane]
                         if beyond((0.0,), shape, dead, rows, right, one):
                             whole = one[single]
-                            found = _split_step(
+                            found, contact = _split_step(
                                 shape, law, structure, matrices, rows, base, whole, facts, dead,
-                                part, one,
+                                part, one, room,
                             )  # fmt: skip
+                            if contact >= 0:
+                                told: int = (point * m + contact) * width + lane
+                                return UNPARTED + told
                             if not found:
                                 return 2 * point + 3
                             for slot in range(3 * n, 6 * n):

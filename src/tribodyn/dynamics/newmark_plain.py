@@ -14,10 +14,10 @@ import numpy as np
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.system import System
+from tribodyn.errors import ComputationError
 from tribodyn.types import Array
 
 _PASSES = 25
-_SPLITS = 16
 
 
 class _Row(NamedTuple):
@@ -144,19 +144,19 @@ class _Lane:
 
     def split(self, rows: list[_Row], h: float, old: _Motion, side: Array, dead: Array) -> _Motion:
         begin = 0.0
-        for _ in range(_SPLITS):
+        for _ in range(17 + 4 * len(side)):
             found = [
                 (self.crossing(rows, begin, h, old, side, int(j)), int(j))
                 for j in np.flatnonzero(dead)
             ]
             end, j = min(found)
             if end > 1.0:
-                break
+                return self.part(rows, begin, 1.0, h, old, side)
             row = _row_within(rows, end)
             new = self.part(rows, begin, end, h, old, side)
             side[j] = 0.0 if side[j] else np.sign(self.compression(row, new.q, j))
             old, begin = self.start(row, new.q, new.v, side), end
-        return self.part(rows, begin, 1.0, h, old, side)
+        raise ComputationError(f"contact {j} opens and closes without end within one step")
 
     def sides(self, row: _Row, q: Array, dead: Array) -> Array:
         d = row.direction @ q - row.error

@@ -13,6 +13,7 @@ import numpy as np
 from tribodyn.dynamics.grid import Grid
 from tribodyn.dynamics.program import Nodes
 from tribodyn.dynamics.system import System
+from tribodyn.errors import ComputationError
 from tribodyn.types import Array
 
 
@@ -118,18 +119,18 @@ class _Lane:
 
     def split(self, rows: list[_Row], h: float, y: Array, side: Array, dead: Array) -> Array:
         begin = 0.0
-        for _ in range(16):
+        for _ in range(17 + 4 * len(side)):
             found = [
                 (self.crossing(rows, begin, h, y, side, int(j)), int(j))
                 for j in np.flatnonzero(dead)
             ]
             end, j = min(found)
             if end > 1.0:
-                break
+                return self.part(rows, begin, 1.0, h, y, side)
             y = self.part(rows, begin, end, h, y, side)
             side[j] = 0.0 if side[j] else np.sign(self.compression(_row_within(rows, end), y, j))
             begin = end
-        return self.part(rows, begin, 1.0, h, y, side)
+        raise ComputationError(f"contact {j} opens and closes without end within one step")
 
     def sides(self, row: _Row, y: Array, dead: Array) -> Array:
         compression = row.direction @ y[: self.system.size] - row.error

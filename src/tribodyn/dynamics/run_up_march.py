@@ -13,7 +13,9 @@ from tribodyn.dynamics.orbit_map import _balance_direction
 from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.unparted import unparted_step
 from tribodyn.errors import ComputationError, Problem
+from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array
 
 #: Part of the unbalanced torque of a cycle that is taken away in the next, after the first cycles.
@@ -125,7 +127,7 @@ class CycleMarcher:
         self, program: Program, period: float, change: float, state: Array, record: Array
     ) -> tuple[Array, Array, Array]:
         """March one cycle."""
-        from tribodyn.dynamics.marching import march_block
+        from tribodyn.dynamics.marching import UNPARTED, march_block
 
         load = self.inertia * change
         extra = self.torque + load
@@ -137,8 +139,14 @@ class CycleMarcher:
         failed = march_block(
             (0.0,), program.code, program.reads, program.rows, program.width, program.restart,
             work, np.array([period]), (program.constant_load + extra @ self.inverse.T)[None, :],
-            lane, 1, record, self.outputs, np.zeros(0), 0, moments,
+            lane, 1, record, self.outputs, np.zeros(0), 0, moments, stop_flag(),
         )  # fmt: skip
+        refuse_stopped(failed)
+        if failed >= UNPARTED:
+            contacts = len(self.systems[0].contacts)
+            step, contact = divmod(failed - UNPARTED, contacts)
+            phase = float(program.width[:step].sum())
+            raise unparted_step(contact, contacts, phase, self.time + phase * period, None)
         if failed >= 0:
             finite = np.isfinite(record[:failed, :, 0]).all(axis=1)
             last = max((failed if finite.all() else int(np.argmin(finite))) - 1, 0)

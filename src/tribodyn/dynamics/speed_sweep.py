@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from threading import Lock
 from typing import Any
 
@@ -18,6 +17,7 @@ from tribodyn.dynamics.speed_sweep_follow import Followed, follow
 from tribodyn.dynamics.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Mask
 
@@ -165,8 +165,7 @@ def _follow_all(
         )  # fmt: skip
         return met if direction == "up" else met[::-1]
 
-    with ThreadPoolExecutor(len(directions)) as pool:
-        found = list(pool.map(one, directions))
+    found = in_threads(one, directions, len(directions))
     progress.finish()
     return found
 

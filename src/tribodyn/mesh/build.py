@@ -22,6 +22,7 @@ from tribodyn.mesh.loads import (
     IN_SERIES,
     Loads,
     quasi_static_loads,
+    reported_films,
     tribological_contact,
     warn_of_rigid_films,
 )
@@ -144,21 +145,22 @@ def build(
     )
     warn_of_rigid_films(loads.film_at)
     tribology = tribological_contact(motion, touching, loads.tribological, composite_roughness)
-    carried = loads.carried
-    load_per_width = total_load * carried.share[cycle.in_contact]
+    load_per_width = total_load * loads.carried.share[cycle.in_contact]
+    films, least = loads.film_at(loads.tribological), teeth.least_share * total_load
+    reported = reported_films(films, loads.film_at, load_per_width, least)
     columns: dict[str, Array] = {
         **_motion_columns(motion, cycle.sliding_direction),
         "load_per_width": load_per_width,
         "hertz_pressure": np.where(load_per_width > 0.0, tribology.hertz_pressure, 0.0),
         "friction_coefficient": _friction(friction_law, friction_options, tribology, motion, loads),
-        **as_columns(loads.film_at(loads.tribological), composite_roughness),
+        **as_columns(reported, composite_roughness),
     }
-    in_series = columns["film_stiffness"] if options["stiffness"] in IN_SERIES else None
+    in_series = films.film_stiffness if options["stiffness"] in IN_SERIES else None
     return MeshTable(
         grid=cycle.grid,
         path=cycle.path,
         in_contact=cycle.in_contact,
-        **carried_columns(teeth, carried, in_series, force_law=force_law),
+        **carried_columns(teeth, loads.carried, in_series, force_law=force_law),
         gear_pair=pair,
         pinion_speed=float(pinion_speed),
         pinion_torque=float(pinion_torque),

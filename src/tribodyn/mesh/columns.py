@@ -60,7 +60,8 @@ class MeshColumns:
     friction_coefficient : array (n, pairs)
         Friction force over normal force.
     central_film, minimum_film : array (n, pairs) [m] or None
-        Oil film, where the film model gives it.
+        Oil film, where the film model gives it; NaN, as the four after it, where a pair carries
+        less than a thousandth of the load, or where the film is not known to 2 %.
     film_ratio : array (n, pairs) or None
         Least known film over the composite roughness.
     film_pressure : array (n, pairs) [Pa] or None

@@ -284,12 +284,12 @@ def _columns(table: MeshTable, kind: str) -> dict[str, Array]:
         film = film * table.hertz_pressure  # its pressures are over the Hertzian one
     on_corners = table.mesh_stiffness / table.stiffness.sum(axis=1)
     found = {
-        "film_mesh_stiffness": film.sum(axis=1),
+        "film_mesh_stiffness": np.nansum(film, axis=1),
         "tooth_mesh_stiffness": teeth.sum(axis=1) * on_corners,
     }
     if kind == "seed":
         each, total = found.values()
-        touch = table.in_contact
+        touch = table.in_contact & np.isfinite(film)
         pair_stiffness = np.zeros(film.shape)
         pair_stiffness[touch] = 1.0 / (1.0 / film[touch] + 1.0 / teeth[touch])
         whole = each * total / (each + total)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
+from tribodyn.ehl.solved_films import Films
 from tribodyn.errors import warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle
+from tribodyn.mesh.film_refinement import PathLoads
 from tribodyn.mesh.path_film import FilmAt, PathFilm, SolvedPath, path_film
-from tribodyn.mesh.series import in_series
+from tribodyn.mesh.positions import MOST
+from tribodyn.mesh.series import FilmOf, in_series
+from tribodyn.mesh.solved_places import ALL, PROMISED, QUANTITIES
 from tribodyn.mesh.teeth import Carried, Teeth
 from tribodyn.mesh.touching import Touching
 from tribodyn.progress import Progress
@@ -49,14 +53,17 @@ def quasi_static_loads(
     def raised(loads: Array) -> Array:
         return np.where(cycle.in_contact, np.maximum(loads, least), 0.0)
 
-    def of_formula(loads: Array) -> FilmAt:
+    def of_formula(loads: Array, checked: tuple[int, ...]) -> FilmAt:
         return lambda load: touching.films(model, np.maximum(load, least), **options)
 
-    def of_path(loads: Array) -> FilmAt:
-        at_places = along.load_of(cycle.grid, raised(loads))
-        return along.solve(np.maximum(at_places, least), progress)
+    def of_path(loads: Array, checked: tuple[int, ...]) -> FilmAt:
+        every = raised(loads)
+        at_places = np.maximum(along.load_of(cycle.grid, every), least)
+        of_contacts = every[cycle.in_contact]
+        path_loads = PathLoads(at_places, of_contacts, of_contacts > least)
+        return along.solve(path_loads, checked, progress)
 
-    film_of = of_formula
+    film_of: FilmOf = of_formula
     if FILM_MODELS[model].method:
         along: PathFilm = path_film(
             model, options, cycle.contact, pinion_speed, touching, cycle.side, teeth.bends
@@ -66,8 +73,44 @@ def quasi_static_loads(
         carried, film_at = in_series(teeth, total_load, film_of, cycle.named)
     else:
         carried = teeth.carried()
-        film_at = film_of(total_load * carried.share)
+        film_at = film_of(total_load * carried.share, ALL)
     return Loads(carried, raised(total_load * carried.share)[cycle.in_contact], film_at)
+
+
+def reported_films(
+    films: Films, film_at: FilmAt, load_per_width: Array, least_load: float
+) -> Films:
+    """Leave out pairs that hardly touch, and what is not known well enough."""
+    touches = load_per_width > least_load
+    known = np.broadcast_to(touches, (len(QUANTITIES), touches.size)).copy()
+    if isinstance(film_at, SolvedPath):
+        known &= ~film_at.doubtful
+        _warn_of_doubt(film_at)
+    columns: dict[str, Any] = {}
+    for row, name in zip(known, QUANTITIES, strict=True):
+        column = getattr(films, name)
+        columns[name] = None if column is None else np.where(row, column, np.nan)
+    return replace(films, **columns)
+
+
+def _warn_of_doubt(film: SolvedPath) -> None:
+    doubtful = film.doubtful & film.scored
+    count = int(doubtful.any(axis=0).sum())
+    if not count:
+        return
+    names = [
+        name.replace("_", " ") for name, row in zip(QUANTITIES, doubtful, strict=True) if row.any()
+    ]
+    positions = film.path.options["positions"]
+    more = f" More positions help: film.positions = {min(2 * positions, MOST)}."
+    warn(
+        "film-positions",
+        f"at {count} of {int(film.scored.sum())} contacts of the mesh cycle the {', '.join(names)} "
+        f"is not told, because it may be more than {100.0 * PROMISED:g} % from a solution there: "
+        f"it changes so much along the path of contact that {len(film.films.solutions)} solved "
+        f"contacts are too few.{more if positions < MOST else ''}",
+        stacklevel=5,
+    )
 
 
 def warn_of_rigid_films(film_at: FilmAt) -> None:

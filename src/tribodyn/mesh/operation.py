@@ -21,7 +21,7 @@ from tribodyn.mesh.positions import PathPositions, path_positions
 from tribodyn.mesh.teeth import LEAST_SHARE, teeth_of
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     import xarray
@@ -66,7 +66,8 @@ class FilmOverOperation:
     entrainment_speed : array (speeds, positions) [m/s]
         HALF the sum of the surface speeds.
     central_film, minimum_film : array (torques, speeds, positions) [m] or None
-        Oil film, where the model gives it.
+        Oil film, where the model gives it; NaN where the pair carries less than a thousandth of
+        the load.
     film_ratio : array (torques, speeds, positions) or None
         Least known film over the composite roughness.
     film_pressure : array (torques, speeds, positions) [Pa] or None
@@ -112,7 +113,7 @@ class FilmOverOperation:
         """One line."""
         shape = (self.pinion_torque.size, self.pinion_speed.size, self.path.size)
         film = self.minimum_film if self.minimum_film is not None else self.central_film
-        least = "no film" if film is None else f"films from {film.min() * 1e6:.4g} um"
+        least = "no film" if film is None else f"films from {np.nanmin(film) * 1e6:.4g} um"
         return "FilmOverOperation({} torques, {} speeds, {} positions, {})".format(*shape, least)
 
 
@@ -195,7 +196,9 @@ def film_over_operation(
     path = contact.A + contact.direction * places.age * pair.base_pitch
     share = _shares(pair, material, places, torque, stiffness_model, stiffness_options)
     total_load = torque / (pair.pinion.base_radius * pair.common_face_width)
-    load = total_load[:, None] * share
+    # A pair that its relief keeps apart has no film; the solver is given a little load instead.
+    load = total_load[:, None] * np.maximum(share, LEAST_SHARE)
+    touches = (share > LEAST_SHARE)[:, None, :]
     motion = contact.kinematics(path, speed[:, None])
     modulus = effective_modulus(material, material)
     angle = _roll_angle(pair, motion)
@@ -219,8 +222,12 @@ def film_over_operation(
         load_per_width=load,
         hertz_pressure=hertz_line(load, motion.equivalent_radius[0], modulus).maximum_pressure,
         entrainment_speed=motion.entrainment_speed,
-        **as_columns(films, composite_roughness),
+        **_masked(as_columns(films, composite_roughness), touches),
     )
+
+
+def _masked(columns: dict[str, Array], touches: Mask) -> dict[str, Array]:
+    return {name: np.where(touches, column, np.nan) for name, column in columns.items()}
 
 
 def _check(speed: Array, torque: Array, composite_roughness: float) -> None:
@@ -261,5 +268,5 @@ def _shares(
     for force in torque / pair.pinion.base_radius:
         teeth = teeth_of(contact, (phase, path, in_contact), material, force, model, options)
         share = teeth.carried().share[np.arange(age.size), number]
-        found.append(np.maximum(share, LEAST_SHARE))
+        found.append(share)
     return np.array(found)

@@ -8,29 +8,35 @@ formula follows every change of load, radius and speed.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from tribodyn.contact import PathOfContact
 from tribodyn.ehl.solved_films import Films
-from tribodyn.errors import warn
+from tribodyn.errors import ModelWarning
 from tribodyn.mesh.film_places import film_places
+from tribodyn.mesh.film_refinement import PathLoads, Refinement
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
-from tribodyn.mesh.positions import MOST, PathPositions, path_positions
+from tribodyn.mesh.positions import PathPositions, path_positions
+from tribodyn.mesh.solved_places import (
+    PRESSURE,
+    RIGID,
+    STIFFNESS,
+    Memory,
+    Places,
+    places_of,
+)
 from tribodyn.mesh.touching import Touching
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Mask
 
 #: Films of all touching pairs under the loads per width given.
 FilmAt = Callable[[Array], Films]
 
-#: Estimated error of the film between the positions that deserves a warning.
-_ROUGH = 3e-3
-#: Compliance over its estimate below which a film counts as rigid: its stiffness has a bound.
-_RIGID = 1e-3
 #: Distance from an event that tells its two sides apart [mesh cycles].
 _BESIDE = 1e-9
 
@@ -42,10 +48,12 @@ class PathFilm:
     model: str  #: name of the model in ``tribodyn.ehl.FILM_MODELS``
     options: Mapping[str, Any]  #: options of the model, with its defaults
     places: PathPositions  #: positions at which the film is solved
-    roll_angle: Array  #: roll angle of the driving gear at these positions [rad]
+    first_angle: float  #: roll angle of the driving gear where a pair enters [rad]
+    angle_per_cycle: float  #: and its change over a mesh cycle [rad]
     solved: Touching  #: the pair at these positions
     touching: Touching  #: contacts of the mesh table
     zone: Index  #: zone of each contact of the mesh table
+    memory: Memory = field(default_factory=Memory)
 
     def load_of(self, grid: PhaseGrid, load_per_width: Array) -> Array:
         """Read the loads at the positions from those of a mesh table."""
@@ -53,29 +61,54 @@ class PathFilm:
         at = PhaseFunction(grid, load_per_width)(age)
         return np.asarray(at[np.arange(age.size), np.floor(age).astype(int)])
 
-    def solve(self, load_per_width: Array, progress: Progress = SILENT) -> SolvedPath:
-        """Solve the film at the positions."""
-        with film_places(lambda index: f"at the roll angle {self.roll_angle[index]:.4f} rad"):
-            films = self.solved.films(self.model, load_per_width, **self.options, progress=progress)
-        scales = self.solved.scales(load_per_width)
-        ratios = [
-            np.log(getattr(films, name) / scales[name])
-            for name in ("central_film", "minimum_film", "film_pressure")
-        ]
-        # The compliance and not the stiffness, which has a pole where the compliance is zero.
-        ratios.append(scales["film_stiffness"] / np.asarray(films.film_stiffness))
-        error = self.places.truncation(ratios[0])
-        if error > _ROUGH:
-            count = self.options["positions"]
-            more = f"film.positions = {min(2 * count, MOST)}" if count < MOST else "no more exist"
-            warn(
-                "film-positions",
-                f"between the {count} positions at which the film is solved it is known to no "
-                f"better than {100.0 * error:.2g} %: load and film change much along the path of "
-                f"contact. More positions help: {more}",
-            )
-        between = self.places.interpolate(np.stack(ratios, axis=1), self.touching.age, self.zone).T
-        return SolvedPath(self, load_per_width, films, np.exp(between[:3]), between[3])
+    def solve(
+        self, loads: PathLoads, checked: tuple[int, ...] = (), progress: Progress = SILENT
+    ) -> SolvedPath:
+        """Solve the film at the positions, and beside them where checked quantities need it."""
+        count, known = self.places.age.size, self.memory
+        # A pass that checks no pressure does without the places that only the pressure needs.
+        again = known.contacts if PRESSURE in checked else known.contacts[known.yielding]
+        films, first = self._solve(
+            self.solved.joined(self.touching.some(again)),
+            np.concatenate([self.places.zone, self.zone[again]]),
+            np.concatenate([loads.at_positions, loads.of_contacts[again]]),
+            progress,
+        )
+        yielding = known.yielding if PRESSURE in checked else np.ones(again.size, dtype=bool)
+        first.yielding[count:] = yielding
+        refinement = Refinement(
+            self.places, self.touching, self.zone, loads, known, first,
+            lambda new: self._solve_more(new, loads, progress),
+        )  # fmt: skip
+        if checked:
+            refinement.refine(checked)
+        if PRESSURE in checked:
+            refinement.solve_extremes()
+        values = refinement.values(np.arange(self.zone.size))
+        return SolvedPath(
+            path=self,
+            load_per_width=loads.at_positions,
+            films=films,
+            factors=np.exp(values[:STIFFNESS]),
+            yielding=values[STIFFNESS],
+            doubtful=refinement.doubtful,
+            scored=loads.scored,
+        )
+
+    def _solve_more(self, contacts: Index, loads: PathLoads, progress: Progress) -> Places:
+        touching, zone = self.touching.some(contacts), self.zone[contacts]
+        with warnings.catch_warnings():
+            # The positions have said it already.
+            warnings.filterwarnings("ignore", r"\[seed-film-stiffness\]", ModelWarning)
+            return self._solve(touching, zone, loads.of_contacts[contacts], progress)[1]
+
+    def _solve(
+        self, touching: Touching, zone: Index, loads: Array, progress: Progress
+    ) -> tuple[Films, Places]:
+        angles = self.first_angle + self.angle_per_cycle * touching.age
+        with film_places(lambda index: f"at the roll angle {angles[index]:.4f} rad"):
+            films = touching.films(self.model, loads, **self.options, progress=progress)
+        return films, places_of(touching, zone, loads, films, np.ones(zone.size, dtype=bool))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,20 +117,22 @@ class SolvedPath:
 
     path: PathFilm  #: positions and contacts
     load_per_width: Array  #: load at each position [N/m]
-    films: Films  #: films at the positions
+    films: Films  #: films at the positions, then at contacts that were added
     factors: Array
     yielding: Array  #: compliance of their films over its scale
+    doubtful: Mask  #: quantities (4, contacts) that may be further from a solution than promised
+    scored: Mask  #: contacts that carry enough for a film of their own
 
     @property
     def rigid_share(self) -> float:
         """Part of the contacts whose film does not fall with the load."""
-        return float(np.mean(self.yielding < _RIGID))
+        return float(np.mean(self.yielding[self.scored] < RIGID))
 
     def __call__(self, load_per_width: Array) -> Films:
         """Films of all contacts of the mesh table."""
         *scales, stiffness = self.path.touching.scales(load_per_width).values()
         central, minimum, pressure = np.stack(scales) * self.factors
-        film_stiffness = stiffness / np.maximum(self.yielding, _RIGID)
+        film_stiffness = stiffness / np.maximum(self.yielding, RIGID)
         return Films(central, minimum, pressure, film_stiffness)
 
 
@@ -121,11 +156,13 @@ def path_film(
         entrainment_speed=motion.entrainment_speed,
     )
     radius = getattr(motion, f"{contact.pair.driver}_curvature_radius")
+    angle = radius / contact.pair.driving.base_radius
     return PathFilm(
         model=model,
         options=options,
         places=places,
-        roll_angle=radius / contact.pair.driving.base_radius,
+        first_angle=float(angle[0]),
+        angle_per_cycle=float((angle[-1] - angle[0]) / (places.age[-1] - places.age[0])),
         solved=solved,
         touching=touching,
         # On an event the side tells the zone; bends lie between the knots.

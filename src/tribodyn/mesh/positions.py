@@ -24,8 +24,6 @@ _LEAST_IN_ZONE = 4
 _ROUNDING = 1e-9
 #: A bend this near to an edge is left to it [mesh cycles].
 _NARROW = 0.01
-#: Fall from term to term that is assumed where terms do not fall at all.
-_SLOWEST = 0.9
 #: Distance from the end of a zone that tells its two sides apart [mesh cycles].
 _SIDE = 1e-10
 
@@ -62,6 +60,11 @@ class PathPositions:
             for stop, count in zip(stops, self.counts, strict=True)
         )
 
+    @property
+    def zone(self) -> Index:
+        """Zone of each position."""
+        return np.repeat(np.arange(len(self.counts)), self.counts)
+
     def zone_of(self, age: Array) -> Index:
         """Find the zone of a pair."""
         inner = np.array(self.edges[1:-1])
@@ -75,10 +78,6 @@ class PathPositions:
             matrix = lobatto_polynomial(self.age[part], age[here])
             found[here] = np.tensordot(matrix, values[part], axes=(1, 0))
         return found
-
-    def truncation(self, values: Array) -> float:
-        """Estimate the error of the interpolation from how the terms of each zone fall."""
-        return max(_rest(values[part]) for part in self.zones)
 
 
 def lobatto_points(count: int) -> Array:
@@ -111,22 +110,6 @@ def lobatto_polynomial(knots: Array, at: Array) -> Array:
     parts = weight / np.where(hit, 1.0, distance)
     parts = np.where(hit.any(axis=1, keepdims=True), hit, parts)
     return np.asarray(parts / parts.sum(axis=1, keepdims=True))
-
-
-def _rest(values: Array) -> float:
-    """What the series leaves out if its terms go on falling as the last ones do."""
-    order = values.size - 1
-    ends = np.ones(order + 1)
-    ends[[0, -1]] = 0.5
-    angle = np.pi * np.arange(order + 1) / order
-    terms = [
-        2.0 / order * abs(np.sum(ends * values * np.cos(k * angle)))
-        for k in (order - 2, order - 1, order)
-    ]
-    terms[-1] *= 0.5
-    last, before = max(terms[1:]), max(terms[:2])
-    ratio = min(last / before, _SLOWEST) if before > 0.0 else 0.0
-    return float(last * ratio / (1.0 - ratio))
 
 
 def path_positions(

@@ -9,18 +9,31 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, ModelWarning, Problem
 from tribodyn.mesh.path_film import FilmAt
+from tribodyn.mesh.solved_places import ALL, PRESSURE, STIFFNESS
 from tribodyn.mesh.teeth import Carried, Teeth
 from tribodyn.types import Array, Mask
 
+#: Films of the loads given, with the quantities in which they are checked between the positions.
+FilmOf = Callable[[Array, tuple[int, ...]], FilmAt]
+
 #: The film is solved anew until the load shares move by less than this.
 _TOLERANCE = 1e-6
-_PASSES = 20
+#: Where pairs are solved together one may be about to lose its load to its film: there it is this.
+_TOLERANCE_TOGETHER = 1e-5
+_PASSES = 60
+#: What is checked between the positions, first and whenever the shares have settled. At last the
+#: stiffness stays as it is, so that an end is reached where a pair is about to lose its load.
+_STAGES = ((STIFFNESS,), ALL, ALL, ALL[:STIFFNESS])
+#: Part of the last change to which the next shares settle.
+_ENOUGH = 1e-3
 #: Between two solutions the shares settle to this; each pass gains one digit or two, and after
 #: every few of them the limit is extrapolated.
 _SETTLED = 1e-13
 #: Pairs that are solved together are solved to this.
 _SETTLED_TOGETHER = 1e-9
-_STEPS = 200
+_STEPS = 300
+#: Steps that tell a slope, and bounds of that slope: 1 is a share that does not act on itself.
+_TOLD, _FALLS, _FALLS_OF_PASSES = 1e-11, (0.2, 50.0), (0.4, 3.0)
 _ROUND = 4
 #: Change of the steps, relative to them, without which nothing can be extrapolated.
 _BENT = 1e-3
@@ -31,18 +44,25 @@ _LOST = 1e-9
 def in_series(
     teeth: Teeth,
     total_load: float,
-    film_of: Callable[[Array], FilmAt],
+    film_of: FilmOf,
     where: Callable[[int, int], str],
 ) -> tuple[Carried, FilmAt]:
     """Put the film of each pair in series with its teeth, at the load share that follows."""
-    share = teeth.carried().share
+    tolerance = _TOLERANCE_TOGETHER if teeth.stiffness is None else _TOLERANCE
+    share, stages = teeth.carried().share, list(_STAGES)
+    checked, change = stages.pop(0), 1.0
+    before, step, slope = share, np.zeros(share.shape), np.ones(share.shape)
     for _ in range(_PASSES):
-        film_at = film_of(total_load * share)
-        carried = _settle(teeth, total_load, film_at, share, where)
-        change = float(np.max(np.abs(carried.share - share)))
-        share = carried.share
-        if change < _TOLERANCE:
+        film_at = film_of(total_load * share, checked)
+        enough = _ENOUGH * min(change, 1.0)
+        carried = _settle(teeth, total_load, film_at, share, where, enough)
+        earlier, step = step, carried.share - share
+        change = float(np.max(np.abs(step)))
+        if change < tolerance and PRESSURE in checked:
             return carried, film_at
+        checked = stages.pop(0) if change < tolerance and stages else ()
+        slope = _secant(share - before, step - earlier, slope, _FALLS_OF_PASSES)
+        before, share = share, np.clip(share + step / slope, 0.0, 1.0)
     raise _unsettled(f"the load share still moves by {change:.2g} after {_PASSES} solutions")
 
 
@@ -52,10 +72,11 @@ def _settle(
     film_at: FilmAt,
     share: Array,
     where: Callable[[int, int], str],
+    enough: float,
 ) -> Carried:
     """Find the fixed point of share and stiffness with the films as a function of their load."""
     if teeth.stiffness is None:
-        return _settle_together(teeth, total_load, film_at, share, where)
+        return _settle_together(teeth, total_load, film_at, share, where, enough)
     earlier = [share]
     loaded = teeth.in_contact & (share > _LOST)
     for _ in range(_STEPS):
@@ -81,19 +102,28 @@ def _settle_together(
     film_at: FilmAt,
     share: Array,
     where: Callable[[int, int], str],
+    enough: float,
 ) -> Carried:
     """The same for pairs solved together; a share that swings to and fro is slowed down."""
     least = teeth.least_share * total_load
-    pace, before = np.ones(share.shape), np.zeros(share.shape)
+    before, step = share, np.zeros(share.shape)
+    slope = np.ones(share.shape)
     for _ in range(_STEPS):
         load = np.maximum(total_load * share, least)
         carried = teeth.carried(_film_stiffness(teeth.in_contact, load, film_at))
-        step = carried.share - share
-        if np.abs(step).max() < _SETTLED_TOGETHER:
+        earlier, step = step, carried.share - share
+        if np.abs(step).max() < max(enough, _SETTLED_TOGETHER):
             return carried
-        pace = np.where(step * before < 0.0, 0.5 * pace, np.minimum(1.1 * pace, 1.0))
-        share, before = share + pace * step, step
+        slope = _secant(share - before, step - earlier, slope, _FALLS)
+        before, share = share, np.clip(share + step / slope, 0.0, 1.0)
     raise _still_moving(np.abs(step), where)
+
+
+def _secant(moved: Array, change: Array, slope: Array, bounds: tuple[float, float]) -> Array:
+    """Fall of the step over the share, within bounds that neither stop it nor let it jump."""
+    told = np.abs(moved) > _TOLD
+    fall = -change / np.where(told, moved, 1.0)
+    return np.where(told, np.clip(fall, *bounds), slope)
 
 
 def _still_moving(change: Array, where: Callable[[int, int], str]) -> ComputationError:

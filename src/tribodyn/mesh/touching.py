@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line
 from tribodyn.ehl import FILM_MODELS, moes_central
@@ -11,7 +13,7 @@ from tribodyn.ehl.solved_films import Films
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import MeshCycle
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +26,24 @@ class Touching:
     lubricant: Lubricant  #: oil at working temperature
     effective_modulus: float  #: ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2`` [Pa]
     common_face_width: float  #: length of the contact line [m]
+
+    def some(self, index: Index) -> Touching:
+        """A part of these contacts."""
+        return replace(
+            self,
+            age=self.age[index],
+            equivalent_radius=self.equivalent_radius[index],
+            entrainment_speed=self.entrainment_speed[index],
+        )
+
+    def joined(self, others: Touching) -> Touching:
+        """These contacts and others of the same pair."""
+        return replace(
+            self,
+            age=np.concatenate([self.age, others.age]),
+            equivalent_radius=np.concatenate([self.equivalent_radius, others.equivalent_radius]),
+            entrainment_speed=np.concatenate([self.entrainment_speed, others.entrainment_speed]),
+        )
 
     def films(self, model: str, load_per_width: Array, **options: Any) -> Films:
         """Films of every one of these contacts."""

@@ -16,12 +16,15 @@ from tribodyn.plot.cycle import (
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.style import MUTED, PAIR_COLORS, TOTAL, Panel, line, stack
+from tribodyn.types import Array
 
 #: Column of the mesh table, name in the legend, and colour.
 _FILMS = (
     ("central_film", "in the centre", PAIR_COLORS[2]),
     ("minimum_film", "at its thinnest", TOTAL),
 )
+#: Film over the usual one above which both are not seen on one linear scale.
+_VERY_THICK = 10.0
 
 
 def _columns(mesh: Any) -> list[tuple[str, str, str]]:
@@ -43,7 +46,17 @@ def _thickness(mesh: Any, angle: Any) -> Panel:
     ]
     roughness = displayed("film_thickness", np.full_like(angle, mesh.composite_roughness))
     traces.append(line(angle, roughness, "roughness", MUTED, unit=unit, dash="dot"))
-    return Panel(axis_label("film_thickness"), traces, {"rangemode": "tozero"}, height=1.3)
+    films = [pair_life(mesh, row)[1] for row, _, _ in _columns(mesh)]
+    return Panel(axis_label("film_thickness"), traces, _axis(films), height=1.3)
+
+
+def _axis(films: list[Array]) -> dict[str, Any]:
+    """From zero, or logarithmic where a pair that hardly carries has a very thick film."""
+    thickest = max(float(np.nanmax(film)) for film in films)
+    usual = float(np.nanmedian(films[0]))
+    return (
+        {"type": "log", "dtick": 1} if thickest > _VERY_THICK * usual else {"rangemode": "tozero"}
+    )
 
 
 def _ratio(mesh: Any, angle: Any) -> list[Panel]:
@@ -54,7 +67,8 @@ def _ratio(mesh: Any, angle: Any) -> list[Panel]:
         line(angle, pair_life(mesh, "film_ratio")[1], "film ratio", TOTAL),
         line(angle, np.ones_like(angle), "mixed below", MUTED, dash="dot"),
     ]
-    return [Panel(axis_label("film_ratio"), traces, {"rangemode": "tozero"}, height=0.8)]
+    axis = _axis([pair_life(mesh, "film_ratio")[1]])
+    return [Panel(axis_label("film_ratio"), traces, axis, height=0.8)]
 
 
 @drawing(
@@ -79,7 +93,7 @@ def film(result: Any) -> Any:
     mesh = result.mesh
     angle = driving_roll_angle(mesh)
     name, place, _ = _columns(mesh)[-1]
-    least = rounded("film_thickness", float(np.min(pair_life(mesh, name)[1])))
+    least = rounded("film_thickness", float(np.nanmin(pair_life(mesh, name)[1])))
     return stack(
         f"The oil film {place} is never below {least}",
         roll_angle_label(mesh),

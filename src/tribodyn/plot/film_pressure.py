@@ -67,7 +67,7 @@ def film_pressure(result: Any) -> Any:
         ),
     ]
     return stack(
-        f"The pressure in the oil film reaches {rounded('film_pressure', float(np.max(film)))}",
+        f"The pressure in the oil film reaches {rounded('film_pressure', float(np.nanmax(film)))}",
         roll_angle_label(mesh),
         [Panel(axis_label("film_pressure"), traces, {"rangemode": "tozero"}, height=1.3)],
         event_lines(roll_angle_positions(mesh).items()),

@@ -86,7 +86,7 @@ def film_stiffness(result: Any) -> Any:
         pair_curve = line(angle, pair, "teeth and film", TOTAL, unit=unit)
         panels.append(Panel(axis_label("pair_stiffness"), [teeth_curve, pair_curve]))
     # Relieved flanks leave a pair without load where it comes in and where it leaves.
-    loaded = teeth > 0.0
+    loaded = (teeth > 0.0) & np.isfinite(film)
     ratio = film[loaded] / teeth[loaded]
     least, greatest = (significant(float(f(ratio))) for f in (np.min, np.max))
     return stack(

@@ -77,21 +77,6 @@ def test_a_jump_is_kept_between_two_zones(contact):
     assert places.interpolate(values, edge, np.array([0, 1])).tolist() == [0.0, 1.0]
 
 
-def test_truncation_bounds_the_error_and_falls_with_it(contact):
-    def wavy(age):
-        return np.log(1.0 + 0.3 * np.sin(4.0 * age))
-
-    told, errors = [], []
-    for wanted in (20, 40, 80):
-        places = path_positions(contact, wanted)
-        age = np.linspace(0.0, places.edges[-1], 801)
-        found = places.interpolate(wavy(places.age), age, places.zone_of(age))
-        errors.append(np.abs(found - wavy(age)).max())
-        told.append(places.truncation(wavy(places.age)))
-    assert all(estimate > error for estimate, error in zip(told, errors, strict=True))
-    assert told[2] < 0.05 * told[0]
-
-
 def test_several_columns_are_interpolated_at_once(contact):
     places = path_positions(contact, 30)
     age = np.linspace(0.0, places.edges[-1], 50)

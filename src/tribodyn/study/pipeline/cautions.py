@@ -149,7 +149,7 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
     """A film below the roughness carries only a part of the load; the models give it the whole."""
     if mesh.film_ratio is None:
         return
-    least = float(mesh.film_ratio[mesh.in_contact].min())
+    least = float(np.nanmin(mesh.film_ratio[mesh.in_contact]))
     if least < 1.0:
         yield ModelWarning(
             "mixed-lubrication",

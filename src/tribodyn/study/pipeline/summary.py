@@ -104,10 +104,12 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
         "minimum_film_ratio": mesh.film_ratio,
     }
     figures: dict[str, Any] = {
-        name: column[mesh.in_contact].min() for name, column in least.items() if column is not None
+        name: np.nanmin(column[mesh.in_contact])
+        for name, column in least.items()
+        if column is not None
     }
     if mesh.film_pressure is not None:
-        figures["maximum_film_pressure"] = mesh.film_pressure.max()
+        figures["maximum_film_pressure"] = np.nanmax(mesh.film_pressure)
     at_pitch_point = {
         "central_film_pitch_point": mesh.at_pitch_point("central_film"),
         "oil_film_stiffness_pitch_point": mesh.at_pitch_point("film_stiffness"),

@@ -1,0 +1,134 @@
+"""Ctrl-C that ends compiled calls: they run in threads, and look at a flag after every step.
+
+Python hands an interruption to its main thread, and only between two lines of Python: a compiled
+call that runs there keeps it waiting. So the main thread waits while other threads compute, and
+raises the flag of all threads that it began, and of those that these began, when it is
+interrupted.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, wait
+from queue import SimpleQueue
+from types import TracebackType
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["STOPPED", "Threads", "in_threads", "refuse_stopped", "stop_flag"]
+
+Item = TypeVar("Item")
+Value = TypeVar("Value")
+
+#: What a compiled march returns that ended because of the flag.
+STOPPED = -2
+#: Longest wait that lets no signal through [s], and that for threads to end after the flag was
+#: raised [s]. What still runs then, a compiler perhaps, ends with the process at the latest.
+_MOMENT, _GRACE = 0.1, 1.0
+
+_here = threading.local()
+
+
+def stop_flag() -> NDArray[np.int64]:
+    """Flag of this thread, which a compiled call looks at: not zero when it has to end."""
+    flag = getattr(_here, "flag", None)
+    return np.zeros(1, dtype=np.int64) if flag is None else flag
+
+
+def refuse_stopped(code: int) -> int:
+    """Raise the interruption that ended a compiled march; else hand on what it returned."""
+    if code == STOPPED:
+        raise KeyboardInterrupt
+    return code
+
+
+class Threads:
+    """Threads that end with the block that began them: soon where it was interrupted."""
+
+    def __init__(self, count: int) -> None:
+        self.flag = stop_flag()
+        self._tasks: SimpleQueue[tuple[Future[Any], Callable[..., Any], Any] | None] = SimpleQueue()
+        self._waiting: list[Future[Any]] = []
+        self._threads = [threading.Thread(target=self._work, daemon=True) for _ in range(count)]
+
+    def _work(self) -> None:
+        _here.flag = self.flag
+        while (task := self._tasks.get()) is not None:
+            future, function, arguments = task
+            if not future.set_running_or_notify_cancel():
+                continue
+            try:
+                future.set_result(function(*arguments))
+            except BaseException as error:
+                future.set_exception(error)
+            del task, future, function, arguments
+
+    def submit(self, function: Callable[..., Value], *arguments: Any) -> Future[Value]:
+        """Let one of the threads call a function."""
+        future: Future[Value] = Future()
+        self._waiting.append(future)
+        self._tasks.put((future, function, arguments))
+        return future
+
+    def __enter__(self) -> Threads:
+        """Begin the threads."""
+        for thread in self._threads:
+            thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:  # fmt: skip
+        """Wait for the threads; after an error nothing new begins, and an interruption ends all."""
+        if kind is not None:
+            for future in self._waiting:
+                future.cancel()
+        for _ in self._threads:
+            self._tasks.put(None)
+        try:
+            if error is not None and not isinstance(error, Exception):
+                self._stop()
+            while any(thread.is_alive() for thread in self._threads):
+                for thread in self._threads:
+                    thread.join(_MOMENT)
+        except BaseException:
+            self._stop()
+            raise
+
+    def _stop(self) -> None:
+        """Raise the flag, and wait a little for the threads to see it."""
+        self.flag[0] = 1
+        for future in self._waiting:
+            future.cancel()
+        end = time.monotonic() + _GRACE
+        for thread in self._threads:
+            thread.join(max(end - time.monotonic(), 0.0))
+        self._threads = []
+
+
+def in_threads(
+    function: Callable[[Item], Value], items: Iterable[Item], count: int, *, brief: bool = False
+) -> list[Value]:
+    """Results of a function of every item, as many at a time as there are threads.
+
+    What is ``brief`` anyway, and what one thread of several does by itself, is computed here.
+    """
+    items = list(items)
+    count = max(min(count, len(items)), 1)
+    aside = getattr(_here, "flag", None) is None and not brief
+    aside = aside and threading.current_thread() is threading.main_thread()
+    if count == 1 and not aside:
+        return [function(item) for item in items]
+    with Threads(count) as threads:
+        running = [threads.submit(function, item) for item in items]
+        left: set[Future[Value]] = set(running)
+        while left:
+            done, left = wait(left, _MOMENT, "FIRST_EXCEPTION")
+            for future in done:
+                future.result()
+        return [future.result() for future in running]

@@ -1,0 +1,138 @@
+"""Ctrl-C ends compiled calls: one signal, no process stays alive."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tribodyn.dynamics import Contact, System
+from tribodyn.dynamics.dormand_prince import adaptive_engine
+from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics.newmark_engine import newmark_engine
+from tribodyn.interrupt import Threads, in_threads, stop_flag
+
+_SYSTEM = System([[1.0]], [[0.05]], [[0.0]], [0.3], [Contact([1.0], 1.0, damping=0.05, gap=1.0)])
+#: Mesh cycles that nobody waits for: they take hours.
+_HOURS = 2_000_000_000
+
+_PROGRAM = """
+import sys
+import numpy as np
+from tribodyn.dynamics import Contact, System
+from tribodyn.dynamics.march import compile_for, march
+
+contact = Contact([1.0], 1.0, damping=0.05, gap=1.0)
+system = System([[1.0]], [[0.05]], [[0.0]], [0.3], [contact])
+compiled = compile_for(system, 0.16, 64)
+lanes = int(sys.argv[1])
+period, start = np.full(lanes, 1 / 0.16), np.ones((lanes, 2))
+march(compiled, period, start, 1)
+print("ready", flush=True)
+march(compiled, period, start, 2_000_000_000)
+"""
+
+
+def _engines():
+    compiled = compile_for(_SYSTEM, 0.16, 64)
+    period, start = np.array([1 / 0.16]), np.array([[1.0, 0.0]])
+    newmark = newmark_engine(compiled, np.array([0.5, 0.25, 1e-12]))
+    adaptive = adaptive_engine(_SYSTEM, 0.16, _HOURS)
+    return {
+        "runge-kutta": lambda cycles: march(compiled, period, start, cycles),
+        "newmark": lambda cycles: newmark.march(period, start, cycles),
+        "adaptive": lambda cycles: adaptive.march(period, start, cycles),
+    }
+
+
+@pytest.mark.parametrize("name", ["runge-kutta", "newmark", "adaptive"])
+def test_every_engine_looks_at_the_flag_of_its_thread(name):
+    run = _engines()[name]
+    run(1)
+    with Threads(1) as threads:
+        future = threads.submit(run, _HOURS)
+        time.sleep(0.2)
+        assert not future.done()
+        threads.flag[0] = 1
+        with pytest.raises(KeyboardInterrupt):
+            future.result(timeout=20.0)
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals to threads")
+@pytest.mark.parametrize("lanes", [1, 64])
+def test_one_interruption_ends_a_march_and_its_process(lanes):
+    words = [sys.executable, "-c", _PROGRAM, str(lanes)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().strip() == b"ready"
+        time.sleep(0.3)
+        assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        try:
+            _, told = process.communicate(timeout=20.0)
+        finally:
+            process.kill()
+    assert b"KeyboardInterrupt" in told
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.parametrize(
+    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=20000"],
+              ["bifurcation", "operation.speed=2000..3000 rpm:4000", "--cycles", "2"]]
+)  # fmt: skip
+def test_one_interruption_ends_a_command(words, tmp_path: Path):
+    target = tmp_path / "out"
+    command = [sys.executable, "-m", "tribodyn.cli", words[0], "time-varying-friction", *words[1:]]
+    with subprocess.Popen(
+        [*command, "--out", str(target)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        # Let it come into its marches, wherever that is by then.
+        time.sleep(12.0)
+        running = process.poll() is None
+        process.send_signal(signal.SIGINT)
+        try:
+            _, told = process.communicate(timeout=60.0)
+        finally:
+            process.kill()
+    assert running, told.decode()
+    assert process.returncode == 130
+    # What a diagram has of finished motions is kept; a run leaves nothing unfinished.
+    assert not target.exists() or words[0] == "bifurcation"
+
+
+def test_flags_are_of_the_threads_that_one_call_began():
+    before = stop_flag()
+    assert before[0] == 0
+    flags = in_threads(lambda _: (stop_flag(), threading.get_ident()), range(4), 2)
+    assert all(flag is flags[0][0] for flag, _ in flags)
+    assert threading.get_ident() not in {thread for _, thread in flags}
+    inner = in_threads(lambda _: in_threads(lambda _: stop_flag(), range(2), 2), range(2), 2)
+    assert inner[0][0] is inner[0][1]
+    assert flags[0][0] is not inner[0][0]
+
+
+def test_what_is_brief_is_computed_where_it_is_asked_for():
+    here = in_threads(lambda _: threading.get_ident(), range(3), 1, brief=True)
+    assert set(here) == {threading.get_ident()}
+
+
+def test_a_failure_ends_what_has_not_begun_and_is_raised():
+    begun = []
+
+    def work(item):
+        begun.append(item)
+        if item == 0:
+            raise ValueError("no")
+        time.sleep(0.05)
+        return item
+
+    with pytest.raises(ValueError, match="no"):
+        in_threads(work, range(1000), 2)
+    assert len(begun) < 1000
