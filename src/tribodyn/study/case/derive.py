@@ -8,9 +8,8 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem
+from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem, collected
 from tribodyn.model import Option
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.gears import Gear, Gears, Modification
 from tribodyn.study.case.profile_map_file import read_profile_map
 from tribodyn.study.case.section import Section, Table

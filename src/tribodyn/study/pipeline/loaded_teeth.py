@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.study.case.derive import placed
 from tribodyn.study.pipeline.tooth_contact import model_settings
-from tribodyn.study.studies.grid import pinion_torques
+from tribodyn.study.studies.axes import pinion_torques
 
 if TYPE_CHECKING:
     from tribodyn.stiffness import LoadedContact

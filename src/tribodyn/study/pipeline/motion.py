@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, warn
+from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
 from tribodyn.progress import Progress
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.sections import Solver

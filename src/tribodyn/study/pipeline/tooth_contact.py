@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import ComputationError
+from tribodyn.errors import ComputationError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.provenance import effective
 

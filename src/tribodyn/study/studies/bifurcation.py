@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, Problem, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
-from tribodyn.study.pipeline.assembly import whole_system
 from tribodyn.study.pipeline.motion import steps_of
-from tribodyn.study.pipeline.tooth_contact import mesh_of
-from tribodyn.study.studies.grid import ends_of
+from tribodyn.study.studies.axes import ends_of
+from tribodyn.study.studies.grid import varied
 
 if TYPE_CHECKING:
     from tribodyn.analysis.bifurcation_result import Bifurcation
@@ -101,24 +99,20 @@ def _systems(
     case: Case, over: str, values: Any, steps: int | None, progress: Progress
 ) -> tuple[list[System], list[float], list[int]]:
     """Structure, mesh frequency and steps of every value; one structure where none differs."""
-    systems: list[System] = []
-    frequency: list[float] = []
-    counts: list[int] = []
     same = over == "operation.speed" and _contact_without_speed(case)
-    progress.start("tooth contact", len(values))
+    changes = [{over: float(value)} for value in values]
     with placed(case), collected():
-        for value in values:
-            changed = case.replace({over: float(value)})
-            if same and systems:
-                systems.append(systems[0])
-                frequency.append(frequency[0] * float(value) / float(values[0]))
-            else:
-                mesh = mesh_of(changed)
-                systems.append(whole_system(changed, mesh))
-                frequency.append(mesh.mesh_frequency)
-            counts.append(steps or _steps(changed, systems[-1], frequency[-1]))
-            progress.advance()
-    progress.finish()
+        members = varied(case, changes[:1] if same else changes, progress)
+        systems = [member.system for member in members]
+        frequency = [member.mesh.mesh_frequency for member in members]
+        cases = [member.case for member in members]
+        if same:
+            systems *= len(values)
+            frequency = [frequency[0] * float(value) / float(values[0]) for value in values]
+            cases = [case.replace(change) for change in changes]
+        counts = [
+            steps or _steps(*member) for member in zip(cases, systems, frequency, strict=True)
+        ]
     if same and max(counts) <= _ALIKE * min(counts):
         counts = [max(counts)] * len(counts)
     return systems, frequency, counts

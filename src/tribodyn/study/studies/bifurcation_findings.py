@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.study.case.provenance import spec_of
-from tribodyn.study.studies.grid import Axis
+from tribodyn.study.studies.axes import Axis
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
