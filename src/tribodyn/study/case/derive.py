@@ -135,6 +135,7 @@ def material(data: MaterialData) -> Material:
     return Material(data.youngs_modulus, data.poissons_ratio, data.density)
 
 
+@lru_cache(maxsize=64)
 def lubricant(data: LubricantData) -> Lubricant:
     """Build the oil, from the library or from its properties."""
     from tribodyn.lubricant import Lubricant, from_library

@@ -9,7 +9,7 @@ from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.foundations import foundations
-from tribodyn.study.case.section import Section, section_at
+from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.stated import same
 
 if TYPE_CHECKING:
@@ -51,32 +51,18 @@ def _model_of(case: Case, path: list[str]) -> Model | None:
     return section.chosen if isinstance(section, Section) else None
 
 
-def _model_values(case: Case, section: Section) -> dict[str, Any]:
-    """Values in force of the options of all models that a table can name."""
-    model, held = section.chosen, vars(section)
-    options = model.options if model else {}
-    values = {key: None for key in section.known().owners if key not in options}
-    for key, default in options.items():
-        given = held.get(key)
-        standard = _bored(case, default) if key == "reference" else default
-        values[key] = standard if given is None else given
-    return values
-
-
 def _bored(case: Case, default: Any) -> Any:
     """Body against which deflection is measured; one without a bore has no shaft seat."""
+    if case.stiffness.reference is not None:
+        return default
     bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
     return "rim" if default == "bore" and not all(bores) else default
 
 
 def effective_values(case: Case) -> dict[str, Any]:
     """All values in force by dotted key, defaults of options and solver filled in."""
-    values = dict(case.values())
-    for name, section in vars(case).items():
-        if isinstance(section, Section) and section.selector:
-            for key, value in _model_values(case, section).items():
-                if f"{name}.{key}" in values:
-                    values[f"{name}.{key}"] = value
+    values = in_force(case)
+    values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
     for name in ("mesh_damping", "bearing_damping"):
         if values[f"dynamics.{name}"] is not None:
             values[f"dynamics.{name}_ratio"] = None
@@ -104,7 +90,7 @@ def default_of(case: Case, key: str) -> Any:
     standard = option.default if isinstance(option, Option) and not option.required else None
     if standard is None and model is not None:
         standard = model.options.get(name)
-    return _bored(case, standard) if name == "reference" else standard
+    return _bored(case, standard) if key == "stiffness.reference" else standard
 
 
 def changed_keys(case: Case) -> tuple[str, ...]:
