@@ -10,7 +10,7 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
 from tribodyn.study.case.checks import case_options
-from tribodyn.study.case.write import case_keys, reference_tables
+from tribodyn.study.case.reference import case_keys, reference_tables
 
 _ROW = r"^\| `([\w-]+)` \| (.*) \|$"
 _DOCS = Path(__file__).parents[2] / "docs"

@@ -53,7 +53,7 @@ def _quantities(symbol: str) -> list[dict[str, Any]]:
 
 
 def _keys(symbol: str) -> list[dict[str, Any]]:
-    from tribodyn.study.case.write import case_keys
+    from tribodyn.study.case.reference import case_keys
 
     wanted = symbol.lower()
     return [
@@ -71,7 +71,7 @@ def _keys(symbol: str) -> list[dict[str, Any]]:
 
 def _choices(symbol: str) -> list[dict[str, Any]]:
     """Models, laws and methods with the papers behind them."""
-    from tribodyn.study.case.write import case_keys, choice_meanings
+    from tribodyn.study.case.reference import case_keys, choice_meanings
     from tribodyn.study.pipeline.citations import sources_of
 
     meaning = choice_meanings().get(symbol)
@@ -89,7 +89,7 @@ def _choices(symbol: str) -> list[dict[str, Any]]:
 
 
 def _warnings(symbol: str) -> list[dict[str, Any]]:
-    from tribodyn.study.case.write import warning_meanings
+    from tribodyn.study.case.reference import warning_meanings
 
     meaning = warning_meanings().get(symbol.strip("[]"))
     return [] if meaning is None else [{"warning": symbol, "meaning": meaning}]
@@ -113,7 +113,7 @@ def _figures(symbol: str) -> list[dict[str, Any]]:
 
 def _unknown(symbol: str) -> Problem:
     from tribodyn.nomenclature import QUANTITIES
-    from tribodyn.study.case.write import case_keys, choice_meanings, warning_meanings
+    from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
     from tribodyn.study.pipeline.summary import SUMMARY
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]

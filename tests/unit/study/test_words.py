@@ -10,7 +10,7 @@ import pytest
 
 import tribodyn
 from tribodyn.cli import call
-from tribodyn.study.case.write import case_keys, choice_meanings, warning_meanings
+from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
 
 _SOURCE = Path(tribodyn.__file__).parent
 _PAGE = Path(__file__).resolve().parents[3] / "docs" / "command-line.md"
