@@ -7,7 +7,9 @@ or argument), why (the limit and its origin) and what to do next.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,11 +24,19 @@ __all__ = [
     "OutputExistsError",
     "Problem",
     "TribodynError",
+    "collected",
+    "quiet",
     "require_between",
     "require_one_of",
     "require_positive",
     "warn",
 ]
+
+
+#: What takes the model warnings of this thread before they are issued, the innermost last.
+_listeners: ContextVar[tuple[Callable[[ModelWarning], bool], ...]] = ContextVar(
+    "listeners", default=()
+)
 
 
 @dataclass(frozen=True)
@@ -191,7 +201,41 @@ def warn(code: str, message: str, *, stacklevel: int = 2) -> None:
     stacklevel : int
         Frames to skip, as in :func:`warnings.warn`.
     """
-    warnings.warn(ModelWarning(code, message), stacklevel=stacklevel + 1)
+    warning = ModelWarning(code, message)
+    if not any(takes(warning) for takes in reversed(_listeners.get())):
+        warnings.warn(warning, stacklevel=stacklevel + 1)
+
+
+@contextmanager
+def _listening(takes: Callable[[ModelWarning], bool]) -> Iterator[None]:
+    token = _listeners.set((*_listeners.get(), takes))
+    try:
+        yield
+    finally:
+        _listeners.reset(token)
+
+
+@contextmanager
+def collected() -> Iterator[list[ModelWarning]]:
+    """Collect the model warnings issued inside the block, each once, and by this thread alone."""
+    found: dict[str, ModelWarning] = {}
+    told: list[ModelWarning] = []
+
+    def keep(warning: ModelWarning) -> bool:
+        if str(warning) not in found:
+            found[str(warning)] = warning
+            told.append(warning)
+        return True
+
+    with _listening(keep):
+        yield told
+
+
+@contextmanager
+def quiet(*codes: str) -> Iterator[None]:
+    """Drop the model warnings of these codes, or all, that are issued inside the block."""
+    with _listening(lambda warning: not codes or warning.code in codes):
+        yield
 
 
 def _check(

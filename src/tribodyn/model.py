@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, partial
 from importlib.metadata import entry_points
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tribodyn.nomenclature import Quantity
 
 T = TypeVar("T")
-Names = Callable[[], Iterable[str]]
+Names = Callable[[], list[str]]
 
 #: The default of an option that must be given.
 REQUIRED: Any = ...

@@ -26,6 +26,8 @@ class Engine(Model):
         One line for whoever chooses an engine.
     papers : tuple of str
         Keys of the bibliography of the package.
+    source : str
+        Where the engine comes from, of those without such a key.
 
     Examples
     --------
@@ -38,6 +40,7 @@ class Engine(Model):
     options: Mapping[str, Any] = field(default_factory=dict)
     meaning: str = ""
     papers: tuple[str, ...] = ()
+    source: str = ""
 
     def __post_init__(self) -> None:
         """Keep options and defaults apart."""

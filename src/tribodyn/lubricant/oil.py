@@ -21,7 +21,9 @@ from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: Pressure laws by name, each ``law(pressure, dynamic_viscosity, coefficient)``.
-VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry("viscosity law")
+VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry(
+    "viscosity law", "tribodyn.viscosity"
+)
 VISCOSITY_LAWS.register("roelands")(roelands_viscosity)
 VISCOSITY_LAWS.register("barus")(barus_viscosity)
 

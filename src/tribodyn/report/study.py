@@ -15,7 +15,7 @@ from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.reporting import report_of
 from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.pipeline.save import write_file
-from tribodyn.study.pipeline.summary_names import SUMMARY
+from tribodyn.study.pipeline.summary import SUMMARY
 
 #: Figures of the summary that the report of a sweep draws and tabulates, where they occur.
 SWEEP_FIGURES = (

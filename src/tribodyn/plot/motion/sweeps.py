@@ -11,7 +11,7 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.look.labels import axis_label, displayed, readable, rounded
 from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
-from tribodyn.study.pipeline.summary_names import SUMMARY
+from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.units import convert
 
 if TYPE_CHECKING:

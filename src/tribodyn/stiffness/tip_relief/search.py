@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import Argument, InputError, ModelWarning, Problem
+from tribodyn.errors import Argument, InputError, Problem, quiet
 from tribodyn.gear import (
     FlankModification,
     Material,
@@ -165,9 +164,8 @@ def with_tip_relief(
             tip_relief_shape=shape if amount > 0.0 else "linear",
         )
         changed[name] = _shaped(gear, relief)
-    with warnings.catch_warnings():
+    with quiet():
         # What is to be said of the teeth was said when the pair was made.
-        warnings.simplefilter("ignore", ModelWarning)
         return replace(pair, **changed)
 
 
@@ -176,8 +174,7 @@ def _named(gears: str) -> tuple[str, ...]:
 
 
 def _shaped(gear: SpurGear, modification: FlankModification) -> SpurGear:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)
+    with quiet():
         return replace(gear, modification=modification)
 
 

@@ -14,7 +14,7 @@ from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.given import Given, Source, plain
 from tribodyn.study.case.provenance import effective_values, provenance
-from tribodyn.study.case.section import Section, Table, read_fields
+from tribodyn.study.case.section import Section, Table, choices, flat, table
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -33,7 +33,7 @@ from tribodyn.study.case.stated import (
     tables,
     without_records,
 )
-from tribodyn.study.case.values import Plain
+from tribodyn.study.case.values import Plain, read_fields
 
 if TYPE_CHECKING:
     from tribodyn.gear import Material, SpurPair
@@ -75,15 +75,15 @@ class Case(Section, whole=True):
     origin: str | None = text(
         None, meaning="the document that the values come from", example='"Drawing 4711"'
     )
-    gears: Gears = Table(Gears, "the gear pair")
-    material: MaterialData = Table(MaterialData, "material of the gears", "empty")
-    lubricant: LubricantData | None = Table(LubricantData, "the oil", "none")
-    operation: Operation = Table(Operation, "speed and load")
-    film: Film = Table(Film, "oil film", "empty")
-    stiffness: Stiffness = Table(Stiffness, "stiffness of the teeth", "empty")
-    friction: Friction = Table(Friction, "friction of the teeth", "empty")
-    dynamics: Dynamics = Table(Dynamics, "the vibrating structure", "empty")
-    solver: Solver = Table(Solver, "how the motion is computed", "empty")
+    gears: Gears = table(Gears, "the gear pair")
+    material: MaterialData = table(MaterialData, "material of the gears", "empty")
+    lubricant: LubricantData | None = table(LubricantData, "the oil", "none")
+    operation: Operation = table(Operation, "speed and load")
+    film: Film = table(Film, "oil film", "empty")
+    stiffness: Stiffness = table(Stiffness, "stiffness of the teeth", "empty")
+    friction: Friction = table(Friction, "friction of the teeth", "empty")
+    dynamics: Dynamics = table(Dynamics, "the vibrating structure", "empty")
+    solver: Solver = table(Solver, "how the motion is computed", "empty")
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         given = Given(data if source is not None else plain(data))
@@ -91,10 +91,11 @@ class Case(Section, whole=True):
         stated, found = read_stated(given)
         body = without_records(given.data)
         marks = body.pop("assumed", {})
-        super().__init__(**read_fields(type(self), body, "", found))
+        chosen = choices(given)
+        vars(self).update(read_fields(type(self), body, "", chosen, found))
         found += reason_faults(marks)
         readable = not any(key.startswith("gears") for key, _ in found)
-        found += cross_problems(given, {key for key, _ in found})
+        found += cross_problems(given, chosen, {key for key, _ in found})
         if not found:
             found = derive.case_problems(self)
         elif readable and self.gears is not None:
@@ -241,7 +242,7 @@ class Case(Section, whole=True):
         tuple of (str, object)
             Dotted key and value in SI; None where nothing was given and a default is derived.
         """
-        return _values(self, "")
+        return iter(flat(self).items())
 
     def to_toml(self) -> str:
         """Write the complete commented case file; it reads back to an equal case.
@@ -272,13 +273,3 @@ class Case(Section, whole=True):
         return case_table(self)
 
     __str__ = __repr__
-
-
-def _values(section: Section, prefix: str) -> Iterator[tuple[str, Any]]:
-    held = vars(section)
-    for name in type(section).known().keys:
-        value = held.get(name)
-        if isinstance(value, Section):
-            yield from _values(value, f"{prefix}{name}.")
-        else:
-            yield f"{prefix}{name}", value

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
 from tribodyn.study.case.given import Given
-from tribodyn.study.case.section import Section, section_at
+from tribodyn.study.case.section import Choice, Known, choices, section_at
+
+if TYPE_CHECKING:
+    from tribodyn.ehl import FilmModel
+    from tribodyn.friction import FrictionLaw
 
 #: The reason that marks a written value as the default of the library that wrote it.
 DEFAULT_MARK = "default"
@@ -81,12 +85,11 @@ def _lubricant(given: Given) -> Found:
             yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
 
 
-def _needs(given: Given) -> Found:
+def _needs(given: Given, law: FrictionLaw | None) -> Found:
     """What the friction law and the film model need to know."""
-    law = given.get("friction.law", "none")
     film = given.get("film.model", "none")
-    tribological = _needs_oil(law)
-    users = [f'law = "{law}"'] if tribological else []
+    tribological = law is not None and law.needs_oil
+    users = [f'law = "{law.name}"'] if law is not None and law.needs_oil else []
     users += [f'film model = "{film}"'] if film != "none" else []
     if users and "lubricant" not in given:
         why = f"{users[0]} needs an oil"
@@ -95,7 +98,7 @@ def _needs(given: Given) -> Found:
     rough = ("composite_roughness", "pinion.roughness_rms", "wheel.roughness_rms")
     if (
         tribological
-        and not _shears_film(law)
+        and not (law is not None and law.needs_film)
         and not any(f"gears.{name}" in given for name in rough)
     ):
         why, remedy = f"{users[0]} needs it", 'Add composite_roughness = "0.5 um" to [gears]'
@@ -103,29 +106,12 @@ def _needs(given: Given) -> Found:
         yield "gears.composite_roughness", Problem(what, "", why, remedy)
 
 
-def _needs_oil(law: Any) -> bool:
-    """Whether a friction law asks for the viscosity of an oil."""
-    from tribodyn.friction import LAWS
-
-    return law in LAWS and LAWS[law].needs_oil
-
-
-def _shears_film(law: Any) -> bool:
-    """Whether a friction law works on the solved film, and knows no roughness."""
-    from tribodyn.friction import LAWS
-
-    return law in LAWS and LAWS[law].needs_film
-
-
-def _film_of_friction(given: Given) -> Found:
+def _film_of_friction(given: Given, law: FrictionLaw | None, film: FilmModel | None) -> Found:
     """What a law that shears the solved film needs besides an oil."""
-    from tribodyn.ehl import FILM_MODELS
-
-    law, film = given.get("friction.law", "none"), given.get("film.model", "none")
-    if not _shears_film(law) or film not in FILM_MODELS:
+    if law is None or film is None or not law.needs_film:
         return
-    if not FILM_MODELS[film].method:
-        what = f'law = "{law}" and film model = "{film}"'
+    if not film.method:
+        what = f'law = "{law.name}" and film model = "{film.name}"'
         why = "That law shears the solved film, and this model gives no pressure"
         yield "friction.law", Problem(what, "", why, 'Set model = "newton" in [film]')
     heated = [key for key in _HEAT if given.get(f"friction.{key}")]
@@ -177,21 +163,21 @@ def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, 
     return {
         key
         for selector, name in choices.items()
-        for key in given.below(selector.partition(".")[0])
+        for key in _below(given, selector.partition(".")[0])
         if key not in changes and key != selector and not _takes(given, selector, name, key)
     }
 
 
-def _section(name: str) -> type[Section]:
-    section = section_at((name,))
-    assert section is not None
-    return section
-
-
 def case_options(section: str, name: str) -> Mapping[str, Option]:
     """Options of a model by name that are keys of the case file."""
-    model = _section(section).model_named(name)
+    table = section_at((section,))
+    model = table.model_named(name) if table else None
     return model.case_options if model else {}
+
+
+def _below(given: Given, table: str) -> list[str]:
+    """Dotted keys of all values of a table."""
+    return [key for key in given.typed if key.startswith(f"{table}.")]
 
 
 def _takes(given: Given, selector: str, name: str, key: str) -> bool:
@@ -200,20 +186,18 @@ def _takes(given: Given, selector: str, name: str, key: str) -> bool:
         return given.get(key) in _film_stiffnesses(name)
     if selector == "solver.method":
         return name != "steady" or option != "cycles"
-    return option not in _section(section).known().owners or option in case_options(section, name)
+    known = choices({selector: name})[section].known
+    return option not in known.owners or option in case_options(section, name)
 
 
-def _model_problems(given: Given, section: str, faulty: set[str]) -> Found:
+def _model_problems(given: Given, section: str, choice: Choice, faulty: set[str]) -> Found:
     """Check the options of the model that a table names."""
-    kind = _section(section)
-    selector, known = kind.selector, kind.known()
-    named = given.get(f"{section}.{selector}", kind.fields[selector].default)
-    model = known.models.get(named) if isinstance(named, str) else None
+    selector, model = choice.selector, choice.model
     if model is None or f"{section}.{selector}" in faulty:
         return
-    yield from _foreign(given, section, selector, model, known.owners)
+    yield from _foreign(given, section, selector, model, choice.known)
     if section == "film":
-        yield from _film(given, model.name, faulty)
+        yield from _film(given, cast("FilmModel", model), faulty)
     if section == "stiffness" and model.name in _STIFFNESS_CHECKS:
         yield from _STIFFNESS_CHECKS[model.name](given)
     for name, option in model.declared.items():
@@ -223,7 +207,7 @@ def _model_problems(given: Given, section: str, faulty: set[str]) -> Found:
 
 
 def _lacking(section: str, selector: str, model: Model, name: str, option: Option) -> Problem:
-    if section == "dynamics":
+    if name == "bearing_stiffness":
         what, why = f"{name} is missing", f'model = "{model.name}" supports each gear'
         remedy = f'Add {name} = {option.example} to [dynamics], or choose "torsional"'
         return Problem(what, "", why, remedy)
@@ -232,18 +216,16 @@ def _lacking(section: str, selector: str, model: Model, name: str, option: Optio
     return Problem(what, "", "It has no default", remedy)
 
 
-def _foreign(
-    given: Given, section: str, selector: str, model: Model, owners: Mapping[str, list[str]]
-) -> Found:
+def _foreign(given: Given, section: str, selector: str, model: Model, all_known: Known) -> Found:
     """Options given that the chosen model does not have."""
-    known = model.case_options
+    known, owners = model.case_options, all_known.owners
     listing = f"Its options are: {', '.join(known)}" if known else "It has no options"
-    for key in given.below(section):
+    for key in _below(given, section):
         option = key.rpartition(".")[2]
         if option not in known and option in owners:
             what = f'{given.show(key)} does not belong to {selector} = "{model.name}"'
             first = owners[option][0]
-            why = case_options(section, first)[option].absent
+            why = all_known.models[first].case_options[option].absent
             other = f'"{first}"' if why else f"another {selector}"
             yield key, Problem(what, "", why or listing, f"Remove it, or choose {other}")
 
@@ -254,15 +236,15 @@ def _film_stiffnesses(name: str) -> tuple[str, ...]:
     return FILM_MODELS[name].stiffness_kinds
 
 
-def _film(given: Given, name: str, faulty: set[str]) -> Found:
+def _film(given: Given, model: FilmModel, faulty: set[str]) -> Found:
     """Check the options of the film model."""
-    key, kinds = "film.stiffness", _film_stiffnesses(name)
-    if given.get(key, "none") not in kinds:
-        why = f"It has: {', '.join(kinds)}"
+    key, name = "film.stiffness", model.name
+    if key in given and given[key] not in model.stiffness_kinds:
+        why = f"It has: {', '.join(model.stiffness_kinds)}"
         remedy = 'Choose one of these, or model = "newton", which has all'
         what = f'{given.show(key)} does not belong to model = "{name}"'
         yield key, Problem(what, "", why, remedy)
-    if "nodes" in case_options("film", name) and not faulty & {"film.nodes", "film.domain"}:
+    if "nodes" in model.case_options and not faulty & {"film.nodes", "film.domain"}:
         yield from _grid(given)
 
 
@@ -285,7 +267,7 @@ def _grid(given: Given) -> Found:
         what = f'{given.show(key)} does not belong to inlet = "flooded"'
         why = "A flooded contact has the domain that its film demands"
         yield key, Problem(what, "", why, 'Remove it, or add inlet = "zero"')
-    ends = given.get(key)
+    ends = given[key]
     if len(ends) != 2 or not (ends[0] <= -1.5 and ends[1] >= 1.1):
         why = "It is two numbers in Hertzian half widths: -1.5 or less, and 1.1 or more"
         yield key, Problem(given.show(key), "", why, "Write for example domain = [-2.5, 1.5]")
@@ -339,15 +321,19 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _roughness, _face_width, _size, _lubricant, _needs, _film_of_friction, _dampings,
+    _roughness, _face_width, _size, _lubricant, _dampings,
     _friction_load, _solver,
 )  # fmt: skip
 
 
-def cross_problems(given: Given, faulty: set[str]) -> list[tuple[str, Problem]]:
+def cross_problems(
+    given: Given, chosen: Mapping[str, Choice], faulty: set[str]
+) -> list[tuple[str, Problem]]:
     """Check the keys of a case against each other."""
+    law = cast("FrictionLaw | None", chosen["friction"].model)
+    film = cast("FilmModel | None", chosen["film"].model)
     found = [problem for check in _CHECKS for problem in check(given)]
-    found += _assumed(given, faulty)
-    for section in ("stiffness", "film", "friction", "dynamics", "solver"):
-        found += _model_problems(given, section, faulty)
+    found += [*_needs(given, law), *_film_of_friction(given, law, film), *_assumed(given, faulty)]
+    for section, choice in chosen.items():
+        found += _model_problems(given, section, choice, faulty)
     return [(key, problem) for key, problem in found if key not in faulty]

@@ -8,9 +8,8 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem
+from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem, collected
 from tribodyn.model import Option
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.gears import Gear, Gears, Modification
 from tribodyn.study.case.profile_map_file import read_profile_map
 from tribodyn.study.case.section import Section, Table
@@ -136,6 +135,7 @@ def material(data: MaterialData) -> Material:
     return Material(data.youngs_modulus, data.poissons_ratio, data.density)
 
 
+@lru_cache(maxsize=64)
 def lubricant(data: LubricantData) -> Lubricant:
     """Build the oil, from the library or from its properties."""
     from tribodyn.lubricant import Lubricant, from_library
@@ -213,8 +213,8 @@ def _key_in(case: Case, problem: Problem) -> str:
         section = getattr(case, place.kind, None)
         if not isinstance(section, Section) or not place.model:
             return ""
-        known = place.name in section.known().keys
-        return f"{place.kind}.{place.name if known else section.selector}"
+        option = place.name if place.name in section.known().keys else section.selector
+        return f"{place.kind}.{option}"
     argument = _argument(problem)
     if argument is None:
         return ""

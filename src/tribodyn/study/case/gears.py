@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
-from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.section import Section, table
 
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"
@@ -106,9 +106,9 @@ class Gear(Section):
     roughness_rms: float | None = number(
         None, 0.0, 20e-6, "ground to milled flanks; " + _GUARD, of="roughness_rms"
     )
-    modification: Modification | None = Table(
+    modification: Modification | None = table(
         Modification, "what the loaded flanks have that the involute has not", "none"
-    )  # type: ignore[assignment]
+    )
 
 
 class Gears(Section):
@@ -147,5 +147,5 @@ class Gears(Section):
         argument="tip_radius_coefficient",
     )
     misalignment: float = number(0.0, -0.5e-3, 0.5e-3, _GUARD, of="misalignment")
-    pinion: Gear = Table(Gear, "the smaller gear")  # type: ignore[assignment]
-    wheel: Gear = Table(Gear, "the larger gear")  # type: ignore[assignment]
+    pinion: Gear = table(Gear, "the smaller gear")
+    wheel: Gear = table(Gear, "the larger gear")

@@ -58,10 +58,6 @@ class Given(dict[str, Any]):
         """Write ``key = value`` as the user typed it."""
         return f"{key.rpartition('.')[2]} = {written(self.get(key))}"
 
-    def below(self, table: str) -> list[str]:
-        """Dotted keys of all values of a table."""
-        return [key for key in self.typed if key.startswith(f"{table}.")]
-
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Return a copy with dotted keys set."""
         result: dict[str, Any] = _copy(self.data)

@@ -6,16 +6,12 @@ model beside its own. An option of another model is told to belong there, any ot
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.model import REQUIRED, Model, Models, Option
-from tribodyn.study.case.values import FaultError, Plain, read_value, written
-
-Found = list[tuple[str, Problem]]
+from tribodyn.model import Model, Models, Option
 
 
 @dataclass(frozen=True)
@@ -27,6 +23,11 @@ class Table:
     default: str = "required"  #: "required", "empty" for all defaults, or "none"
 
 
+def table(kind: type[Section], meaning: str, default: str = "required") -> Any:
+    """Declare a table inside a table; arguments as those of :class:`Table`."""
+    return Table(kind, meaning, default)
+
+
 class Known(NamedTuple):
     """Models that a table may name, all keys that it can have, and the models of each option."""
 
@@ -36,7 +37,8 @@ class Known(NamedTuple):
 
 
 def _known(fields: Mapping[str, Option | Table], models: Mapping[str, Any]) -> Known:
-    keys, owners = dict(fields), {}
+    keys = dict(fields)
+    owners: dict[str, list[str]] = {}
     for name, model in models.items():
         for key, option in model.case_options.items():
             keys.setdefault(key, option)
@@ -62,9 +64,6 @@ class Section:
         cls.selector = chosen[0] if chosen else ""
         for name in own:
             delattr(cls, name)
-
-    def __init__(self, **values: Any) -> None:
-        self.__dict__.update(values)
 
     def __getattr__(self, name: str) -> Any:
         """None for an option that the chosen model does not have."""
@@ -106,11 +105,10 @@ class Section:
         if not isinstance(names, Models):
             return Known({}, cls.fields, {})
         registry = names.registry()
-        version, known = vars(cls).get("_known", (None, None))
-        if version != registry.version:
-            known = _known(cls.fields, registry.all())
-            cls._known = (registry.version, known)
-        return known  # type: ignore[return-value]
+        if vars(cls).get("_known", (None,))[0] != registry.version:
+            models = registry.all()
+            cls._known = (registry.version, _known(cls.fields, models))
+        return cls._known[1]
 
     @classmethod
     def model_named(cls, name: Any) -> Model | None:
@@ -133,98 +131,6 @@ class Section:
         """Walk over all keys that are no tables, in order."""
         yield from ((k, o) for k, o in cls.known().keys.items() if isinstance(o, Option))
 
-    @classmethod
-    def read(cls, data: Mapping[str, Any], path: str, found: Found) -> Self:
-        """Read a table; what is wrong with its keys is added to ``found``."""
-        values = read_fields(cls, data, path, found)
-        return cls(**values)
-
-
-def read_fields(cls: type[Section], data: Mapping[str, Any], path: str, found: Found) -> Any:
-    """Values of the keys of a table, in the order of their declaration."""
-    values: dict[str, Any] = {}
-    options = _options(cls, data)
-    for name, field in options.items():
-        key = f"{path}.{name}" if path else name
-        if isinstance(field, Table):
-            values[name] = _read_table(field, data, name, key, found)
-        elif name in data:
-            try:
-                values[name] = read_value(field, name, data[name])
-            except FaultError as fault:
-                found.append((key, fault.problem))
-        elif name in cls.fields:
-            values[name] = cls.fields[name].default
-            if values[name] is REQUIRED:
-                values[name] = None
-                found.append((key, _missing(field, name, path)))
-        else:
-            values[name] = None
-    if not options.keys() >= data.keys():
-        found += _foreign(cls, data, options, path)
-    return values
-
-
-def _options(cls: type[Section], data: Mapping[str, Any]) -> dict[str, Option | Table]:
-    """Keys of a table under the model that it names, whose options go before its own."""
-    if not cls.selector:
-        return cls.fields
-    named = data.get(cls.selector, cls.fields[cls.selector].default)
-    model = cls.model_named(named.value if isinstance(named, Plain) else named)
-    return cls.fields if model is None else {**cls.fields, **model.case_options}
-
-
-def _read_table(
-    table: Table, data: Mapping[str, Any], name: str, key: str, found: Found
-) -> Section | None:
-    if name not in data:
-        if table.default == "none":
-            return None
-        if table.default == "required":
-            found.append((key, _missing_table(table.kind, key)))
-            return None
-    inner = data.get(name, {})
-    if isinstance(inner, Mapping):
-        return table.kind.read(inner, key, found)
-    found.append((key, Problem(f"{name} = {written(inner)}", "", f"{name} is a table",
-                               f"Write [{key}]")))  # fmt: skip
-    return None
-
-
-def _foreign(
-    cls: type[Section], data: Mapping[str, Any], options: Mapping[str, Any], path: str
-) -> Iterator[tuple[str, Problem]]:
-    """Faults of keys that are not those of this table under its model."""
-    strange = [name for name in data if name not in options]
-    known = cls.known().keys if strange else {}
-    for name in strange:
-        key, option = (f"{path}.{name}" if path else name), known.get(name)
-        if isinstance(option, Option):
-            # That it belongs to another model is told with the other contradictions.
-            try:
-                read_value(option, name, data[name])
-            except FaultError as fault:
-                yield key, fault.problem
-        else:
-            yield key, unknown(tuple(key.split(".")), data[name])
-
-
-def _missing(option: Option, name: str, path: str) -> Problem:
-    example = option.example or '"..."'
-    place = f" to [{path}]" if path else ""
-    why = f"{option.meaning}: no default exists" if option.meaning else ""
-    return Problem(f"{name} is missing", "", why, f"Add for example {name} = {example}{place}")
-
-
-def _missing_table(kind: type[Section], path: str) -> Problem:
-    needed = [
-        name
-        for name, field in kind.fields.items()
-        if (field.required if isinstance(field, Option) else field.default == "required")
-    ]
-    remedy = f"Add it with {', '.join(needed)}" if needed else "Add it"
-    return Problem(f"the table [{path}] is missing", remedy=remedy)
-
 
 def section_at(path: tuple[str, ...]) -> type[Section] | None:
     """Return the class of the table at a dotted path of a case, or None."""
@@ -237,30 +143,50 @@ def section_at(path: tuple[str, ...]) -> type[Section] | None:
     return section
 
 
-def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:
-    """List the tables that have a key called ``name``."""
-    section = section_at(path)
-    found = []
-    for key, field in section.known().keys.items() if section else ():
-        if isinstance(field, Table):
-            found += _homes(name, (*path, key))
-        elif key == name:
-            found.append(f"[{'.'.join(path)}]")
+class Choice(NamedTuple):
+    """The model that a table of a case names, and what is known of all that it could name."""
+
+    selector: str
+    model: Model | None
+    known: Known
+
+
+def choices(given: Mapping[str, Any]) -> dict[str, Choice]:
+    """Models that the tables name, by table; ``given`` has dotted keys."""
+    found = {}
+    for name, field in Section.whole.fields.items():
+        if isinstance(field, Table) and field.kind.selector:
+            selector, known = field.kind.selector, field.kind.known()
+            named = given.get(f"{name}.{selector}", field.kind.fields[selector].default)
+            model = known.models.get(named) if isinstance(named, str) else None
+            found[name] = Choice(selector, model, known)
     return found
 
 
-def unknown(path: tuple[str, ...], value: Any) -> Problem:
-    """Say that there is no such key, naming the nearest or the table that has it."""
-    *table, name = path
-    section = section_at(tuple(table))
-    known = list(section.known().keys) if section else []
-    known += [] if table else ["assumed"]
-    shown = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
-    place = f"[{'.'.join(table)}]" if table else "the top of the file"
-    why = f"{place} has: {', '.join(known)}"
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-    if near:
-        return Problem(f"{shown}: unknown key", "", why, f'Did you mean "{near[0]}"?')
-    homes = _homes(name)
-    remedy = f"It belongs to {' or '.join(homes)}" if homes else "Remove it"
-    return Problem(f"{shown}: unknown key", "", why, remedy)
+def flat(section: Section, prefix: str = "") -> dict[str, Any]:
+    """All values of a table and the tables in it, by dotted key."""
+    held = vars(section)
+    values: dict[str, Any] = {}
+    for name in section.known().keys:
+        value = held.get(name)
+        if isinstance(value, Section):
+            values |= flat(value, f"{prefix}{name}.")
+        else:
+            values[f"{prefix}{name}"] = value
+    return values
+
+
+def in_force(case: Section) -> dict[str, Any]:
+    """All values by dotted key: an option not given has the default of the model that is named."""
+    values = flat(case)
+    for table, section in vars(case).items():
+        if not (isinstance(section, Section) and section.selector):
+            continue
+        options = section.chosen.options if section.chosen else {}
+        for name in section.known().owners:
+            key = f"{table}.{name}"
+            if name not in options:
+                values[key] = None
+            elif values[key] is None:
+                values[key] = options[name]
+    return values

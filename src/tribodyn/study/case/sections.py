@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.model import REQUIRED, choice, flag, integer, model_choice, number
@@ -46,6 +47,7 @@ def _engines() -> Registry[Any]:
     return ENGINES
 
 
+@cache
 def _lubricants() -> list[str]:
     from tribodyn.lubricant import library
 

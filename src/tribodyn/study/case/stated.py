@@ -134,9 +134,10 @@ def settled(
 ) -> tuple[Stated, set[str]]:
     """What holds of values in force [SI], and the keys whose reason was that of another value."""
     # A reason without a recorded value belongs to the value that it came with.
-    marks = {key: stated.marks.get(key, values.get(key)) for key in case.assumed}
+    reasons = case.assumed
+    marks = {key: stated.marks.get(key, values.get(key)) for key in reasons}
     stale = {key for key, value in marks.items() if not same(value, values.get(key))}
-    said = {key: value for key, value in marks.items() if case.assumed[key] != DEFAULT_MARK}
+    said = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
     kept = {key: value for key, value in marks.items() if key not in stale}
     if stated.base and case.origin in (None, stated.base.get("origin")):
         recorded = {key: value for key, value in said.items() if key in stated.marks}
@@ -144,7 +145,7 @@ def settled(
     base = {
         key: values[key]
         for key in given.typed
-        if key in values and case.assumed.get(key) != DEFAULT_MARK
+        if key in values and reasons.get(key) != DEFAULT_MARK
     }
     # Another origin stands for the values in force, whatever they were before.
     return Stated(kept, base if stated.base else base | said), stale

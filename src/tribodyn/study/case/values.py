@@ -1,19 +1,25 @@
-"""How one value of the case file is checked and becomes SI."""
+"""How tables and values of the case file are read: checked, and in SI."""
 
 from __future__ import annotations
 
+import difflib
 import math
 import numbers as numeric
 import operator
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from tribodyn import units
 from tribodyn.errors import Problem
-from tribodyn.model import Option
+from tribodyn.model import REQUIRED, Option
+from tribodyn.study.case.section import Choice, Section, Table, section_at
+
+Chosen = Mapping[str, Choice]
+Found = list[tuple[str, Problem]]
+Kind = TypeVar("Kind", bound=Section)
 
 #: A number with a comma for its decimal point.
 _COMMA = re.compile(r"\s*[+-]?\d+,\d+(?!\d*,)")
@@ -130,8 +136,6 @@ def _whole(spec: Option, name: str, value: Any) -> int:
 
 
 def _name(spec: Option, name: str, value: Any) -> str:
-    import difflib
-
     known = spec.names() if spec.names else []
     if isinstance(value, str) and value in known:
         return value
@@ -177,3 +181,125 @@ def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ..
         result.append(_real(spec, label, item, as_text))
         _in_range(spec, label, result[-1], item)
     return tuple(result)
+
+
+def read_table(
+    cls: type[Kind], data: Mapping[str, Any], path: str, chosen: Chosen, found: Found
+) -> Kind:
+    """Read a table under the models that are named; what is wrong with it is added to ``found``."""
+    section = cls.__new__(cls)
+    vars(section).update(read_fields(cls, data, path, chosen, found))
+    return section
+
+
+def read_fields(
+    cls: type[Section], data: Mapping[str, Any], path: str, chosen: Chosen, found: Found
+) -> dict[str, Any]:
+    """Values of the keys of a table, in the order of their declaration."""
+    values: dict[str, Any] = {}
+    model = chosen[path].model if path in chosen else None
+    # The options of a model go before keys of the same name.
+    options = {**cls.fields, **model.case_options} if model else cls.fields
+    for name, field in options.items():
+        key = f"{path}.{name}" if path else name
+        if isinstance(field, Table):
+            values[name] = _inner(field, data, key, chosen, found)
+        elif model and name == cls.selector:
+            values[name] = model.name
+        elif name in data:
+            try:
+                values[name] = read_value(field, name, data[name])
+            except FaultError as fault:
+                found.append((key, fault.problem))
+        elif name in cls.fields:
+            values[name] = cls.fields[name].default
+            if values[name] is REQUIRED:
+                values[name] = None
+                found.append((key, _missing(field, name, path)))
+        else:
+            values[name] = None
+    if not options.keys() >= data.keys():
+        found += _foreign(cls, data, options, path)
+    return values
+
+
+def _inner(
+    table: Table, data: Mapping[str, Any], key: str, chosen: Chosen, found: Found
+) -> Section | None:
+    name = key.rpartition(".")[2]
+    if name not in data:
+        if table.default == "none":
+            return None
+        if table.default == "required":
+            found.append((key, _missing_table(table.kind, key)))
+            return None
+    inner = data.get(name, {})
+    if isinstance(inner, Mapping):
+        return read_table(table.kind, inner, key, chosen, found)
+    what = f"{name} = {written(inner)}"
+    found.append((key, Problem(what, "", f"{name} is a table", f"Write [{key}]")))
+    return None
+
+
+def _foreign(
+    cls: type[Section], data: Mapping[str, Any], options: Mapping[str, Any], path: str
+) -> Iterator[tuple[str, Problem]]:
+    """Faults of keys that are not those of this table under its model."""
+    strange = [name for name in data if name not in options]
+    known = cls.known().keys if strange else {}
+    for name in strange:
+        key, option = (f"{path}.{name}" if path else name), known.get(name)
+        if isinstance(option, Option):
+            # That it belongs to another model is told with the other contradictions.
+            try:
+                read_value(option, name, data[name])
+            except FaultError as fault:
+                yield key, fault.problem
+        else:
+            yield key, unknown(tuple(key.split(".")), data[name])
+
+
+def _missing(option: Option, name: str, path: str) -> Problem:
+    example = option.example or '"..."'
+    place = f" to [{path}]" if path else ""
+    why = f"{option.meaning}: no default exists" if option.meaning else ""
+    return Problem(f"{name} is missing", "", why, f"Add for example {name} = {example}{place}")
+
+
+def _missing_table(kind: type[Section], path: str) -> Problem:
+    needed = [
+        name
+        for name, field in kind.fields.items()
+        if (field.required if isinstance(field, Option) else field.default == "required")
+    ]
+    remedy = f"Add it with {', '.join(needed)}" if needed else "Add it"
+    return Problem(f"the table [{path}] is missing", remedy=remedy)
+
+
+def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:
+    """List the tables that have a key called ``name``."""
+    section = section_at(path)
+    found = []
+    for key, field in section.known().keys.items() if section else ():
+        if isinstance(field, Table):
+            found += _homes(name, (*path, key))
+        elif key == name:
+            found.append(f"[{'.'.join(path)}]")
+    return found
+
+
+def unknown(path: tuple[str, ...], value: Any) -> Problem:
+    """Say that there is no such key, naming the nearest or the table that has it."""
+    *table, name = path
+    section = section_at(tuple(table))
+    known = list(section.known().keys) if section else []
+    known += [] if table else ["assumed"]
+    shown = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
+    place = f"[{'.'.join(table)}]" if table else "the top of the file"
+    why = f"{place} has: {', '.join(known)}"
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    if near:
+        return Problem(f"{shown}: unknown key", "", why, f'Did you mean "{near[0]}"?')
+    homes = _homes(name)
+    remedy = f"It belongs to {' or '.join(homes)}" if homes else "Remove it"
+    return Problem(f"{shown}: unknown key", "", why, remedy)

@@ -39,7 +39,7 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
     for table in ("stiffness", "friction", "film", "dynamics", "solver"):
         model = getattr(case, table).chosen
         keys += model.papers
-        if not model.papers and getattr(model, "source", "") and not _is_built_in(model):
+        if not model.papers and model.source and not _is_built_in(model):
             title = f"{model.name}: {model.source}"
             unlisted[model.name] = {"type": "misc", "title": title}
     keys += _METHODS.get(case.solver.method, ())
@@ -111,7 +111,7 @@ def sources_of(section: str, name: str) -> list[str]:
     kind = section_at((section,))
     model = kind.model_named(name) if kind else None
     keys = model.papers if model else _METHODS.get(name, ())
-    unlisted = [model.source] if model and not keys and getattr(model, "source", "") else []
+    unlisted = [model.source] if model and not keys and model.source else []
     return [*(_text(_library()[key]) for key in keys), *unlisted]
 
 

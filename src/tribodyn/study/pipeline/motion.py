@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, warn
+import numpy as np
+
+from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
 from tribodyn.progress import Progress
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.sections import Solver
@@ -16,6 +18,12 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
+#: Engine whose orbits are found directly.
+_ORBITS = "runge-kutta-4"
+#: Change of the compression from one period to the next, over its size, that counts as none.
+_REPEATS = 1e-8
+#: Periods marched between two looks at that change, and mesh cycles marched at most.
+_AT_ONCE, _MOST_CYCLES = 32, 4096
 #: Mesh cycles after which a steady motion may repeat.
 _PERIODS = (1, 2, 3, 4)
 
@@ -25,6 +33,8 @@ def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progr
     steps = steps_of(case, system, mesh_frequency)
     if case.solver.method == "steady":
         response = _steady(system, mesh_frequency, steps, progress)
+        if case.solver.engine != _ORBITS:
+            response = _marched_orbit(case, system, response, steps, progress)
     else:
         response = _transient(case, system, mesh_frequency, steps, progress)
     _warn_of_tension(case, response)
@@ -47,8 +57,17 @@ def _transient(
     state = static_start(compile_for(system, mesh_frequency, steps))
     start = (state[: system.size], state[system.size :])
     return simulate(
-        system, mesh_frequency, cycles, start, steps=steps, extra_force=extra, progress=progress
-    )
+        system, mesh_frequency, cycles, start, steps=steps, extra_force=extra, progress=progress,
+        **engine_arguments(case),
+    )  # fmt: skip
+
+
+def engine_arguments(case: Case) -> dict[str, Any]:
+    """The engine of a case and its options, as :func:`tribodyn.dynamics.simulate` has them."""
+    from tribodyn.dynamics import ENGINES
+
+    engine, values = ENGINES[case.solver.engine], effective(case)
+    return engine.arguments({name: values[f"solver.{name}"] for name in engine.options})
 
 
 def _steady(system: System, mesh_frequency: float, steps: int, progress: Progress) -> Response:
@@ -66,6 +85,56 @@ def _steady(system: System, mesh_frequency: float, steps: int, progress: Progres
                 warn("subharmonic", f"the motion repeats only after {periods} mesh cycles")
             return orbit
     raise ComputationError(_lost(orbit))
+
+
+def _marched_orbit(
+    case: Case, system: System, orbit: Response, steps: int, progress: Progress
+) -> Response:
+    """March on from an orbit with the engine of the case until its own motion repeats."""
+    from tribodyn.dynamics import simulate
+
+    frequency, cycles = orbit.mesh_frequency, orbit.periods
+    extra = orbit.extra_force if orbit.extra_force.size else None
+    state, change, marched = (orbit.position[0], orbit.velocity[0]), np.inf, 0
+    while marched < _MOST_CYCLES:
+        motion = simulate(
+            system, frequency, _AT_ONCE * cycles, state, steps=steps, extra_force=extra,
+            progress=progress, **engine_arguments(case),
+        )  # fmt: skip
+        marched += _AT_ONCE * cycles
+        last, before = motion.deflection[-cycles * steps :], motion.deflection[: -cycles * steps]
+        size = float(np.abs(last).max())
+        change = float(np.abs(last - before[-cycles * steps :]).max()) / size
+        state = (motion.position[-cycles * steps], motion.velocity[-cycles * steps])
+        if change < _REPEATS:
+            break
+    else:
+        raise ComputationError(_restless(case, marched, change))
+    last_cycles = simulate(
+        system, frequency, cycles, state, steps=steps, extra_force=extra, **engine_arguments(case)
+    )
+    return replace(
+        last_cycles,
+        error=change,
+        converged=True,
+        floquet_multipliers=orbit.floquet_multipliers,
+        cycles_used=orbit.cycles_used + marched,
+        search_cycles=orbit.search_cycles,
+        period=orbit.period,
+        extra_force=orbit.extra_force,
+    )
+
+
+def _restless(case: Case, cycles: int, change: float) -> Problem:
+    engine = case.solver.engine
+    return Problem(
+        f'the motion still changes by {change:.2e} of its size after {cycles} mesh cycles of "'
+        f'{engine}"',
+        "solver.engine",
+        "This engine is marched from the orbit of Runge and Kutta until its own motion repeats",
+        f'Take the orbit itself with engine = "{_ORBITS}", add damping, or choose method = '
+        '"transient"',
+    )
 
 
 def _pass_on(found: list[ModelWarning]) -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
-    from tribodyn.study.pipeline.damping import Damping
+    from tribodyn.study.pipeline.assembly import Damping
 
 
 _PLOT = "plot_"
@@ -110,7 +110,7 @@ class Result(Record):
         -------
         LoadedContact
         """
-        from tribodyn.study.pipeline.loaded_teeth import loaded_contact
+        from tribodyn.study.pipeline.tooth_contact import loaded_contact
 
         return loaded_contact(self.case)
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING
 
+from tribodyn.errors import collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import placed
-from tribodyn.study.pipeline.assembly import system_of
+from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
     friction_cautions,
@@ -16,7 +16,6 @@ from tribodyn.study.pipeline.cautions import (
     motion_cautions,
     teeth_cautions,
 )
-from tribodyn.study.pipeline.damping import damping_of
 from tribodyn.study.pipeline.motion import motion_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
@@ -59,6 +58,14 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> result = run(case)  # doctest: +SKIP
     """
+    result = computed(case, progress)
+    for warning in result.warnings:
+        warnings.warn(warning, stacklevel=stacklevel)
+    return result
+
+
+def computed(case: Case, progress: Progress = SILENT) -> Result:
+    """Compute a case; what the models said is kept in the result alone."""
     with placed(case), collected() as found:
         progress.start("tooth contact")
         mesh = mesh_of(case, progress)
@@ -77,6 +84,4 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     )  # fmt: skip
     everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
     told = tuple({str(warning): warning for warning in everything}.values())
-    for warning in told:
-        warnings.warn(warning, stacklevel=stacklevel)
     return Result(case, mesh, system, response, damping, told, friction, compared)

@@ -1,22 +1,30 @@
-"""The values that a study varies: keys of a case or its operating points, in SI."""
+"""What a study varies, and one loop over its cases: each is built or computed once."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+import os
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.interrupt import in_threads
+from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import section_at
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.pipeline.assembly import whole_system
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 if TYPE_CHECKING:
+    from tribodyn.dynamics import System
+    from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
 
@@ -156,7 +164,7 @@ def operation_values(name: str, given: Any, case: Case) -> list[float]:
     if given is None:
         return [getattr(case.operation, name)]
     several = isinstance(given, Iterable) and not isinstance(given, str)
-    spec = Operation.fields[name]
+    spec = dict(Operation.specs())[name]
     try:
         return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]
     except FaultError as fault:
@@ -177,3 +185,53 @@ def pinion_speeds(case: Case, given: Any) -> list[float]:
 def _turns(case: Case) -> float:
     """Turns of the pinion for one of the gear that speed and torque refer to."""
     return case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
+
+
+Value = TypeVar("Value")
+
+
+class Member(NamedTuple):
+    """One case of a study with its tooth contact and its structure."""
+
+    case: Case
+    mesh: MeshTable
+    system: System
+
+
+def built(case: Case) -> Member:
+    """Tooth contact and structure of a case."""
+    mesh = mesh_of(case)
+    return Member(case, mesh, whole_system(case, mesh))
+
+
+def varied(case: Case, changes: Sequence[Mapping[str, Any]], progress: Progress) -> list[Member]:
+    """Tooth contact and structure of a case under each of some changes, in their order."""
+    members: dict[int, Member] = {}
+    progress.start("tooth contact", len(changes))
+    over_cases(lambda change: built(case.replace(change)), changes, members, progress)
+    progress.finish()
+    return [members[index] for index in range(len(changes))]
+
+
+def over_cases(
+    compute: Callable[[Any], Value],
+    members: Sequence[Any],
+    done: dict[int, Value],
+    progress: Progress = SILENT,
+) -> None:
+    """Compute members in threads; ``done`` holds what is finished by index, interrupted or not."""
+    lock = threading.Lock()
+
+    def one(index: int) -> None:
+        value = compute(members[index])
+        with lock:
+            done[index] = value
+            progress.advance()
+
+    in_threads(one, range(len(members)), os.cpu_count() or 1)
+
+
+def finished(done: Mapping[int, Value]) -> list[Value]:
+    """What is finished before the first member that is not."""
+    count = next(index for index in range(len(done) + 1) if index not in done)
+    return [done[index] for index in range(count)]

@@ -6,13 +6,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, Problem, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.collect import collected
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import effective
-from tribodyn.study.pipeline.assembly import whole_system
-from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.study.studies.grid import varied
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, System
@@ -104,17 +102,9 @@ def speed_systems(
     case: Case, speeds: Any, progress: Progress = SILENT
 ) -> tuple[dict[float, System], float]:
     """Structures of a case at some speeds, by mesh frequency."""
-    systems: dict[float, System] = {}
-    per_speed = 1.0
-    progress.start("tooth contact", len(speeds))
-    for speed in speeds:
-        changed = case.replace({_SPEED: float(speed)})
-        mesh = mesh_of(changed)
-        systems[mesh.mesh_frequency] = whole_system(changed, mesh)
-        per_speed = mesh.mesh_frequency / float(speed)
-        progress.advance()
-    progress.finish()
-    return systems, per_speed
+    members = varied(case, [{_SPEED: float(speed)} for speed in speeds], progress)
+    systems = {member.mesh.mesh_frequency: member.system for member in members}
+    return systems, members[-1].mesh.mesh_frequency / float(speeds[-1])
 
 
 def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
@@ -154,11 +144,14 @@ def _supports(system: System) -> dict[str, Any]:
 
 def _rotation(case: Case, system: System, per_speed: float) -> Any:
     """Angles of the coordinates per angle of the shaft whose speed is given."""
+    from tribodyn.dynamics import STRUCTURES
+
     pinion = per_speed * 2.0 * np.pi / case.gear_pair.pinion.teeth
     wheel = pinion / case.gear_pair.ratio
-    # In the rig with twelve coordinates the wheel sits on shaft 1 and the pinion on shaft 2.
-    bodies = {"pinion": pinion, "shaft2": pinion, "wheel": wheel, "shaft1": wheel}
-    turns = {f"{body}_theta": angle for body, angle in bodies.items()}
+    gears = {"pinion": pinion, "wheel": wheel}
+    turns = {f"{gear}_theta": angle for gear, angle in gears.items()}
+    turns_with = STRUCTURES[case.dynamics.model].turns_with
+    turns |= {name: gears[gear] for name, gear in turns_with.items()}
     turning = [name for name in system.names if name.endswith("theta")]
     if any(name not in turns for name in turning):
         return None

@@ -12,8 +12,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.pipeline.loaded_teeth import loaded_settings
-from tribodyn.study.pipeline.tooth_contact import model_settings
+from tribodyn.study.pipeline.tooth_contact import loaded_settings, model_settings
 from tribodyn.study.studies.grid import pinion_speeds, pinion_torques
 
 if TYPE_CHECKING:
@@ -129,7 +128,7 @@ def _lengths(name: str, given: Any) -> tuple[float, float] | None:
     """Read the two ends of a range of lengths."""
     if given is None:
         return None
-    spec = Modification.fields["tip_relief" if name == "amount" else "tip_relief_length"]
+    spec = dict(Modification.specs())["tip_relief" if name == "amount" else "tip_relief_length"]
     try:
         low, high = (float(read_value(spec, name, Plain(item))) for item in given)
     except FaultError as fault:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from collections.abc import Mapping
 from itertools import product
-from math import prod
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem
+from tribodyn.errors import ComputationError, InputError, Problem, quiet
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.pipeline.run import run
-from tribodyn.study.studies.grid import Axis, read_axes
+from tribodyn.study.pipeline.run import computed
+from tribodyn.study.studies.grid import Axis, finished, over_cases, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:
@@ -62,8 +60,8 @@ def sweep(
 
     Notes
     -----
-    The values are computed one after the other: the models collect their warnings in a way that
-    all threads of a process share.
+    Several values are computed at a time, one by each processor. An interrupted sweep keeps those
+    that are finished, up to the first that is not.
 
     Examples
     --------
@@ -74,17 +72,16 @@ def sweep(
     True
     """
     axes = read_axes(case, _asked(over, between, points), by=by)
-    done: list[SweepPoint] = []
-    progress.start("computing", prod(len(axis.values) for axis in axes))
+    grid = list(product(*(axis.values for axis in axes)))
+    done: dict[int, SweepPoint] = {}
+    progress.start("computing", len(grid))
     try:
-        for values in product(*(axis.values for axis in axes)):
-            done.append(_point(case, axes, values))
-            progress.advance()
+        over_cases(lambda values: _point(case, axes, values), grid, done, progress)
     except KeyboardInterrupt:
-        if not (partial and done):
+        if not (partial and 0 in done):
             raise
     progress.finish()
-    return Sweep(case, axes, tuple(done))
+    return Sweep(case, axes, tuple(finished(done)))
 
 
 def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[str, Any]:
@@ -103,9 +100,8 @@ def _point(case: Case, axes: tuple[Axis, ...], values: tuple[Any, ...]) -> Sweep
     """Run the case at one place; what fails is told, and the sweep goes on."""
     changes = {axis.key: value for axis, value in zip(axes, values, strict=True)}
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ModelWarning)  # kept in the result
-            result = run(case.replace(changes))
+        with quiet():  # what the models say is kept in the result
+            result = computed(case.replace(changes))
             figures = result.summary()
     except (InputError, ComputationError) as error:
         first = error.problems[0]

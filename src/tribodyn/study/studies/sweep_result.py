@@ -18,7 +18,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.record import Parts, Record, record
 from tribodyn.reporting import write_report_of
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.summary_names import SUMMARY
+from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.studies.grid import Axis
 from tribodyn.types import Array
 

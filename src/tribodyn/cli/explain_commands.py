@@ -1,13 +1,14 @@
-"""``tribodyn explain``."""
+"""``tribodyn explain``, ``tribodyn units`` and ``tribodyn cite``."""
 
 from __future__ import annotations
 
 import difflib
+from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json
+from tribodyn.cli.screen import say, say_json, table
 from tribodyn.errors import InputError, Problem
 
 
@@ -95,7 +96,7 @@ def _warnings(symbol: str) -> list[dict[str, Any]]:
 
 
 def _figures(symbol: str) -> list[dict[str, Any]]:
-    from tribodyn.study.pipeline.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary import SUMMARY
 
     figure = SUMMARY.get(symbol)
     if figure is None:
@@ -113,7 +114,7 @@ def _figures(symbol: str) -> list[dict[str, Any]]:
 def _unknown(symbol: str) -> Problem:
     from tribodyn.nomenclature import QUANTITIES
     from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
-    from tribodyn.study.pipeline.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary import SUMMARY
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
     names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]
@@ -121,3 +122,62 @@ def _unknown(symbol: str) -> Problem:
     near = difflib.get_close_matches(symbol, known, n=3)
     remedy = f"Did you mean {' or '.join(near)}?" if near else "See: tribodyn units"
     return Problem(f'nothing is known of "{symbol}"', remedy=remedy)
+
+
+def units(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+    """List the units of all quantities and the spellings that are understood besides.
+
+    Parameters
+    ----------
+    json : bool
+        Write one JSON object to stdout.
+    """
+    from tribodyn.nomenclature import QUANTITIES
+    from tribodyn.units import SPELLINGS
+
+    kinds: dict[tuple[str, str], list[str]] = {}
+    for quantity in QUANTITIES.values():
+        if quantity.unit:
+            kinds.setdefault((quantity.unit, quantity.display_unit), []).append(quantity.name)
+    if json:
+        listed = [{"si": si, "shown": shown, "for": n} for (si, shown), n in kinds.items()]
+        say_json({"units": listed, "spellings": SPELLINGS})
+        return
+    say("Shown as, in SI, and what for (any unit of the same kind is understood):")
+    say(table([[shown, si, ", ".join(names)] for (si, shown), names in kinds.items()]))
+    say("\nSpellings understood besides the usual ones:")
+    say(table([[spelling, meant] for spelling, meant in SPELLINGS.items() if spelling != meant]))
+
+
+def cite(
+    result: Path,
+    /,
+    *,
+    bibtex: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Print the papers behind a result.
+
+    Parameters
+    ----------
+    result : Path
+        Directory that "tribodyn run" wrote.
+    bibtex : bool
+        Write BibTeX entries.
+    json : bool
+        Write one JSON array to stdout.
+    """
+    from tribodyn.cases.load import load_case
+    from tribodyn.study.pipeline.citations import cite as write_citations
+    from tribodyn.study.pipeline.citations import papers
+
+    file = result / "case.toml"
+    if not file.is_file():
+        why = "It holds no case.toml" if result.is_dir() else "There is no such directory"
+        remedy = "Give the directory that tribodyn run wrote"
+        raise InputError(Problem("this is no result", str(result), why, remedy))
+    case = load_case(file)
+    if json:
+        say_json([{"key": key, **entry} for key, entry in papers(case).items()])
+    else:
+        say(write_citations(case, "bibtex" if bibtex else "text"))
