@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import ComputationError, collected
+from tribodyn.errors import ComputationError, InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
 from tribodyn.study.case.derive import mesh_law_of, placed
 from tribodyn.study.case.provenance import effective
-from tribodyn.study.studies.grid import pinion_torques
+from tribodyn.study.case.sections import Operation
+from tribodyn.study.case.values import FaultError, Plain, read_value
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
@@ -77,6 +80,34 @@ def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
                 if load > _LIGHT:
                     raise
     return mesh_friction(tables, nominal)
+
+
+def operation_values(name: str, given: Any, case: Case) -> list[float]:
+    """Read one or several torques or speeds, each checked like the key of the case."""
+    if given is None:
+        return [getattr(case.operation, name)]
+    several = isinstance(given, Iterable) and not isinstance(given, str)
+    spec = dict(Operation.specs())[name]
+    try:
+        return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]
+    except FaultError as fault:
+        problem = replace(fault.problem, where=f"argument {name}")
+        raise InputError(problem) from None
+
+
+def pinion_torques(case: Case, given: Any) -> list[float]:
+    """Read torques on the gear named by ``operation.speed_of`` as those of the pinion."""
+    return [value / _turns(case) for value in operation_values("torque", given, case)]
+
+
+def pinion_speeds(case: Case, given: Any) -> list[float]:
+    """Read speeds of the gear named by ``operation.speed_of`` as those of the pinion."""
+    return [value * _turns(case) for value in operation_values("speed", given, case)]
+
+
+def _turns(case: Case) -> float:
+    """Turns of the pinion for one of the gear that speed and torque refer to."""
+    return case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
 
 
 def loaded_settings(case: Case) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -17,7 +17,6 @@ from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import section_at
-from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.pipeline.assembly import whole_system
 from tribodyn.study.pipeline.tooth_contact import mesh_of
@@ -157,34 +156,6 @@ def _range(case: Case, key: str, given: tuple[Any, ...], by: str) -> tuple[float
         what = f"{key} goes from {first} to {last}"
         raise InputError(Problem(what, _place(by), why, remedy))
     return tuple(np.linspace(low, high, int(points)).tolist())
-
-
-def operation_values(name: str, given: Any, case: Case) -> list[float]:
-    """Read one or several torques or speeds, each checked like the key of the case."""
-    if given is None:
-        return [getattr(case.operation, name)]
-    several = isinstance(given, Iterable) and not isinstance(given, str)
-    spec = dict(Operation.specs())[name]
-    try:
-        return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]
-    except FaultError as fault:
-        problem = replace(fault.problem, where=f"argument {name}")
-        raise InputError(problem) from None
-
-
-def pinion_torques(case: Case, given: Any) -> list[float]:
-    """Read torques on the gear named by ``operation.speed_of`` as those of the pinion."""
-    return [value / _turns(case) for value in operation_values("torque", given, case)]
-
-
-def pinion_speeds(case: Case, given: Any) -> list[float]:
-    """Read speeds of the gear named by ``operation.speed_of`` as those of the pinion."""
-    return [value * _turns(case) for value in operation_values("speed", given, case)]
-
-
-def _turns(case: Case) -> float:
-    """Turns of the pinion for one of the gear that speed and torque refer to."""
-    return case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
 
 
 Value = TypeVar("Value")
