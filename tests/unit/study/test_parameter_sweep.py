@@ -13,7 +13,7 @@ import xarray
 
 import tribodyn as td
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.study.studies.grid import read_axes
+from tribodyn.study.studies.axes import read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 FIGURE = "rms_mesh_force"

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.studies.grid import Axis
+from tribodyn.study.studies.axes import Axis
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
