@@ -75,9 +75,9 @@ def bifurcation(
     check_target(target, force, remedy=_REPLACE)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with progress_bar() as progress:
+        from tribodyn.study.studies.axes import read_axes
         from tribodyn.study.studies.bifurcation import Findings
         from tribodyn.study.studies.bifurcation import bifurcation as compute
-        from tribodyn.study.studies.grid import read_axes
 
         read_axes(ready, {key: (first, last, points)}, by="bifurcation")
         found = compute(

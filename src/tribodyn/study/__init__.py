@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
+    from tribodyn.study.pipeline.loaded_teeth import loaded_contact
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
-    from tribodyn.study.pipeline.tooth_contact import loaded_contact
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.study.studies.static import (
@@ -47,7 +47,7 @@ _HOMES = {
     "comprehensive_stiffness": "studies.static",
     "film_over_operation": "studies.static",
     "harris_map": "studies.static",
-    "loaded_contact": "pipeline.tooth_contact",
+    "loaded_contact": "pipeline.loaded_teeth",
     "optimize_tip_relief": "studies.static",
     "read_case": "case.read",
     "run": "pipeline.run",

@@ -17,7 +17,7 @@ from tribodyn.units import convert
 if TYPE_CHECKING:
     from tribodyn.dynamics import SpeedSweep
     from tribodyn.study import Sweep
-    from tribodyn.study.studies.grid import Axis
+    from tribodyn.study.studies.axes import Axis
 
 _WAYS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
 _WORDS = {"up": "upwards", "down": "downwards"}

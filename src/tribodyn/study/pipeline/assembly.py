@@ -1,134 +1,23 @@
-"""From a case and its mesh to the structure that vibrates: bodies, damping, and what holds them."""
+"""From a case and its mesh to the structure that vibrates."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.study.case.derive import mesh_law_of
-from tribodyn.study.case.provenance import effective
+from tribodyn.study.pipeline.damping import damping_of
+from tribodyn.study.pipeline.geometry import geometry
 from tribodyn.study.pipeline.tooth_contact import chosen_options, load_friction_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.gear import SpurGear, SpurPair
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.case import Case
-
-
-#: Modifications that are one figure each.
-_AMOUNTS = (
-    "tip_relief", "root_relief", "profile_crowning", "profile_slope", "crowning", "lead_slope",
-    "run_out",
-)  # fmt: skip
-
-
-def geometry(case: Case) -> dict[str, float]:
-    """Geometry, masses and inertias that follow from a case."""
-    from tribodyn.contact import gear_loss_factor, path_of_contact
-
-    pair = case.gear_pair
-    values = {
-        "transverse_contact_ratio": pair.transverse_contact_ratio,
-        "gear_ratio": pair.ratio,
-        "operating_pressure_angle": pair.operating_pressure_angle,
-        "center_distance": pair.center_distance,
-        "tip_shortening_coefficient": pair.tip_shortening_coefficient,
-        "base_pitch": pair.base_pitch,
-        "line_of_action_length": pair.line_of_action_length,
-        "common_face_width": pair.common_face_width,
-        "backlash": case.backlash,
-        "gear_loss_factor": gear_loss_factor(pair),
-    }
-    for place, angle in path_of_contact(pair).roll_angles.items():
-        values[f"roll_angle_{place}"] = angle
-    gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
-    bodies = {name: _body(case, gear) for name, gear in gears}
-    for key in bodies["pinion"]:
-        for name, body in bodies.items():
-            values[f"{key}_{name}"] = body[key]
-    values |= _modifications(pair)
-    return {name: float(value) for name, value in values.items()}
-
-
-def _body(case: Case, gear: SpurGear) -> dict[str, float]:
-    from tribodyn.gear import mass_properties
-
-    solid = mass_properties(gear, case.material.density)
-    return {
-        "reference_diameter": 2.0 * gear.reference_radius,
-        "base_radius": gear.base_radius,
-        "tip_diameter": 2.0 * gear.tip_radius,
-        "root_diameter": 2.0 * gear.root_radius,
-        "tip_thickness": gear.tip_thickness,
-        "tooth_thinning": gear.tooth_thinning,
-        "face_width": gear.face_width,
-        "mass": solid.mass,
-        "moment_of_inertia": solid.moment_of_inertia,
-    }
-
-
-def _modifications(pair: SpurPair) -> dict[str, float]:
-    """Amounts that are not zero, with the lengths of the reliefs in force."""
-    from tribodyn.gear import default_relief_length, hunting_period
-
-    values = {"misalignment": pair.misalignment} if pair.misalignment else {}
-    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        given = gear.modification
-        for key in _AMOUNTS:
-            if getattr(given, key) != 0.0:
-                values[f"{key}_{name}"] = getattr(given, key)
-                if key in ("tip_relief", "root_relief"):
-                    length = getattr(given, f"{key}_length")
-                    own = default_relief_length(pair) if length is None else length
-                    values[f"{key}_length_{name}"] = own
-    if pair.has_pitch_deviation:
-        values["hunting_period"] = hunting_period(pair)
-    return values
-
-
-@dataclass(frozen=True)
-class Damping:
-    """Damping coefficients of a case."""
-
-    mesh: float  #: of the tooth contact along the line of action [N*s/m]
-    bearing_pinion: float  #: [N*s/m]
-    bearing_wheel: float  #: [N*s/m]
-
-
-def equivalent_mass(
-    inertia_pinion: float, inertia_wheel: float, radius_pinion: float, radius_wheel: float
-) -> float:
-    """Mass that vibrates along the line of action when both gears turn freely."""
-    weighted = inertia_pinion * radius_wheel**2 + inertia_wheel * radius_pinion**2
-    return inertia_pinion * inertia_wheel / weighted
-
-
-def damping_of(case: Case, mesh: MeshTable) -> Damping:
-    """Damping of a case."""
-    data, body = case.dynamics, geometry(case)
-    mesh_damping = data.mesh_damping
-    if mesh_damping is None:
-        mass = equivalent_mass(
-            body["moment_of_inertia_pinion"], body["moment_of_inertia_wheel"],
-            body["base_radius_pinion"], body["base_radius_wheel"],
-        )  # fmt: skip
-        mesh_damping = 2.0 * data.mesh_damping_ratio * math.sqrt(mesh.mean_mesh_stiffness * mass)
-    return Damping(
-        mesh_damping, _support(case, body["mass_pinion"]), _support(case, body["mass_wheel"])
-    )
-
-
-def _support(case: Case, mass: float) -> float:
-    from tribodyn.dynamics.structures import support_damping
-
-    names = ("bearing_stiffness", "bearing_damping", "bearing_damping_ratio")
-    values = [effective(case).get(f"dynamics.{name}") for name in names]
-    return support_damping(values[0], mass, values[1], values[2])
+    from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.pipeline.damping import Damping
 
 
 def static_error(case: Case, phase: Array | float) -> Array:

@@ -110,7 +110,7 @@ class Result(Record):
         -------
         LoadedContact
         """
-        from tribodyn.study.pipeline.tooth_contact import loaded_contact
+        from tribodyn.study.pipeline.loaded_teeth import loaded_contact
 
         return loaded_contact(self.case)
 

@@ -13,7 +13,8 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.pipeline.motion import steps_of
-from tribodyn.study.studies.grid import Axis, ends_of, varied
+from tribodyn.study.studies.axes import Axis, ends_of
+from tribodyn.study.studies.grid import varied
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import ComputationError, InputError, Problem, quiet
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.run import computed
-from tribodyn.study.studies.grid import Axis, finished, over_cases, read_axes
+from tribodyn.study.studies.axes import Axis, read_axes
+from tribodyn.study.studies.grid import finished, over_cases
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:

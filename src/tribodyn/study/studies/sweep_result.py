@@ -19,7 +19,7 @@ from tribodyn.record import Parts, Record, record
 from tribodyn.reporting import write_report_of
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.studies.grid import Axis
+from tribodyn.study.studies.axes import Axis
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
