@@ -100,7 +100,7 @@ def carry_over_crossings(
     trace = np.zeros(count)
     lanes = _Lanes(steps, np.zeros(count), state, side.copy())
     waiting = np.arange(count)
-    most = most_splits(tables.dead.size)
+    most = most_splits.py_func(tables.dead.size)  # compiled for compiled callers only
     for number in range(most + 1):
         ends = engine.advance(lanes, np.ones(waiting.size))
         place, _ = engine.compression(ends, ends.begin)
