@@ -3,7 +3,7 @@
 Plane stress, six-node triangles on the outline of the whole gear, bore held, E 206 GPa, nu 0.3,
 dedendum 1.25 and tip round 0.38 of the module. The tooth is the envelope of the rack: involute, and
 the curve that the tip round of the rack leaves. The load is a Hertz pressure of half width 0.02
-modules along the normal of the flank; its local compression ``2/(pi E) (ln(2 h/a) - nu/2)`` with the
+modules along the normal of the flank; its compression ``2/(pi E) (ln(2 h/a) - nu/2)`` with the
 depth ``h`` of the tooth axis is taken off. Points are spaced by the distance from load and root and
 joined by Delaunay. Nothing of tribodyn is used. Lengths in mm, forces in N.
 """
@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import fsolve
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 from scipy.spatial import Delaunay, cKDTree
@@ -136,7 +137,7 @@ class Gear:
 
     def __init__(self, outline: Outline, places: np.ndarray, loads: np.ndarray) -> None:
         self.outline, self.places, self.loads = outline, places, loads
-        boundary, fixed = self._boundary()
+        boundary = self._boundary()
         inner = self._inner(boundary)
         points = np.concatenate((places, boundary, inner))
         corners = self._triangles(points)
@@ -157,11 +158,10 @@ class Gear:
         wide = np.minimum(0.1 * m + 0.3 * depth, 0.05 * o.bore_radius)
         return np.minimum(wide, np.minimum(0.006 * m + 0.25 * near, 0.04 * m + 0.25 * seen))
 
-    def _boundary(self) -> tuple[np.ndarray, None]:
+    def _boundary(self) -> np.ndarray:
         o = self.outline
         one = o.profile
-        fine = [np.column_stack((one[:, 0] * np.sin(one[:, 1]), one[:, 0] * np.cos(one[:, 1])))]
-        right = fine[0]
+        right = np.column_stack((one[:, 0] * np.sin(one[:, 1]), one[:, 0] * np.cos(one[:, 1])))
         width = one[-1, 1]
         tip = np.linspace(width, -width, 60)[1:-1]
         top = o.tip_radius * np.column_stack((np.sin(tip), np.cos(tip)))
@@ -179,7 +179,7 @@ class Gear:
         chains = [self._along(np.concatenate((*whole, whole[0][:1]))), self._along(bore)]
         points = np.concatenate(chains)
         far = cKDTree(self.places).query(points)[0]
-        return points[far > 0.3 * self.spacing(points)], None
+        return np.asarray(points[far > 0.3 * self.spacing(points)])
 
     def _along(self, chain: np.ndarray) -> np.ndarray:
         """Points on a closed chain at the wanted distances."""
@@ -331,26 +331,106 @@ def outline_of(name: str | tuple[int, float, float]) -> Outline:
     return Outline(teeth, 4.5, shift, 0.5 * tip, 15.0)
 
 
+def column(outline: Outline, curvature: float, other: float) -> tuple[float, float, float]:
+    """Compliance at a loaded place, that of another on the next tooth [mm^2/N], and the depth."""
+    place, normal, depth = outline.flank_point(curvature)
+    seen, direction, _ = outline.flank_point(other, 1)
+    gear = Gear(outline, np.array([place, seen]), place[None])
+    moved = gear.displacement(place, normal)
+    at = [int(np.argmin(np.hypot(*(gear.points - p).T))) for p in (place, seen)]
+    patch = math.log(2.0 * depth / (PATCH * outline.module)) - 0.5 * POISSON
+    own = float(moved[at[0]] @ normal) - 2.0 / (math.pi * MODULUS) * patch
+    return own, float(moved[at[1]] @ direction), depth
+
+
 def compliances(name: str | tuple[int, float, float]) -> tuple[list[float], list[float]]:
     """Self compliances [1e-5 mm^2/N] and those of the next tooth [1e-6 mm^2/N] of a gear."""
-    outline, radii = outline_of(name), TRIANGLES[name][0]
-    own, cross = [], []
-    half_width = PATCH * outline.module
-    for curvature, other in zip(radii, reversed(radii), strict=True):
-        place, normal, depth = outline.flank_point(curvature)
-        seen, direction, _ = outline.flank_point(other, 1)
-        gear = Gear(outline, np.array([place, seen]), place[None])
-        moved = gear.displacement(place, normal)
-        local = 2.0 / (math.pi * MODULUS) * (math.log(2.0 * depth / half_width) - 0.5 * POISSON)
-        at = [int(np.argmin(np.hypot(*(gear.points - p).T))) for p in (place, seen)]
-        own.append(1e5 * (float(moved[at[0]] @ normal) - local))
-        cross.append(1e6 * float(moved[at[1]] @ direction))
-    return own, cross
+    radii = TRIANGLES[name][0]
+    outline = outline_of(name)
+    found = [column(outline, *pair) for pair in zip(radii, reversed(radii), strict=True)]
+    return [1e5 * own for own, _, _ in found], [1e6 * cross for _, cross, _ in found]
+
+
+class Mesh:
+    """FZG type A at one roll angle of the pinion, with the pairs that can touch there."""
+
+    def __init__(self, roll: float) -> None:
+        gears = [outline_of(f"type A {gear}") for gear in ("pinion", "wheel")]
+        line = math.sqrt(91.5**2 - sum(gear.base_radius for gear in gears) ** 2)
+        pitch = 2.0 * math.pi * gears[0].base_radius / gears[0].teeth
+        ends = (
+            line - math.sqrt(gears[1].tip_radius ** 2 - gears[1].base_radius ** 2),
+            math.sqrt(gears[0].tip_radius ** 2 - gears[0].base_radius ** 2),
+        )
+        first = roll * gears[0].base_radius
+        self.pinion_base = gears[0].base_radius
+        paths = [p for p in (first, first + pitch) if p <= ends[1] + 1e-9]
+        self.structure = np.zeros((len(paths), len(paths)))
+        self.depth, self.radius = np.zeros((len(paths), 2)), np.zeros(len(paths))
+        for number, path in enumerate(paths):
+            # the next tooth of the pinion leads, that of the wheel follows
+            pinion = column(gears[0], path, path + pitch)
+            wheel = column(gears[1], line - path, line - path + pitch)
+            self.structure[number, number] = pinion[0] + wheel[0]
+            self.depth[number] = pinion[2], wheel[2]
+            self.radius[number] = path * (line - path) / line
+            if number + 1 < len(paths):
+                self.structure[0, 1] = pinion[1]
+            elif number:
+                self.structure[0, 1] += wheel[1]
+                self.structure[1, 0] = self.structure[0, 1]
+
+    def compression(self, load: np.ndarray) -> np.ndarray:
+        """Local compression of both flanks [mm] under loads per width [N/mm], plane strain."""
+        strain = MODULUS / (1.0 - POISSON**2)
+        half_width = np.sqrt(8.0 * load * self.radius / (math.pi * strain))
+        logarithm = np.log(2.0 * self.depth / half_width[:, None]) - 0.5 * POISSON / (1 - POISSON)
+        return np.asarray(2.0 * load / (math.pi * strain) * logarithm.sum(axis=1))
+
+    def single_stiffness(self, load: float = 100.0) -> float:
+        """Secant stiffness of the first pair alone, 20 mm wide [1e8 N/m]."""
+        local = self.compression(np.full(self.radius.shape, load))[0] / load
+        return 20.0 / (self.structure[0, 0] + float(local)) * 1e-5
+
+    def carried(self, torque: float) -> tuple[float, np.ndarray]:
+        """Deflection [um] under a torque on the pinion [N m], and the load of each pair [N]."""
+        total = torque * 1e3 / self.pinion_base / 20.0
+
+        def residual(unknown: np.ndarray) -> np.ndarray:
+            load = np.append(unknown, total - unknown.sum())
+            approach = self.structure @ load + self.compression(load)
+            return np.asarray(np.diff(approach))
+
+        count = len(self.radius)
+        shares = fsolve(residual, np.full(count - 1, total / count)) if count > 1 else []
+        load = np.append(shares, total - np.sum(shares))
+        approach = self.structure @ load + self.compression(load)
+        return 1e3 * float(approach[0]), 20.0 * load
+
+
+#: FZG type A: place -> roll angle and secant stiffness of one pair at 100 N/mm [1e8 N/m].
+SINGLE = {"A": (0.3242391, 1.449), "C": (0.4129625, 1.709), "E": (0.8453318, 1.590)}
+#: Roll angle [rad] -> deflection [um] at 90, 150 and 300 N m on the pinion.
+DEFLECTIONS = {
+    0.32424: (9.330, 15.384, 30.317),
+    0.5206: (13.666, 22.457, 44.051),
+    0.6384: (12.938, 21.244, 41.625),
+}
+#: Load on the entering and the leaving pair at the first of them, 90 N m [N].
+SHARES = (1059.5, 1601.0)
+TORQUES = (90.0, 150.0, 300.0)
 
 
 if __name__ == "__main__":
-    for name, (_, *stated) in TRIANGLES.items():
+    for place, (roll, stated) in SINGLE.items():
+        print(f"{place}: stated {stated}, found {Mesh(roll).single_stiffness():.4f}")
+    for roll, known in DEFLECTIONS.items():
+        mesh = Mesh(roll)
+        carried = [mesh.carried(torque) for torque in TORQUES]
+        print(f"{roll}: stated {known}, found", *(f"{deflection:.3f}" for deflection, _ in carried))
+        print("  loads at 90 N m", carried[0][1])
+    for name, (_, *tables) in TRIANGLES.items():
         found = compliances(name)
         print(name)
-        for known, new in zip(stated, found, strict=True):
+        for known, new in zip(tables, found, strict=True):
             print("  stated", *known, " found", *(f"{value:.4f}" for value in new))
