@@ -310,13 +310,13 @@ class _Carrier:
         size, steps = self.extra.size, tables.compiled.grid.steps
         place = states[:, :size].reshape(-1, size)
 
-        def sides(q: Array, node: int) -> Array:
+        def sides_at(q: Array, node: int) -> Array:
             q = q.reshape(-1, steps, size)
             d = np.einsum("rji,cri->crj", nodes.direction[:, node], q) - nodes.error[:, node]
             side = sides(d, nodes.gap[:, node], tables.dead)
             return side.reshape(len(q) * steps, d.shape[-1])
 
-        left, right = sides(place[:-1], 0), sides(place[1:], 2)
+        left, right = sides_at(place[:-1], 0), sides_at(place[1:], 2)
         number = np.tile(np.arange(steps), len(left) // steps)
         crossed = np.any(left != right, axis=1)
         touching = left != 0.0
