@@ -21,6 +21,7 @@ from tribodyn.analysis.lyapunov_tangent import TangentTables
 from tribodyn.analysis.verdict import exponent_verdict
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
