@@ -20,7 +20,7 @@ from tribodyn.study import SUMMARY
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.case.read import read_case
-from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.pipeline.geometry import geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
