@@ -1,4 +1,4 @@
-"""A structure with an option of its own: both gears turn, and a spring holds the wheel."""
+"""A structure with an option of its own: both gears turn, a spring holds the wheel."""
 
 from dataclasses import replace
 

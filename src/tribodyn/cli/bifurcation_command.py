@@ -11,7 +11,7 @@ from tribodyn.cli.screen import say, say_json, tell
 from tribodyn.cli.settings import RANGE, changed_case, read_ranges
 
 if TYPE_CHECKING:
-    from tribodyn.analysis.bifurcation_result import Bifurcation
+    from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
     from tribodyn.study.studies.bifurcation import Findings
 

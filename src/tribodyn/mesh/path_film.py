@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import PathOfContact
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.errors import quiet
 from tribodyn.mesh.film_places import film_places
 from tribodyn.mesh.film_refinement import PathLoads, Refinement

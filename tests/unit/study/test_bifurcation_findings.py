@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.analysis.bifurcation_result import Bifurcation
+from tribodyn.analysis import Bifurcation
 from tribodyn.study.studies.bifurcation import Findings
 
 

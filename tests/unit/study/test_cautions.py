@@ -9,7 +9,7 @@ import pytest
 from broken import SOUND
 
 import tribodyn as td
-from tribodyn.study.case.read import read_case
+from tribodyn.study import read_case
 from tribodyn.study.pipeline.assembly import system_of
 from tribodyn.study.pipeline.cautions import case_cautions
 from tribodyn.study.pipeline.damping import damping_of

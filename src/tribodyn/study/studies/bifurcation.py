@@ -18,8 +18,8 @@ from tribodyn.study.studies.grid import varied
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.analysis.bifurcation_result import Bifurcation
     from tribodyn.dynamics import System
+    from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
 
 
