@@ -18,10 +18,10 @@ from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import Material, SpurGear, SpurPair, spur_pair
 from tribodyn.stiffness import load_point, weber_banaschek_compression
-from tribodyn.stiffness.analytic import analytic_influence
-from tribodyn.stiffness.influence import GearInfluence
 from tribodyn.stiffness.loaded import loaded_contact
-from tribodyn.stiffness.weber import weber_influence
+from tribodyn.stiffness.teeth.analytic import analytic_influence
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.weber import weber_influence
 
 WIDTH = 20e-3
 #: One pair carrying 100 N/mm [N/m].

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import tribodyn as td
-from tribodyn.study.read import read_case
+from tribodyn.study.case.read import read_case
 
 _CASE = """
 title = "Reference orbit"

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from tribodyn.cases import load_case
 from tribodyn.dynamics import FineSamples, Response
 from tribodyn.mesh import MeshTable, build
-from tribodyn.study.case import Case
-from tribodyn.study.provenance import assumptions
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.provenance import assumptions
 
 Array = NDArray[np.float64]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from tribodyn.analysis.attractors import Motions, settle
 from tribodyn.analysis.bifurcation_statistics import measure
 from tribodyn.dynamics.steady_state import steady_state
-from tribodyn.errors import ComputationError, InputError, ModelWarning
+from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.types import Array, Index, Mask
 
 #: States of one motion differ by less than this part of the largest state.
@@ -192,8 +191,7 @@ def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
         return float("nan")
     try:
         # An orbit that is not found is told by NaN; at rest its relative error means nothing.
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ModelWarning)
+        with quiet():
             orbit = steady_state(
                 motions.compiled.system, float(motions.frequency[0]), steps=steps,
                 periods=found.period, start=start,

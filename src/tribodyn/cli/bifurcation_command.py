@@ -13,8 +13,8 @@ from tribodyn.cli.screen import say, say_json, tell
 
 if TYPE_CHECKING:
     from tribodyn.analysis.bifurcation_result import Bifurcation
-    from tribodyn.study.bifurcation_findings import Findings
-    from tribodyn.study.case import Case
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.studies.bifurcation_findings import Findings
 
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
@@ -67,7 +67,7 @@ def bifurcation(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.save import check_target
+    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
     key, (first, last, points) = _one(over)
@@ -76,9 +76,9 @@ def bifurcation(
     check_target(target, force, remedy=_REPLACE)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with progress_bar() as progress:
-        from tribodyn.study.axes import read_axes
-        from tribodyn.study.bifurcation_diagram import bifurcation as compute
-        from tribodyn.study.bifurcation_findings import Findings
+        from tribodyn.study.studies.axes import read_axes
+        from tribodyn.study.studies.bifurcation import bifurcation as compute
+        from tribodyn.study.studies.bifurcation_findings import Findings
 
         read_axes(ready, {key: (first, last, points)}, by="bifurcation")
         found = compute(
@@ -130,7 +130,7 @@ def _check_lengths(cycles: int, transient: int) -> None:
 
 def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, force: bool) -> None:
     from tribodyn.report import write_bifurcation_report
-    from tribodyn.study.save import new_directory
+    from tribodyn.study.pipeline.save import new_directory
 
     head, rows = findings.rows()
     with new_directory(target, force=force) as place:

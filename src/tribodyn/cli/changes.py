@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import InputError, Problem
 
 if TYPE_CHECKING:
-    from tribodyn.study.case import Case
+    from tribodyn.study.case.case import Case
 
 
 def read_changes(settings: Sequence[str]) -> dict[str, Any]:
@@ -36,7 +36,7 @@ def read_changes(settings: Sequence[str]) -> dict[str, Any]:
     >>> read_changes(["operation.torque=120 N*m", "gears.pinion.teeth=17"])
     {'operation.torque': '120 N*m', 'gears.pinion.teeth': 17}
     """
-    from tribodyn.study.values import written
+    from tribodyn.study.case.values import written
 
     changes: dict[str, Any] = {}
     problems = []

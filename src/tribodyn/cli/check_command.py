@@ -28,10 +28,10 @@ def check(
     json : bool
         Write one flat JSON object in SI to stdout.
     """
-    from tribodyn.study.cautions import case_cautions
-    from tribodyn.study.geometry import geometry
-    from tribodyn.study.provenance import assumptions
-    from tribodyn.study.summary_names import SUMMARY
+    from tribodyn.study.case.provenance import assumptions
+    from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.geometry import geometry
+    from tribodyn.study.pipeline.summary_names import SUMMARY
 
     checked = changed_case(case, set_ or [])
     values = geometry(checked)

@@ -30,8 +30,8 @@ def cite(
         Write one JSON array to stdout.
     """
     from tribodyn.cases.load import load_case
-    from tribodyn.study.citations import cite as write_citations
-    from tribodyn.study.citations import papers
+    from tribodyn.study.pipeline.citations import cite as write_citations
+    from tribodyn.study.pipeline.citations import papers
 
     file = result / "case.toml"
     if not file.is_file():

@@ -137,7 +137,8 @@ def _failed(error: BaseException, as_json: bool) -> int:
     show_problems(problems)
     if as_json:
         told = [
-            {"what": p.what, "where": p.where, "why": p.why, "remedy": p.remedy} for p in problems
+            {"what": p.what, "where": str(p.where), "why": p.why, "remedy": p.remedy}
+            for p in problems
         ]
         say_json({"error": {"exit_code": code, "problems": told}})
     return code

@@ -52,7 +52,7 @@ def _quantities(symbol: str) -> list[dict[str, Any]]:
 
 
 def _keys(symbol: str) -> list[dict[str, Any]]:
-    from tribodyn.study.reference import case_keys
+    from tribodyn.study.case.reference import case_keys
 
     wanted = symbol.lower()
     return [
@@ -70,9 +70,8 @@ def _keys(symbol: str) -> list[dict[str, Any]]:
 
 def _choices(symbol: str) -> list[dict[str, Any]]:
     """Models, laws and methods with the papers behind them."""
-    from tribodyn.study.citations import sources_of
-    from tribodyn.study.reference import case_keys
-    from tribodyn.study.words import choice_meanings
+    from tribodyn.study.case.reference import case_keys, choice_meanings
+    from tribodyn.study.pipeline.citations import sources_of
 
     meaning = choice_meanings().get(symbol)
     if meaning is None:
@@ -89,14 +88,14 @@ def _choices(symbol: str) -> list[dict[str, Any]]:
 
 
 def _warnings(symbol: str) -> list[dict[str, Any]]:
-    from tribodyn.study.words import warning_meanings
+    from tribodyn.study.case.reference import warning_meanings
 
     meaning = warning_meanings().get(symbol.strip("[]"))
     return [] if meaning is None else [{"warning": symbol, "meaning": meaning}]
 
 
 def _figures(symbol: str) -> list[dict[str, Any]]:
-    from tribodyn.study.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary_names import SUMMARY
 
     figure = SUMMARY.get(symbol)
     if figure is None:
@@ -113,9 +112,8 @@ def _figures(symbol: str) -> list[dict[str, Any]]:
 
 def _unknown(symbol: str) -> Problem:
     from tribodyn.nomenclature import QUANTITIES
-    from tribodyn.study.reference import case_keys
-    from tribodyn.study.summary_names import SUMMARY
-    from tribodyn.study.words import choice_meanings, warning_meanings
+    from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
+    from tribodyn.study.pipeline.summary_names import SUMMARY
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
     names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]

@@ -33,7 +33,7 @@ def new(
         Write one JSON object to stdout.
     """
     from tribodyn.cases.load import load_case
-    from tribodyn.study.save import write_file
+    from tribodyn.study.pipeline.save import write_file
 
     if path.exists() and (path.is_dir() or not force):
         remedy = "Choose another name" + ("" if path.is_dir() else ", or add --force to replace it")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tribodyn.contact.path import PathOfContact, path_of_contact
-from tribodyn.errors import ComputationError, Problem
+from tribodyn.errors import Argument, ComputationError, Problem
 from tribodyn.gear import SpurPair
 from tribodyn.types import Array
 
@@ -105,7 +105,7 @@ def gear_loss_factor(pair: SpurPair, share: Callable[[Array], Array] | None = No
         raise ComputationError(
             Problem(
                 what="the load share is not finite on the path of contact",
-                where="argument share",
+                where=Argument("share"),
                 remedy="Return a finite share for every path between A and E",
             )
         )

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.contact.kinematics import Kinematics
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
 from tribodyn.gear import SpurPair
 from tribodyn.types import Array, Mask
 
@@ -145,7 +145,7 @@ class PathOfContact:
             raise InputError(
                 Problem(
                     what=f'side = "{side}"',
-                    where="argument side",
+                    where=Argument("side"),
                     why='an event has two sides: "left" and "right"',
                     remedy='Write "left" or "right"',
                 )
@@ -182,7 +182,7 @@ class PathOfContact:
             raise InputError(
                 Problem(
                     what=f'side = "{side}"',
-                    where="argument side",
+                    where=Argument("side"),
                     why='the pitch point has two sides: "left" and "right"',
                     remedy='Write "left", "right" or leave it out',
                 )

@@ -5,6 +5,7 @@ from tribodyn.dynamics.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.continuation import continuation
 from tribodyn.dynamics.dormand_prince_solution import AdaptiveSolution, solve_adaptive
 from tribodyn.dynamics.energy import EnergyAudit, energy_audit
+from tribodyn.dynamics.engines import ENGINES, Engine
 from tribodyn.dynamics.ensemble import Ensemble, LaneStatistics, simulate_ensemble
 from tribodyn.dynamics.entry import Entry
 from tribodyn.dynamics.follow_load import follow_load
@@ -25,14 +26,17 @@ from tribodyn.dynamics.speed_sweep_result import Jump, SpeedSweep
 from tribodyn.dynamics.spur6 import SPUR6_NAMES, spur6
 from tribodyn.dynamics.steady_state import steady_state
 from tribodyn.dynamics.step_limit import recommended_steps
+from tribodyn.dynamics.structures import STRUCTURES, Gearing, Structure
 from tribodyn.dynamics.system import Contact, System
 from tribodyn.dynamics.torsional import TORSIONAL_NAMES, torsional
 
 __all__ = [
+    "ENGINES",
     "FZG12_LIGHT",
     "FZG12_MESH_FREQUENCY",
     "FZG12_NAMES",
     "SPUR6_NAMES",
+    "STRUCTURES",
     "TORSIONAL_NAMES",
     "AdaptiveSolution",
     "Body",
@@ -40,11 +44,13 @@ __all__ = [
     "Campbell",
     "Contact",
     "EnergyAudit",
+    "Engine",
     "Ensemble",
     "Entry",
     "FineSamples",
     "ForcedResponse",
     "GearMesh",
+    "Gearing",
     "Jump",
     "LaneParameters",
     "LaneStatistics",
@@ -57,6 +63,7 @@ __all__ = [
     "SpecialPoint",
     "SpeedProfile",
     "SpeedSweep",
+    "Structure",
     "System",
     "assemble",
     "campbell",

@@ -12,7 +12,7 @@ from tribodyn.ehl.discrete import ContactProblem, Outcome
 from tribodyn.ehl.newton_engine import first_intervals, newton_engine
 from tribodyn.ehl.verification import Verification, verify
 from tribodyn.errors import ComputationError, Problem
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 #: A solver of steady contacts.
 Engine = Callable[[ContactProblem], Outcome]

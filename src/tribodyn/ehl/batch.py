@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextvars import copy_context
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -274,7 +275,7 @@ def _in_threads(one: Any, size: int, threads: int | None) -> Iterator[Any]:
         submitted = 0
         for index in range(size):
             while submitted < size and submitted < index + _AHEAD:
-                waiting[submitted] = pool.submit(one, submitted)
+                waiting[submitted] = pool.submit(copy_context().run, one, submitted)
                 submitted += 1
             future = waiting.pop(index)
             while not future.done():

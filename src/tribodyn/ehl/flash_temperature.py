@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: Root of conductivity, density and specific heat of gear steel [J/(m^2 K s^0.5)]: the mean

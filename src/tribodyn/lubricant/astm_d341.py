@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
 
 #: One measured point: temperature [K] and kinematic viscosity [m^2/s].
 TemperaturePoint = tuple[float, float]
@@ -33,7 +33,7 @@ def _require_oil(points: tuple[TemperaturePoint, TemperaturePoint]) -> None:
         raise InputError(
             Problem(
                 what=f"points {cold:g} K, {thick:.4g} m^2/s and {warm:g} K, {thin:.4g} m^2/s",
-                where="argument points",
+                where=Argument("points"),
                 why="two different temperatures in rising order, with falling viscosity, are "
                 "needed for a line over temperature",
                 remedy="Give the colder point first",
@@ -49,7 +49,7 @@ def _require_inside(temperature: float, cold: float, warm: float) -> None:
     raise InputError(
         Problem(
             what=f"temperature = {temperature - _ABSOLUTE_ZERO:g} degC",
-            where="argument temperature",
+            where=Argument("temperature"),
             why=f"the viscosity is known at {low:g} and {high:g} degC, and the line through "
             f"these points is not trusted more than {MARGIN:g} K beyond them",
             remedy=f"Stay between {low - MARGIN:g} and {high + MARGIN:g} degC, "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.types import Array
 
 #: exp(700) is the last decade that a double holds; no liquid comes near it.
@@ -19,7 +19,7 @@ def exponential_growth(exponent: ArrayLike, pressure: ArrayLike, law: str) -> Ar
         raise InputError(
             Problem(
                 what=f"pressure = {np.max(pressure):.6g} Pa",
-                where="argument pressure",
+                where=Argument("pressure"),
                 why=f"the {law} law raises the viscosity there by more than exp(700), "
                 "far beyond any liquid",
                 remedy="Check the unit of the pressure (Pa) and of the pressure-viscosity "

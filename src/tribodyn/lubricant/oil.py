@@ -14,11 +14,13 @@ from tribodyn.lubricant.barus import barus_viscosity
 from tribodyn.lubricant.dowson_higginson import dowson_higginson_density
 from tribodyn.lubricant.iso_15144 import DENSITY_FALL, density_at_temperature
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: Pressure laws by name, each ``law(pressure, dynamic_viscosity, coefficient)``.
-VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry("viscosity law")
+VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry(
+    "viscosity law", "tribodyn.viscosity"
+)
 VISCOSITY_LAWS.register("roelands")(roelands_viscosity)
 VISCOSITY_LAWS.register("barus")(barus_viscosity)
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
 from tribodyn.lubricant.growth import exponential_growth
 from tribodyn.types import Array
 
@@ -26,7 +26,7 @@ def _log_viscosity_ratio(dynamic_viscosity: float) -> float:
         raise InputError(
             Problem(
                 what=f"dynamic_viscosity = {dynamic_viscosity:.6g} Pa*s",
-                where="argument dynamic_viscosity",
+                where=Argument("dynamic_viscosity"),
                 why=f"the Roelands law needs more than exp(-{_LOG_POLE}) = 6.32e-5 Pa*s",
                 remedy="Check the unit: 82 mPa*s is 0.082 Pa*s",
             )

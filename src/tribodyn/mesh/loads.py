@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl.solved_films import Films
-from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
+from tribodyn.errors import ComputationError, Problem, quiet, warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
@@ -219,9 +218,8 @@ def _still_moving(change: Array, where: Callable[[int, int], str]) -> Computatio
 
 def _film_stiffness(in_contact: Mask, load_per_width: Array, film_at: FilmAt) -> Array:
     """Stiffness of the films, zero where the pair is not in contact."""
-    with warnings.catch_warnings():
+    with quiet():
         # What a formula has to say, it says of the load share that is found.
-        warnings.simplefilter("ignore", ModelWarning)
         film = film_at(load_per_width[in_contact]).film_stiffness
     stiffness = np.zeros(load_per_width.shape)
     stiffness[in_contact] = np.asarray(film)

@@ -8,7 +8,6 @@ formula follows every change of load, radius and speed.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -18,7 +17,7 @@ from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.film_state import FilmState
 from tribodyn.ehl.solved_films import Films
-from tribodyn.errors import ModelWarning, warn
+from tribodyn.errors import quiet, warn
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.mesh.cycle import (
     MOST,
@@ -167,9 +166,8 @@ class PathFilm:
 
     def _solve_more(self, contacts: Index, loads: PathLoads) -> Places:
         pairs, zone = self.pairs.some(contacts), self.zone[contacts]
-        with warnings.catch_warnings():
+        with quiet("seed-film-stiffness"):
             # The positions have said it already.
-            warnings.filterwarnings("ignore", r"\[seed-film-stiffness\]", ModelWarning)
             return self._solve(pairs, zone, loads.of_contacts[contacts])
 
     def _solve(self, pairs: PairsInContact, zone: Index, loads: Array) -> Places:

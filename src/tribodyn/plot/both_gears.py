@@ -9,7 +9,7 @@ from tribodyn.plot.harmonics import harmonic_panel
 from tribodyn.plot.labels import axis_label, axis_words, display_unit
 from tribodyn.plot.motion import Motion
 from tribodyn.plot.style import PINION, WHEEL, Panel, line
-from tribodyn.study.record import centre_column
+from tribodyn.study.pipeline.record import centre_column
 from tribodyn.types import Array
 
 #: Takes a result, a gear and an axis; returns the signal on the fine samples in SI.

@@ -11,7 +11,7 @@ from tribodyn.plot import signals
 from tribodyn.plot.labels import axis_label, display_unit, rounded
 from tribodyn.plot.motion import Motion
 from tribodyn.plot.style import MUTED, TOTAL, Panel, line, stack
-from tribodyn.study import record
+from tribodyn.study.pipeline import record
 
 
 def _below_zero(result: Any) -> str:

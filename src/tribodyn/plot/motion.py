@@ -11,7 +11,7 @@ from tribodyn.plot.cycle import CYCLES, cycles, mesh_events
 from tribodyn.plot.events import event_lines
 from tribodyn.plot.labels import axis_label, displayed, significant
 from tribodyn.plot.style import button_row
-from tribodyn.study import record
+from tribodyn.study.pipeline import record
 from tribodyn.types import Array
 
 #: Samples that each part of a transient curve keeps; more would not be seen but fill the file.

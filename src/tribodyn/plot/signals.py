@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.study import record
+from tribodyn.study.pipeline import record
 from tribodyn.types import Array
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.labels import readable
 from tribodyn.plot.style import MUTED, PAIR_COLORS, PINION, WHEEL, Panel, figure, line, stack
-from tribodyn.study.summary_names import SUMMARY
+from tribodyn.study.pipeline.summary_names import SUMMARY
 from tribodyn.units import convert
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)

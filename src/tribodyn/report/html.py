@@ -11,7 +11,7 @@ from tribodyn.report.blocks import Block, figure_blocks
 from tribodyn.report.friction_loop import compared_friction
 from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
-from tribodyn.study.save import write_file
+from tribodyn.study.pipeline.save import write_file
 
 _HERE = Path(__file__).parent
 

@@ -10,7 +10,7 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import Material
 from tribodyn.stiffness import wind_up_compliance
-from tribodyn.stiffness.ring_fourier import ring_compliance
+from tribodyn.stiffness.teeth.ring_fourier import ring_compliance
 
 INNER, OUTER = 0.015, 0.034
 

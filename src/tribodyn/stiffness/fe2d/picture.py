@@ -7,12 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Material, SpurGear
-from tribodyn.stiffness.fe2d.compliances import held_radius, wind_up_to_take_off
-from tribodyn.stiffness.fe2d.element import plane_stress
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
-from tribodyn.stiffness.fe2d.ring import Ring
+from tribodyn.stiffness.fe2d.provider import held_radius, wind_up_to_take_off
+from tribodyn.stiffness.fe2d.ring import Ring, plane_stress
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
 from tribodyn.types import Array
 
@@ -102,7 +101,7 @@ def _split(
         raise InputError(
             Problem(
                 what="no load",
-                where="argument loads",
+                where=Argument("loads"),
                 why="There is nothing to deform the gear",
                 remedy="Give (tooth, radius of curvature, load per width) for each contact",
             )
@@ -114,7 +113,7 @@ def _split(
         raise InputError(
             Problem(
                 what=f"radii of curvature {radii.min() * 1e3:.6g} to {radii.max() * 1e3:.6g} mm",
-                where="argument loads",
+                where=Argument("loads"),
                 why=f"The flank ends at the tip with {tip * 1e3:.6g} mm",
                 remedy="Load the tooth on its involute",
             )

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.loaded.prepare import mesh_problem
-from tribodyn.stiffness.model import MODELS, StiffnessModel
+from tribodyn.model import flag
+from tribodyn.stiffness.loaded.contact import mesh_problem
+from tribodyn.stiffness.model import MODELS, StiffnessModel, reference_option
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 #: Options of every model that knows the structure of the gears.
@@ -28,13 +29,13 @@ def _fe2d(gear: SpurGear, material: Material, *, reference: str) -> GearInfluenc
 
 
 def _analytic(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.analytic import analytic_influence
+    from tribodyn.stiffness.teeth.analytic import analytic_influence
 
     return analytic_influence(gear, material, reference=reference)
 
 
 def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.weber import weber_influence
+    from tribodyn.stiffness.teeth.weber import weber_influence
 
     return weber_influence(gear, material, reference=reference)
 
@@ -68,12 +69,41 @@ def _pair_stiffness(name: str) -> Callable[..., Array]:
     return function
 
 
-def _register(
-    name: str, influence: Callable[..., GearInfluence], options: dict[str, Any], coupled: bool
-) -> None:
-    MODELS.register(name)(StiffnessModel(name, _pair_stiffness(name), options, influence, coupled))
-
-
-_register("fe2d", _fe2d, OPTIONS, coupled=True)
-_register("analytic", _analytic, OPTIONS, coupled=True)
-_register("weber", _weber, {"reference": "rim"}, coupled=False)
+_DECLARED = {
+    "reference": reference_option("bore"),
+    "extended_contact": flag(
+        True, meaning="let tip corners of bent teeth touch before A and after E"
+    ),
+}
+for _model in (
+    StiffnessModel(
+        "fe2d",
+        _pair_stiffness("fe2d"),
+        _DECLARED,
+        _fe2d,
+        coupled=True,
+        meaning="stiffness from plane finite elements of both whole gears, all tooth pairs solved "
+        "together",
+        papers=("weber-banaschek", "conry-seireg"),
+    ),
+    StiffnessModel(
+        "analytic",
+        _pair_stiffness("analytic"),
+        _DECLARED,
+        _analytic,
+        coupled=True,
+        meaning="stiffness from strain energy of the teeth and Fourier series of the gear bodies, "
+        "all pairs together",
+        papers=("weber-banaschek", "conry-seireg"),
+    ),
+    StiffnessModel(
+        "weber",
+        _pair_stiffness("weber"),
+        {"reference": reference_option("rim")},
+        _weber,
+        meaning="stiffness after Weber: bending of the tooth, half plane under it, local "
+        "compression",
+        papers=("weber-banaschek",),
+    ),
+):
+    MODELS.register(_model.name)(_model)

@@ -1,0 +1,140 @@
+"""Read a case file: text to a checked case, every fault with its line."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.given import Source
+from tribodyn.study.case.lines import key_lines
+
+#: A number followed by a unit, without quotes.
+_BARE_UNIT = re.compile(r"=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-zµ°%][^\"'#]*?)\s*(?:#.*)?$")
+_COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
+_BARE_WORD = re.compile(r"=\s*([A-Za-z][\w-]*)\s*(?:#.*)?$")
+
+#: Characters of a faulty line that a message repeats.
+_SHOWN = 80
+
+
+def read_text(path: Path) -> str:
+    """Read a text file in UTF-8."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        what = f"byte 0x{error.object[error.start]:02x} is not UTF-8"
+        why = "A case file is text in UTF-8"
+        raise InputError(Problem(what, f"{path}:{line}", why, "Save it as UTF-8")) from None
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(Problem(f"the file cannot be read: {reason}", str(path))) from None
+
+
+def read_case(text: str, name: str = "") -> Case:
+    """Check the text of a case file.
+
+    Parameters
+    ----------
+    text : str
+        TOML text.
+    name : str
+        File name, for messages.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    InputError
+        Listing every fault of the file.
+
+    Examples
+    --------
+    >>> try:
+    ...     read_case("title = 'x'", "my.toml")
+    ... except InputError as error:
+    ...     print(error.problems[0])
+    my.toml: gears: the table [gears] is missing. Add it with normal_module, \
+normal_pressure_angle, driver, pinion, wheel.
+    """
+    data = _parse(text, name)
+    if not data:
+        remedy = "Write a case to start from: tribodyn new my.toml --from fzg-roughness"
+        raise InputError(Problem("the file holds no values", name, "", remedy))
+    _place_files(data, Path(name).parent)
+    return Case(Source(name or "case", partial(key_lines, text)), **data)
+
+
+def _place_files(data: dict[str, Any], folder: Path) -> None:
+    """Let the paths of a case begin at its own folder."""
+    for gear in ("pinion", "wheel"):
+        table = _at(data, "gears", gear, "modification")
+        if isinstance(table, dict) and isinstance(table.get("profile_map"), str):
+            table["profile_map"] = str((folder / table["profile_map"]).absolute())
+        mark = _at(data, "assumed", f"gears.{gear}.modification.profile_map")
+        if isinstance(mark, dict) and isinstance(mark.get("value"), str):
+            mark["value"] = str((folder / mark["value"]).absolute())
+
+
+def _at(data: Any, *keys: str) -> Any:
+    """Item of nested tables, or None."""
+    for key in keys:
+        data = data.get(key) if isinstance(data, dict) else None
+    return data
+
+
+def _parse(text: str, name: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(_syntax(text, name, str(error))) from None
+    except RecursionError:
+        deep = Problem("brackets are nested too deeply", name, "", "This is no case file")
+        raise InputError(deep) from None
+
+
+def _syntax(text: str, name: str, message: str) -> Problem:
+    """Say what the TOML reader stumbled over, and what was probably meant."""
+    found = re.search(r"\(at line (\d+), column \d+\)", message)
+    lines = text.splitlines()
+    number = int(found.group(1)) if found else len(lines)
+    reason = re.sub(r"\s*\(at .*\)$", "", message)
+    if repeated := _repeated(text, reason, number):
+        key, first, second = repeated
+        why = f"It stands in lines {first} and {second}"
+        return Problem(f"{key} is given twice", f"{name}:{second}: {key}", why, "Remove one")
+    content = lines[number - 1].strip() if 0 < number <= len(lines) else ""
+    shown = content if len(content) <= _SHOWN else f"{content[:_SHOWN]}..."
+    what = f'this is not TOML: "{shown}"' if content else "this is not TOML"
+    return Problem(what, f"{name}:{number}", reason, _remedy(content))
+
+
+def _repeated(text: str, reason: str, number: int) -> tuple[str, int, int] | None:
+    """Find the key that stands twice, if that is what the TOML reader refuses."""
+    if not re.search(r"overwrite|twice|duplicate|namespace", reason, re.IGNORECASE):
+        return None
+    twice = [(key, at) for key, at in key_lines(text).items() if len(at) > 1]
+    near = [(key, at) for key, at in twice if number in at] or twice
+    return (near[0][0], near[0][1][0], near[0][1][1]) if near else None
+
+
+def _remedy(content: str) -> str:
+    if match := _COMMA.search(content):
+        key = content.split("=")[0].strip()
+        return f"Write a decimal point: {key} = {match.group(1)}.{match.group(2)}"
+    if match := _BARE_UNIT.search(content):
+        return f'Put the value in quotes: {content.split("=")[0].strip()} = "{match.group(1)}"'
+    if match := _BARE_WORD.search(content):
+        return f'Put the word in quotes: {content.split("=")[0].strip()} = "{match.group(1)}"'
+    if content.count('"') % 2:
+        return "Close the quotes"
+    if content.startswith("[") and "]" not in content:
+        return "Close the bracket"
+    return 'A line reads: key = "value unit"' if "=" not in content else "Correct the line"
