@@ -200,6 +200,25 @@ class MeshTable(MeshColumns):
 
         save(self, path)
 
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write the columns of the force law, of friction and of the contacts as text.
+
+        A case with ``gears.kind = "table"`` runs such a file.
+
+        Parameters
+        ----------
+        path : str or path
+            File to write; an existing one is an error.
+
+        Raises
+        ------
+        OutputExistsError
+            If the file exists.
+        """
+        from tribodyn.mesh.table_file import write_csv
+
+        write_csv(self, path)
+
     @classmethod
     def load(cls, path: str | PathLike[str]) -> MeshTable:
         """Read a table that :meth:`save` wrote.

@@ -40,7 +40,7 @@ _UNITS = {**_OF_THE_MESH, **_OF_RAMPS, **_OF_CONTACTS, **dict.fromkeys(_DIRECTIO
 #: What holds for the whole file.
 _FACTS = {
     "base_radius_pinion": "m", "base_radius_wheel": "m", "pinion_torque": "N*m",
-    "pinion_speed": "rad/s", "common_face_width": "m",
+    "pinion_speed": "rad/s", "maximum_single_pair_stiffness": "N/m",
 }  # fmt: skip
 #: Columns that only tell of the contact and may hold NaN.
 _TOLD = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness",
@@ -159,7 +159,8 @@ class TableFile:
             columns.setdefault(name, np.full(shape, np.nan) if name not in _FILMS else None)  # type: ignore[arg-type]
         columns.setdefault("friction_direction", None)  # type: ignore[arg-type]
         columns.setdefault("unloaded_transmission_error", None)  # type: ignore[arg-type]
-        most = float(np.nanmax(columns["stiffness"]))
+        most = self.facts.get("maximum_single_pair_stiffness", float(columns["stiffness"].max()))
+        names.remove("direction")
         kept = {name: value for name, value in columns.items() if name in names}
         return {"maximum_single_pair_stiffness": most, **kept}
 
@@ -212,7 +213,7 @@ def _own(place: Path) -> TableFile:
     }
     if table.gears is not None:
         del columns["direction"]
-    facts = {name: float(getattr(table, name)) for name in _FACTS if name != "common_face_width"}
+    facts = {name: float(getattr(table, name)) for name in _FACTS}
     return TableFile(str(place), table.grid, columns, facts, table.gears)
 
 
@@ -407,7 +408,7 @@ def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
     """Columns by name: those of contacts, ramps and coordinates side by side."""
     found: dict[str, dict[tuple[int, int], Array]] = {}
     for column, header in enumerate(names):
-        match = _HEADER.fullmatch(header.strip().lower())
+        match = _HEADER.fullmatch(header.strip())
         name, number, unit = match.groups() if match else (header, None, None)
         coordinate = 0
         for of in _DIRECTIONS[::-1]:
@@ -469,7 +470,7 @@ def write_csv(table: MeshTable, path: str | os.PathLike[str]) -> None:
     if place.exists():
         why = "An existing file is never overwritten"
         raise OutputExistsError(Problem(f"{path} exists already", "argument path", why))
-    facts = {name: float(getattr(table, name)) for name in _FACTS if name != "common_face_width"}
+    facts = {name: float(getattr(table, name)) for name in _FACTS}
     columns: dict[str, Array] = {"phase": table.phase}
     for name, unit in _UNITS.items():
         values = table.phase if name == "phase" else getattr(table, name)

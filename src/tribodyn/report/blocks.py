@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
 
 #: Order of the figures in the report.
@@ -51,10 +52,15 @@ def script_json(text: str) -> str:
 
 
 def _block(figure: Drawing, result: Any) -> Block:
-    reason = figure.missing(result)
-    if reason:
-        return Block(figure.name, figure.heading, missing=reason)
-    drawn = figure(result)
+    try:
+        reason = figure.missing(result)
+        if reason:
+            return Block(figure.name, figure.heading, missing=reason)
+        drawn = figure(result)
+    except InputError as error:
+        # A mesh table of another program knows no gears.
+        told = error.problems[0]
+        return Block(figure.name, figure.heading, missing=f"{told.what}: {told.why}")
     title, saved = drawn.layout.title.text, drawn.layout.margin.t - _MARGIN
     # The page prints the title itself, where it can break into lines on a narrow screen.
     drawn.layout.update(
