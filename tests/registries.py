@@ -12,7 +12,7 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
 from tribodyn.study import SUMMARY
-from tribodyn.study.pipeline.summary_names import MEASURES
+from tribodyn.study.pipeline.summary import MEASURES
 
 __all__ = ["as_before"]
 

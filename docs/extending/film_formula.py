@@ -14,8 +14,14 @@ from tribodyn.model import number
     },
 )
 def martin(
-    load_per_width, equivalent_radius, entrainment_speed, dynamic_viscosity,
-    pressure_viscosity_coefficient, effective_modulus, *, factor,
+    load_per_width,
+    equivalent_radius,
+    entrainment_speed,
+    dynamic_viscosity,
+    pressure_viscosity_coefficient,
+    effective_modulus,
+    *,
+    factor,
 ):
     """Film in the centre of each contact [m]."""
     return factor * dynamic_viscosity * entrainment_speed * equivalent_radius / load_per_width

@@ -14,7 +14,7 @@ from tribodyn.stiffness import MODELS
         "peak_stiffness": number(
             4e8, 1e6, 1e11, "guards against a wrong unit", of="pair_stiffness"
         ),
-        "fall": number(0.3, 0.0, 0.9, "teeth do not vanish", meaning="loss of stiffness at A and E"),
+        "fall": number(0.3, 0.0, 0.9, "teeth do not vanish", meaning="loss at A and E"),
     },
 )
 def parabola(pair, material, path, in_contact, phase, normal_force, *, peak_stiffness, fall):

@@ -1,4 +1,4 @@
-"""A structure with an option of its own: both gears turn, a spring holds the wheel to the ground."""
+"""A structure with an option of its own: both gears turn, a spring holds the wheel."""
 
 from dataclasses import replace
 
@@ -15,9 +15,7 @@ from tribodyn.model import REQUIRED, number
         "holding_stiffness": number(
             REQUIRED, 1.0, 1e9, "guards against a wrong unit", of="shaft_stiffness"
         ),
-        "holding_damping": number(
-            0.5, 0.0, 1e6, "guards against a wrong unit", of="shaft_damping"
-        ),
+        "holding_damping": number(0.5, 0.0, 1e6, "guards against a wrong unit", of="shaft_damping"),
     },
 )
 def held_wheel(gears, *, holding_stiffness, holding_damping):

@@ -27,6 +27,7 @@ __all__ = [
     "collected",
     "quiet",
     "require_between",
+    "require_one_of",
     "require_positive",
     "warn",
 ]
@@ -129,13 +130,26 @@ class TribodynError(Exception):
     ----------
     problems : Problem, str or iterable of Problem
         What is wrong; all faults of one input come in one error.
+    where, why, remedy : str
+        The rest of a :class:`Problem` whose finding is given as a text.
+
+    Examples
+    --------
+    >>> print(InputError("nodes = 3", where=Argument("nodes"), why="At least 4 are needed"))
+    argument nodes: nodes = 3. At least 4 are needed.
     """
 
     exit_code = 1
 
-    def __init__(self, problems: Problem | str | Iterable[Problem]) -> None:
+    def __init__(
+        self,
+        problems: Problem | str | Iterable[Problem],
+        where: Argument | ModelOption | str = "",
+        why: str = "",
+        remedy: str = "",
+    ) -> None:
         if isinstance(problems, str):
-            problems = Problem(problems)
+            problems = Problem(problems, where, why, remedy)
         self.problems: tuple[Problem, ...] = (
             (problems,) if isinstance(problems, Problem) else tuple(problems)
         )
@@ -302,3 +316,35 @@ def require_between(
         f"between {low:g} and {high:g} {unit}".rstrip(),
         remedy,
     )
+
+
+def require_one_of(name: str, value: Any, known: Iterable[str]) -> None:
+    """Raise :class:`InputError` unless a value is one of the known words.
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : object
+        What was given.
+    known : iterable of str
+        The words.
+
+    Raises
+    ------
+    InputError
+        If the value is none of them.
+
+    Examples
+    --------
+    >>> require_one_of("inlet", "flooded", ("flooded", "zero"))
+    """
+    words = list(known)
+    if value not in words:
+        raise InputError(
+            Problem(
+                what=f'{name} = "{value}"',
+                where=f"argument {name}",
+                why=f"Known: {', '.join(words)}",
+            )
+        )

@@ -64,7 +64,7 @@ class Threads:
                 continue
             try:
                 future.set_result(function(*arguments))
-            except BaseException as error:
+            except (Exception, KeyboardInterrupt, SystemExit) as error:
                 future.set_exception(error)
             del task, future, function, arguments
 

@@ -16,7 +16,7 @@ import pytest
 import xarray
 
 from tribodyn.cli import call
-from tribodyn.cli.ranges import read_ranges
+from tribodyn.cli.settings import read_ranges
 from tribodyn.errors import InputError
 from tribodyn.study.pipeline.save import BIFURCATION_FILES, SWEEP_FILES
 

@@ -17,14 +17,12 @@ import pytest
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.gear import BasicRack, Material, SpurGear, SpurPair, spur_pair
+from tribodyn.stiffness import GearInfluence, load_point, wind_up_compliance
 from tribodyn.stiffness.fe2d import MeshSize, fe2d_influence
 from tribodyn.stiffness.fe2d.flank_load import flank_loads, half_plane_displacement, remainder_loads
 from tribodyn.stiffness.fe2d.provider import UnitCompliances, unit_compliances
 from tribodyn.stiffness.fe2d.ring import Ring, plane_stress
 from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, tooth_mesh
-from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import load_point
-from tribodyn.stiffness.teeth.sainsot import wind_up_compliance
 
 STEEL = Material()
 #: Radius of curvature of the pinion at the pitch point [m].

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from tribodyn.cli.changes import changed_case
-from tribodyn.cli.ranges import RANGE, read_ranges
 from tribodyn.cli.screen import say, say_json, tell
+from tribodyn.cli.settings import RANGE, changed_case, read_ranges
 
 if TYPE_CHECKING:
-    from tribodyn.analysis.bifurcation_result import Bifurcation
+    from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
-    from tribodyn.study.studies.bifurcation_findings import Findings
+    from tribodyn.study.studies.bifurcation import Findings
 
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
@@ -77,8 +76,8 @@ def bifurcation(
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with progress_bar() as progress:
         from tribodyn.study.studies.axes import read_axes
+        from tribodyn.study.studies.bifurcation import Findings
         from tribodyn.study.studies.bifurcation import bifurcation as compute
-        from tribodyn.study.studies.bifurcation_findings import Findings
 
         read_axes(ready, {key: (first, last, points)}, by="bifurcation")
         found = compute(

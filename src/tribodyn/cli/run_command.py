@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.changes import changed_case
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.settings import changed_case
 
 if TYPE_CHECKING:
     from tribodyn.study.pipeline.result import Result
@@ -67,7 +67,7 @@ def run(
 
 
 def _show(result: Result) -> None:
-    from tribodyn.study.pipeline.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary import SUMMARY
 
     rows = [[n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in result.summary().items()]
     say(f"{result.case.title}\n{table(rows)}")

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.changes import changed_case
-from tribodyn.cli.ranges import read_ranges
 from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.settings import changed_case, read_ranges
 
 if TYPE_CHECKING:
     from tribodyn.study.studies.sweep_result import Sweep
@@ -90,7 +89,7 @@ def sweep(
 
 
 def _show(found: Sweep, as_json: bool) -> None:
-    from tribodyn.study.pipeline.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary import SUMMARY
 
     if as_json:
         units = {axis.key: axis.unit for axis in found.axes}

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from tribodyn.dynamics.simulate import Method
+from tribodyn.dynamics.time.engines import Method
 from tribodyn.model import Model, Registry, number
 
 

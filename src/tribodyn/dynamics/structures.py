@@ -17,7 +17,7 @@ from tribodyn.dynamics.torsional import torsional
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.system import System
+    from tribodyn.dynamics.equations.system import System
     from tribodyn.mesh import MeshFunctions
 
 Pair = tuple[float, float]

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.dowson import dowson_1968_minimum
-from tribodyn.ehl.dowson_toyoda import dowson_toyoda_central
-from tribodyn.ehl.load_exponent import moes_load_exponent
-from tribodyn.ehl.moes import moes_central
-from tribodyn.ehl.pan_hamrock import pan_hamrock_central, pan_hamrock_minimum
-from tribodyn.ehl.solved_films import Films, solved_films
+from tribodyn.ehl.formulas.moes import moes_central, moes_load_exponent
+from tribodyn.ehl.formulas.power_laws import (
+    dowson_1968_minimum,
+    dowson_toyoda_central,
+    pan_hamrock_central,
+    pan_hamrock_minimum,
+)
+from tribodyn.ehl.steady.solved_films import Films, solved_films
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.model import Model, Registry, choice, integer, numbers

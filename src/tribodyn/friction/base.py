@@ -14,7 +14,7 @@ from tribodyn.model import Model, Registry
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.ehl.film_state import FilmState
+    from tribodyn.ehl.traction.film_state import FilmState
 
 
 _POSITIVE = (

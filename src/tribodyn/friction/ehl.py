@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.ehl.film_state import FilmState
-from tribodyn.ehl.film_temperature import film_temperature_rise, film_thermal_resistance
-from tribodyn.ehl.heated_viscosity import thermal_oil
-from tribodyn.ehl.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.ree_eyring import EYRING_STRESS
-from tribodyn.ehl.shear_models import SHEAR_MODELS
-from tribodyn.ehl.traction import FilmShear
+from tribodyn.ehl.traction.film_state import FilmState
+from tribodyn.ehl.traction.film_temperature import (
+    film_temperature_rise,
+    film_thermal_resistance,
+    thermal_oil,
+)
+from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
+from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
+from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.traction import FilmShear
 from tribodyn.errors import InputError, Problem, require_positive, warn
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.model import choice, flag, number

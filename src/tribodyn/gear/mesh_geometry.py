@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from tribodyn.errors import Argument, InputError, Problem, require_positive
+from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear.curves import inverse_involute, involute
 from tribodyn.gear.tooth_form import ToothForm
 
@@ -52,13 +52,11 @@ def operating_pressure_angle(
     cosine = reference * math.cos(normal_pressure_angle) / center_distance
     if cosine >= 1.0:
         raise InputError(
-            Problem(
-                what=f"center_distance = {center_distance * 1e3:.6g} mm",
-                where=Argument("center_distance"),
-                why="It must exceed the sum of the base radii, "
-                f"{cosine * center_distance * 1e3:.6g} mm",
-                remedy=f"The reference centre distance is {reference * 1e3:.6g} mm",
-            )
+            f"center_distance = {center_distance * 1e3:.6g} mm",
+            where=Argument("center_distance"),
+            why="It must exceed the sum of the base radii, "
+            f"{cosine * center_distance * 1e3:.6g} mm",
+            remedy=f"The reference centre distance is {reference * 1e3:.6g} mm",
         )
     return math.acos(cosine)
 
@@ -103,12 +101,10 @@ def zero_backlash_center_distance(
     if value < 0.0:
         least = -involute(angle) * teeth_sum / (2.0 * math.tan(angle))
         raise InputError(
-            Problem(
-                what=f"sum of the profile shift coefficients = {shift_sum:.6g}",
-                where=Argument("profile_shift_coefficient"),
-                why=f"No centre distance without play exists below a sum of {least:.6g}",
-                remedy="Increase a shift, or give the centre distance",
-            )
+            f"sum of the profile shift coefficients = {shift_sum:.6g}",
+            where=Argument("profile_shift_coefficient"),
+            why=f"No centre distance without play exists below a sum of {least:.6g}",
+            remedy="Increase a shift, or give the centre distance",
         )
     reference = 0.5 * teeth_sum * normal_module
     return reference * math.cos(angle) / math.cos(inverse_involute(value))
@@ -267,7 +263,7 @@ def flank_ranges(mesh: MeshGeometry) -> tuple[FlankRange, FlankRange]:
 
     Parameters
     ----------
-    mesh : MeshGeometry or SpurPair
+    mesh : MeshGeometry
         The gears in mesh.
 
     Returns
@@ -293,7 +289,7 @@ def default_relief_length(mesh: MeshGeometry) -> float:
 
     Parameters
     ----------
-    mesh : MeshGeometry or SpurPair
+    mesh : MeshGeometry
         The gears in mesh.
 
     Returns

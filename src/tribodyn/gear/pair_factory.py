@@ -156,13 +156,11 @@ def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
     play, module = mesh.geometric_backlash, mesh.pinion.normal_module
     if backlash < play - ROUNDING_WARNING * module:
         raise InputError(
-            Problem(
-                what=f"backlash = {backlash * 1e3:.6g} mm",
-                where=Argument("backlash"),
-                why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
-                f"mm leave {play * 1e3:.6g} mm already",
-                remedy="Leave the backlash out, or reduce the centre distance",
-            )
+            f"backlash = {backlash * 1e3:.6g} mm",
+            where=Argument("backlash"),
+            why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
+            f"mm leave {play * 1e3:.6g} mm already",
+            remedy="Leave the backlash out, or reduce the centre distance",
         )
     return max(0.5 * (backlash - play), 0.0)
 

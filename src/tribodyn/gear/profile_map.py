@@ -171,9 +171,9 @@ def _shape_problems(chart: ProfileMap) -> list[Problem]:
     widths = sorted({len(row) for row in chart.deviation})
     if rows >= 2 and columns >= 1 and len(chart.deviation) == rows and widths == [columns]:
         return []
-    found = f"{len(chart.deviation)} rows of {' or '.join(map(str, widths)) or 'no'} values"
+    shape = f"{len(chart.deviation)} rows of {' or '.join(map(str, widths)) or 'no'} values"
     what = (
-        f"profile_map has {found} for {rows} places along the profile and {columns} along the face"
+        f"profile_map has {shape} for {rows} places along the profile and {columns} along the face"
     )
     why = "It needs two or more places along the profile, and one value for each pair of places"
     return [_problem(what, why, "Complete the map, or take the odd points out")]

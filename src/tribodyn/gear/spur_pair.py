@@ -325,8 +325,8 @@ def _map_problems(
     low, high = chart.limits(gear.base_radius)
     slack = _SLACK * flank.length
     if low > flank.lowest + slack or high < flank.highest - slack:
-        needed, found = (f"{a * 1e3:.6g} to {b * 1e3:.6g} mm" for a, b in (flank, (low, high)))
-        what = f"the profile map of the {name} covers the roll lengths {found}"
+        needed, covered = (f"{a * 1e3:.6g} to {b * 1e3:.6g} mm" for a, b in (flank, (low, high)))
+        what = f"the profile map of the {name} covers the roll lengths {covered}"
         diameters = [2e3 * math.hypot(gear.base_radius, radius) for radius in flank]
         why = (
             f"The used flank lies from {needed}, which are the diameters {diameters[0]:.6g} to "

@@ -222,12 +222,10 @@ class ToothForm:
         base = self.base_radius
         if not radius >= base * (1.0 - 1e-12):
             raise InputError(
-                Problem(
-                    what=f"radius = {radius * 1e3:.6g} mm",
-                    where=Argument("radius"),
-                    why=f"The involute begins at the base radius {base * 1e3:.6g} mm",
-                    remedy="Use half_tooth for points of the fillet",
-                )
+                f"radius = {radius * 1e3:.6g} mm",
+                where=Argument("radius"),
+                why=f"The involute begins at the base radius {base * 1e3:.6g} mm",
+                remedy="Use half_tooth for points of the fillet",
             )
         return math.sqrt(max((radius - base) * (radius + base), 0.0)) / base
 

@@ -16,7 +16,7 @@ from tribodyn.contact import (
     path_of_contact,
 )
 from tribodyn.ehl import FILM_MODELS, moes_central
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.errors import require_between
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant

@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.errors import Problem, TribodynError, require_between
 from tribodyn.friction import TribologicalContact
 from tribodyn.gear import Material

@@ -240,7 +240,7 @@ def _check(tables: Sequence[MeshColumns], nominal: MeshColumns, ratio: Array) ->
                 what=f"{np.unique(ratio).size} different loads",
                 where="argument tables",
                 why=f"A polynomial with {_TERMS} terms goes through more than {_TERMS} loads",
-                remedy="Build the mesh at the loads in tribodyn.mesh.mesh_friction.LOADS",
+                remedy="Build the mesh at the loads in tribodyn.mesh.LOADS",
             )
         )
     require_between("load over the nominal load", ratio, 0.0, np.inf, "")

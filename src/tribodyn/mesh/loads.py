@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.errors import ComputationError, Problem, quiet, warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact

@@ -15,8 +15,8 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.film_state import FilmState
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.errors import quiet, warn
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.mesh.cycle import (

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,17 @@ from tribodyn.gear import Material, SpurPair
 from tribodyn.model import Model, Registry, choice
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
+
+
+class MeshState(NamedTuple):
+    """What a model is asked about: the positional arguments of :class:`StiffnessModel`."""
+
+    pair: SpurPair
+    material: Material
+    path: Array  #: distance of each contact from the pinion's base tangent point (n, pairs) [m]
+    in_contact: Mask
+    phase: Array  #: (n,)
+    normal_force: float  #: of all pairs together [N]
 
 
 @dataclass(frozen=True)
@@ -146,11 +157,9 @@ def usable_stiffness(found: Array, in_contact: Mask, model: str) -> Array:
     )
     if not sound:
         raise ComputationError(
-            Problem(
-                what=f'the stiffness model "{model}" gave no usable pair stiffness',
-                where="stiffness of the tooth pairs",
-                why="It must be finite and positive where a pair is in contact, zero elsewhere",
-                remedy="Check the options of the model, or choose another",
-            )
+            f'the stiffness model "{model}" gave no usable pair stiffness',
+            where="stiffness of the tooth pairs",
+            why="It must be finite and positive where a pair is in contact, zero elsewhere",
+            remedy="Check the options of the model, or choose another",
         )
     return stiffness

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.loaded_teeth import loaded_contact
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
-    from tribodyn.study.pipeline.summary_names import SUMMARY, summary_figure
+    from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.study.studies.static import (
@@ -53,8 +53,8 @@ _HOMES = {
     "run": "pipeline.run",
     "run_up": "studies.run_up",
     "Result": "pipeline.result",
-    "SUMMARY": "pipeline.summary_names",
-    "summary_figure": "pipeline.summary_names",
+    "SUMMARY": "pipeline.summary",
+    "summary_figure": "pipeline.summary",
     "Sweep": "studies.sweep_result",
     "sweep": "studies.sweep",
 }

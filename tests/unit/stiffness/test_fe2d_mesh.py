@@ -10,6 +10,7 @@ from scipy.sparse.linalg import spsolve
 
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import BasicRack, SpurGear, section_moments
+from tribodyn.stiffness import load_point
 from tribodyn.stiffness.fe2d.flank_load import flank_loads, nodal_weights
 from tribodyn.stiffness.fe2d.ring import (
     element_stiffness,
@@ -18,7 +19,6 @@ from tribodyn.stiffness.fe2d.ring import (
     shape_gradients,
 )
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, grid_elements, tooth_mesh
-from tribodyn.stiffness.teeth.load_point import load_point
 
 
 def gear_of(teeth: int, shift: float, bore: float, **more: object) -> SpurGear:

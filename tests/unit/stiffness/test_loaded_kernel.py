@@ -7,7 +7,8 @@ import pytest
 
 from plain.loaded_contact import plain_approach, plain_loads
 from tribodyn.errors import ComputationError
-from tribodyn.stiffness.loaded.problem import Compliance, ContactProblem
+from tribodyn.stiffness import ContactProblem
+from tribodyn.stiffness.loaded.problem import Compliance
 
 WIDTH = 0.02
 

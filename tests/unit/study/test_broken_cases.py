@@ -6,7 +6,7 @@ import pytest
 from broken import BROKEN, SOUND, Broken, line_of
 
 from tribodyn.errors import InputError
-from tribodyn.study.case.read import read_case
+from tribodyn.study import read_case
 
 
 @pytest.mark.parametrize("broken", BROKEN, ids=lambda broken: broken.name)

@@ -11,7 +11,7 @@ import pytest
 from broken import SOUND
 
 import tribodyn as td
-from tribodyn.study.case.read import read_case
+from tribodyn.study import read_case
 from tribodyn.study.pipeline.cautions import case_cautions, mesh_cautions
 
 RPM = math.pi / 30.0

@@ -16,11 +16,9 @@ import tribodyn as td
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, default_relief_length, flank_gap, flank_ranges
-from tribodyn.study import SUMMARY
-from tribodyn.study.case.case import Case
+from tribodyn.study import SUMMARY, Case, read_case
 from tribodyn.study.case.provenance import assumptions
-from tribodyn.study.case.read import read_case
-from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.assembly import geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

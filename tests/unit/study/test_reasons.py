@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import tribodyn as td
-from tribodyn.cases.catalogue import case_files
+from tribodyn.cases import case_files
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.model import Option

@@ -32,26 +32,7 @@ class FlankLoads(NamedTuple):
 
 
 def nodal_weights(mesh: SectorMesh, length: Array, half_width: Array) -> Array:
-    """Weights of the nodes for a Hertzian pressure on the flank.
-
-    Parameters
-    ----------
-    mesh : SectorMesh
-        Sector.
-    length : array (K,)
-        Place of the middle along the flank.
-    half_width : array (K,)
-        Half width of the patch along the flank; zero for a point.
-
-    Returns
-    -------
-    array (nodes, K)
-        Columns that add up to one.
-
-    Notes
-    -----
-    Source: semi-elliptic pressure of Hertz, Johnson, Contact Mechanics, 1985, equation 4.44.
-    """
+    """Weights (nodes, K) of the nodes for Hertzian pressure on patches of the flank, or points."""
     points = _POINTS if np.any(half_width) else 1
     turn = np.pi * ((np.arange(points) + 0.5) / points - 0.5)
     share = 2.0 * np.cos(turn) ** 2 / np.sum(2.0 * np.cos(turn) ** 2)
@@ -108,8 +89,8 @@ def half_plane_displacement(
     radial = -2.0 * cosine * log - (1.0 - nu) * angle * sine
     around = 2.0 * nu * sine + 2.0 * sine * log + (1.0 - nu) * (sine - angle * cosine)
     inward, sideways = cosine * radial - sine * around, sine * radial + cosine * around
-    found: Array = (inward[..., None] * direction + sideways[..., None] * along) / np.pi
-    return found
+    displacement: Array = (inward[..., None] * direction + sideways[..., None] * along) / np.pi
+    return displacement
 
 
 def remainder_loads(

@@ -74,13 +74,13 @@ def unit_compliances(
     loads = flank_loads(gear, mesh, np.concatenate([rho, support]))
     near = np.append(rho > support[0], np.zeros(support.size, dtype=bool))
     forces = loads.forces.copy()
-    place, direction, depth = (part[~near] for part in loads[:3])
+    place, direction, depth = (rows[~near] for rows in loads[:3])
     forces[:, ~near] = remainder_loads(mesh, place, direction, depth, elasticity)
     solution = ring.solve(forces)
     # the side of larger radii is the clockwise one
     seen = ring.seen(solution, loads.forces, [-n for n in range(neighbours + 1)])
-    own = _carried_to_tip(rho, support, np.diagonal(seen[0]), near[: rho.size])
-    return UnitCompliances(rho, own, seen[1:, : rho.size, : rho.size].copy())
+    self_compliance = _carried_to_tip(rho, support, np.diagonal(seen[0]), near[: rho.size])
+    return UnitCompliances(rho, self_compliance, seen[1:, : rho.size, : rho.size].copy())
 
 
 def _places(gear: SpurGear) -> tuple[Array, Array]:
@@ -97,13 +97,13 @@ def _places(gear: SpurGear) -> tuple[Array, Array]:
     return rho, np.sqrt(tip * tip - 2.0 * base * module * shrink * _TIP_SUPPORT)
 
 
-def _carried_to_tip(rho: Array, support: Array, own: Array, near: Mask) -> Array:
+def _carried_to_tip(rho: Array, support: Array, self_compliance: Array, near: Mask) -> Array:
     """Self compliance at the nodes, beyond the supports as the parabola of the length."""
     tip = rho[-1]
     scale = tip * tip - support[-1] ** 2
-    curve = np.polyfit((tip * tip - support**2) / scale, own[rho.size :], 2)
+    curve = np.polyfit((tip * tip - support**2) / scale, self_compliance[rho.size :], 2)
     parabola = np.polyval(curve, (tip * tip - rho * rho) / scale)
-    return np.where(near, parabola, own[: rho.size])
+    return np.where(near, parabola, self_compliance[: rho.size])
 
 
 #: Folders, relative to this one, and modules on which the numbers depend.
@@ -173,20 +173,18 @@ def fe2d_influence(
     wind_up = wind_up_to_take_off(gear, material, reference)
     if neighbours < 1:
         raise InputError(
-            Problem(
-                what=f"neighbours = {neighbours}",
-                where=Argument("neighbours"),
-                why="Teeth in contact at the same time move one another",
-                remedy="Give 1 or more",
-            )
+            f"neighbours = {neighbours}",
+            where=Argument("neighbours"),
+            why="Teeth in contact at the same time move one another",
+            remedy="Give 1 or more",
         )
     known = max(min(neighbours, (gear.teeth - 1) // 2), 1)
-    found = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)
-    own = found.self_compliance / material.youngs_modulus - wind_up
-    if not np.all(own > 0.0):
+    unit = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)
+    self_compliance = unit.self_compliance / material.youngs_modulus - wind_up
+    if not np.all(self_compliance > 0.0):
         raise InputError(_too_thin(gear))
-    cross = found.cross_compliance / material.youngs_modulus - wind_up
-    return GearInfluence(found.curvature_radius, own, cross)
+    cross = unit.cross_compliance / material.youngs_modulus - wind_up
+    return GearInfluence(unit.curvature_radius, self_compliance, cross)
 
 
 def _too_thin(gear: SpurGear) -> Problem:
@@ -211,14 +209,14 @@ def _looked_up(
     arrays = load_arrays(name)
     if arrays is not None and set(arrays) == set(UnitCompliances._fields):
         kept = UnitCompliances(**arrays)
-        shapes = [part.shape for part in kept]
+        shapes = [rows.shape for rows in kept]
         if shapes == [(NODES,), (NODES,), (neighbours, NODES, NODES)] and all(
-            np.all(np.isfinite(part)) for part in kept
+            np.all(np.isfinite(rows)) for rows in kept
         ):
             return kept
-    found = unit_compliances(gear, poissons_ratio, neighbours, size)
-    store_arrays(name, found._asdict())
-    return found
+    unit = unit_compliances(gear, poissons_ratio, neighbours, size)
+    store_arrays(name, unit._asdict())
+    return unit
 
 
 def _file_name(gear: SpurGear, poissons_ratio: float, neighbours: int, size: MeshSize) -> str:

@@ -197,11 +197,11 @@ class Ring:
         inner = weights[self._inner]
         on_cuts = (self._turn.T @ weights)[self._boundary]
         per_cut = _summed(self._inside_per_cut, inner) + on_cuts
-        found = [self._both_cuts(solution, sector).T @ per_cut for sector in sectors]
+        displacements = [self._both_cuts(solution, sector).T @ per_cut for sector in sectors]
         for place, sector in enumerate(sectors):
             if sector % self.mesh.count == 0:
-                found[place] = found[place] + _summed(solution.inside, inner)
-        return np.stack(found)
+                displacements[place] = displacements[place] + _summed(solution.inside, inner)
+        return np.stack(displacements)
 
     def displacement(self, solution: RingSolution, sector: int) -> Array:
         """Displacements of all nodes of a sector in x and y of its own frame."""

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.gear.tooth_form import ToothForm
 from tribodyn.types import Array, Index
 
@@ -210,14 +210,12 @@ def _check_rim(form: ToothForm, bore_radius: float) -> None:
     rim = form.root_radius - bore_radius
     if rim < _THINNEST_RIM * form.normal_module:
         raise InputError(
-            Problem(
-                what=f"the bore of {2e3 * bore_radius:.4g} mm leaves a rim of {rim * 1e3:.3g} mm "
-                "under the root circle",
-                where="bore_diameter",
-                why=f"The finite element model needs {_THINNEST_RIM:g} modules, "
-                f"{_THINNEST_RIM * form.normal_module * 1e3:.3g} mm",
-                remedy="Give a smaller bore",
-            )
+            f"the bore of {2e3 * bore_radius:.4g} mm leaves a rim of {rim * 1e3:.3g} mm "
+            "under the root circle",
+            where="bore_diameter",
+            why=f"The finite element model needs {_THINNEST_RIM:g} modules, "
+            f"{_THINNEST_RIM * form.normal_module * 1e3:.3g} mm",
+            remedy="Give a smaller bore",
         )
 
 
@@ -285,9 +283,9 @@ def _numbered(
 ) -> SectorMesh:
     """Join the two grids: the lowest row of the tooth is a part of the top row of the body."""
     under = np.arange(body.shape[0] * body.shape[1]).reshape(body.shape[:2])
-    own = under.size + np.arange(tooth.shape[0] * (tooth.shape[1] - 1))
+    upper = under.size + np.arange(tooth.shape[0] * (tooth.shape[1] - 1))
     foot = under[side_columns : side_columns + tooth.shape[0], :1]
-    grid = np.concatenate([own.reshape(tooth.shape[0], -1), foot], axis=1)
+    grid = np.concatenate([upper.reshape(tooth.shape[0], -1), foot], axis=1)
     outline = np.concatenate(
         [
             under[:side_columns, 0],

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import Argument, InputError, Problem, require_positive
+from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded.load_points import (
     ContactPlaces,
@@ -52,7 +52,7 @@ def compliance_of(
             for gear in (pair.pinion, pair.wheel)
         )
         structure = coupled_compliance(pinion, wheel, places)
-        return Compliance(structure, *local_coefficients(pair, material, places))
+        return Compliance(structure, *local_coefficients(material, places))
     stiffness = model(
         pair, material, places.path, places.on_path, places.phase, total_force, **options
     )
@@ -184,18 +184,37 @@ def mesh_problem(
     return ContactProblem(where, compliance, gaps, widths)
 
 
+def contact_settings(
+    provider: str,
+    phase: Array,
+    extended_contact: bool,
+    reference: str | None,
+    material: Material | None,
+    slices: int | None,
+    options: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Arguments of :func:`contact_problem` but for the pair and its load."""
+    known = reference is not None and "reference" in MODELS[provider].options
+    return {
+        "provider": provider,
+        "phase": phase,
+        "extended_contact": extended_contact,
+        "material": material or Material(),
+        "options": {**options, "reference": reference} if known else dict(options),
+        "slices": slices,
+    }
+
+
 def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
     """Mesh phases over all cycles, from a number for each cycle or as they are given."""
     if not isinstance(phases, int | np.integer):
         return np.atleast_1d(np.asarray(phases, dtype=float))
     if phases < 8:
         raise InputError(
-            Problem(
-                what=f"phases = {phases}",
-                where=Argument("phases"),
-                why="A mesh cycle needs at least 8 phases",
-                remedy="Give for example phases=64",
-            )
+            f"phases = {phases}",
+            where=Argument("phases"),
+            why="A mesh cycle needs at least 8 phases",
+            remedy="Give for example phases=64",
         )
     return np.arange(int(phases) * mesh_cycles) / int(phases)
 
@@ -270,23 +289,16 @@ def loaded_contact(
     """
     torques = np.asarray(torque, dtype=float)
     require_positive("torque", torques, "N*m")
-    chosen = dict(options)
-    if reference is not None and "reference" in MODELS[provider].options:
-        chosen["reference"] = reference
-    given = {
-        "provider": provider,
-        "phase": phases_of(phases, mesh_period(pair)),
-        "extended_contact": extended_contact,
-        "material": material or Material(),
-        "options": chosen,
-        "slices": slices,
-    }
+    phase = phases_of(phases, mesh_period(pair))
+    settings = contact_settings(
+        provider, phase, extended_contact, reference, material, slices, options
+    )
     totals = np.atleast_1d(torques) / pair.pinion.base_radius
-    problem, found = _solved(pair, totals, film_stiffness, given)
+    problem, equilibrium = _solved(pair, totals, film_stiffness, settings)
     shape = torques.shape
-    places, pairs = problem.places, found.load.shape[-1]
-    load = found.load.reshape(*shape, *found.load.shape[1:])
-    held = {**MODELS[provider].options, **chosen}.get("reference", "as measured")
+    places, pairs = problem.places, equilibrium.load.shape[-1]
+    load = equilibrium.load.reshape(*shape, *equilibrium.load.shape[1:])
+    held = {**MODELS[provider].options, **settings["options"]}.get("reference", "as measured")
     return LoadedContact(
         gear_pair=pair,
         provider=provider,
@@ -298,33 +310,36 @@ def loaded_contact(
         pinion_curvature_radius=places.pinion_curvature_radius,
         wheel_curvature_radius=places.wheel_curvature_radius,
         gap=problem.gaps.min(axis=1),
-        transmission_error=found.approach.reshape(*shape, places.phase.size),
+        transmission_error=equilibrium.approach.reshape(*shape, places.phase.size),
         normal_force=np.einsum("s,...psn->...pn", problem.widths, load).reshape(
             *shape, places.phase.size, pairs
         ),
         load_per_width=load,
-        mesh_stiffness_tangent=found.tangent.reshape(*shape, places.phase.size),
+        mesh_stiffness_tangent=equilibrium.tangent.reshape(*shape, places.phase.size),
     )
 
 
 def _solved(
-    pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, given: dict[str, Any]
+    pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, settings: dict[str, Any]
 ) -> tuple[ContactProblem, Equilibrium]:
     """One problem for all loads, or one for each where the stiffness itself depends on the load."""
 
-    def solve(some: Array) -> tuple[ContactProblem, Equilibrium]:
-        problem = contact_problem(pair, total_force=float(some[0]), **given)
+    def solve(forces: Array) -> tuple[ContactProblem, Equilibrium]:
+        problem = contact_problem(pair, total_force=float(forces[0]), **settings)
         if film_stiffness is not None:
             shape = problem.compliance.local.shape
             problem = problem.with_film(np.broadcast_to(np.asarray(film_stiffness, float), shape))
-        order = np.argsort(some)
-        found = problem.at_loads(some[order])
+        order = np.argsort(forces)
+        equilibrium = problem.at_loads(forces[order])
         back = np.argsort(order)
-        return problem, Equilibrium(*(part[back] for part in found))
+        return problem, Equilibrium(*(column[back] for column in equilibrium))
 
-    if MODELS[given["provider"]].influence is not None or totals.size == 1:
+    if MODELS[settings["provider"]].influence is not None or totals.size == 1:
         return solve(totals)
     each = [solve(totals[k : k + 1]) for k in range(totals.size)]
     return each[0][0], Equilibrium(
-        *(np.concatenate(parts) for parts in zip(*(found for _, found in each), strict=True))
+        *(
+            np.concatenate(parts)
+            for parts in zip(*(equilibrium for _, equilibrium in each), strict=True)
+        )
     )

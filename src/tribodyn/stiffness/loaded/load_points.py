@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.contact import PathOfContact, extended_contact, path_of_contact
-from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.errors import Argument, InputError
 from tribodyn.gear import SpurPair, flank_gap, hunting_period, pitch_gap, run_out_gap
 from tribodyn.types import Array, Index, Mask
 
@@ -119,12 +119,10 @@ def slice_widths(pair: SpurPair, slices: int | None) -> Array:
     count = (_SLICES if pair.has_lead_modification else 1) if slices is None else slices
     if not 1 <= count <= _MOST_SLICES:
         raise InputError(
-            Problem(
-                what=f"slices = {count}",
-                where=Argument("slices"),
-                why=f"The face width is cut into 1 to {_MOST_SLICES} slices",
-                remedy="Leave it out: 21 are taken where flanks vary over the face width",
-            )
+            f"slices = {count}",
+            where=Argument("slices"),
+            why=f"The face width is cut into 1 to {_MOST_SLICES} slices",
+            remedy="Leave it out: 21 are taken where flanks vary over the face width",
         )
     return np.full(count, pair.common_face_width / count)
 

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.gear import Material, SpurGear, SpurPair
+from tribodyn.gear import Material, SpurGear
 from tribodyn.model import flag
 from tribodyn.stiffness.loaded.contact import mesh_problem
-from tribodyn.stiffness.model import MODELS, StiffnessModel, reference_option
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array
 
 #: Options of every model that knows the structure of the gears.
 OPTIONS = {"reference": "bore", "extended_contact": True}
@@ -41,30 +41,23 @@ def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluen
 
 
 def _pair_stiffness(name: str) -> Callable[..., Array]:
-    def function(
-        pair: SpurPair,
-        material: Material,
-        path: Array,
-        in_contact: Mask,
-        phase: Array,
-        normal_force: float,
-        **options: Any,
-    ) -> Array:
+    def function(*mesh: Any, **options: Any) -> Array:
+        state = MeshState(*mesh)
         problem = mesh_problem(
-            pair,
+            state.pair,
             provider=name,
-            places=(phase, path, in_contact),
-            total_force=normal_force,
+            places=(state.phase, state.path, state.in_contact),
+            total_force=state.normal_force,
             extended_contact=bool(options.get("extended_contact")),
-            material=material,
+            material=state.material,
             options=options,
         )
-        found = problem.at_loads(np.array([normal_force]))
-        force = np.einsum("s,psn->pn", problem.widths, found.load[0])
-        if force.shape != in_contact.shape:
+        equilibrium = problem.at_loads(np.array([state.normal_force]))
+        force = np.einsum("s,psn->pn", problem.widths, equilibrium.load[0])
+        if force.shape != state.in_contact.shape:
             force = force[:, 1:-1]
-        deflection = found.approach[0] - problem.least_gap
-        return np.where(in_contact, force / deflection[:, None], 0.0)
+        deflection = equilibrium.approach[0] - problem.least_gap
+        return np.where(state.in_contact, force / deflection[:, None], 0.0)
 
     return function
 

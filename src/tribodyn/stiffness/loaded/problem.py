@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.contact import effective_modulus
 from tribodyn.errors import ComputationError, Problem
-from tribodyn.gear import Material, SpurPair
+from tribodyn.gear import Material
 from tribodyn.stiffness.loaded.load_points import FAR, ContactPlaces
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import load_point
@@ -54,9 +54,7 @@ class Compliance:
     logarithm: float  #: coefficient ``B`` [m^2/N]
 
 
-def local_coefficients(
-    pair: SpurPair, material: Material, places: ContactPlaces
-) -> tuple[Array, float]:
+def local_coefficients(material: Material, places: ContactPlaces) -> tuple[Array, float]:
     """Coefficients of the compression after Weber and Banaschek with its Hertzian half width."""
     nu = material.poissons_ratio
     scale = 2.0 * (1.0 - nu**2) / (math.pi * material.youngs_modulus)
@@ -64,6 +62,7 @@ def local_coefficients(
     reduced = radii[0] * radii[1] / (radii[0] + radii[1])
     square = 8.0 * reduced / (math.pi * effective_modulus(material, material))
     total = np.zeros(places.path.shape)
+    pair = places.contact.pair
     for gear, radius in zip((pair.pinion, pair.wheel), radii, strict=True):
         depth = load_point(gear, radius).depth
         total += np.log(2.0 * depth) - 0.5 * np.log(square) - nu / (2.0 * (1.0 - nu))
@@ -160,13 +159,17 @@ class ContactProblem:
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
         phases, slices, pairs = self.gaps.shape
-        found = Equilibrium(
+        equilibrium = Equilibrium(
             np.empty((totals.size, phases)),
             np.empty((totals.size, phases, slices, pairs)),
             np.empty((totals.size, phases)),
         )
-        _told(solve_loads(*self._arguments, self.widths, np.asarray(totals, dtype=float), *found))
-        return found
+        _check_status(
+            solve_loads(
+                *self._arguments, self.widths, np.asarray(totals, dtype=float), *equilibrium
+            )
+        )
+        return equilibrium
 
     def at_approach(self, approach: Array) -> tuple[Array, Array]:
         """Force and tangent stiffness at given approaches.
@@ -190,7 +193,7 @@ class ContactProblem:
 
         total, tangent = np.empty(approach.shape), np.empty(approach.shape)
         asked = np.ascontiguousarray(approach, dtype=float)
-        _told(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
+        _check_status(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
         return total, tangent
 
     def tangent_at(self, load_per_width: Array) -> Array:
@@ -235,9 +238,9 @@ class ContactProblem:
         """
         from tribodyn.stiffness.loaded.kernel import pickups
 
-        found = np.empty(self.compliance.local.shape)
-        _told(pickups(*self._arguments, np.ascontiguousarray(most), found))
-        return found
+        approach = np.empty(self.compliance.local.shape)
+        _check_status(pickups(*self._arguments, np.ascontiguousarray(most), approach))
+        return approach
 
     @property
     def _arguments(self) -> tuple[Array, Array, float, Array]:
@@ -245,7 +248,7 @@ class ContactProblem:
         return parts.structure, parts.local, parts.logarithm, np.minimum(self.gaps, FAR)
 
 
-def _told(status: int) -> None:
+def _check_status(status: int) -> None:
     if status:
         what, remedy = _STATUS[status]
         raise ComputationError(Problem(what, "loaded tooth contact", "", remedy))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.errors import Argument, InputError
 from tribodyn.gear import SpurGear, SpurPair, half_tooth
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.record import Parts, Record, fact, record
@@ -63,22 +63,18 @@ def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: in
     even = np.arange(phase.size) * (mesh_cycles / phase.size) + phase[0]
     if not np.allclose(phase, even, rtol=0.0, atol=1e-9):
         raise InputError(
-            Problem(
-                what="mesh phases that are not evenly spaced",
-                where=Argument("phases"),
-                why="Harmonics need evenly spaced phases over whole mesh cycles",
-                remedy="Give the number of phases of a mesh cycle instead",
-            )
+            "mesh phases that are not evenly spaced",
+            where=Argument("phases"),
+            why="Harmonics need evenly spaced phases over whole mesh cycles",
+            remedy="Give the number of phases of a mesh cycle instead",
         )
     if not 1 <= count < phase.size / (2 * mesh_cycles):
         raise InputError(
-            Problem(
-                what=f"count = {count}",
-                where=Argument("count"),
-                why=f"{phase.size // mesh_cycles} phases of a mesh cycle have less than half as "
-                "many harmonics",
-                remedy="Give more phases, for example phases=64",
-            )
+            f"count = {count}",
+            where=Argument("count"),
+            why=f"{phase.size // mesh_cycles} phases of a mesh cycle have less than half as "
+            "many harmonics",
+            remedy="Give more phases, for example phases=64",
         )
     spectrum = 2.0 * np.abs(np.fft.rfft(values, axis=-1)) / phase.size
     return np.asarray(spectrum[..., mesh_cycles * np.arange(1, count + 1)])
@@ -103,7 +99,7 @@ _PLACES: dict[str, str] = {
 }
 
 
-def _told(quantity: str) -> dict[str, str]:
+def _labels(quantity: str) -> dict[str, str]:
     known = QUANTITIES[quantity]
     return {"units": known.unit or "1", "long_name": known.meaning}
 
@@ -237,12 +233,12 @@ class LoadedContact(Record):
     def _parts(self) -> Parts:
         parts, several = super()._parts(), ("torque",) * self.torque.ndim
         for name, (dims, quantity) in _ARRAYS.items():
-            parts.variables[name] = ((*several, *dims), getattr(self, name), _told(quantity))
+            parts.variables[name] = ((*several, *dims), getattr(self, name), _labels(quantity))
         for name, quantity in _PLACES.items():
-            parts.variables[name] = (("phase", "pair"), getattr(self, name), _told(quantity))
-        parts.coordinates["phase"] = ("phase", self.phase, _told("mesh_phase"))
+            parts.variables[name] = (("phase", "pair"), getattr(self, name), _labels(quantity))
+        parts.coordinates["phase"] = ("phase", self.phase, _labels("mesh_phase"))
         parts.coordinates["pair"] = ("pair", self.number)
-        parts.coordinates["torque"] = (several, self.torque, _told("torque"))
+        parts.coordinates["torque"] = (several, self.torque, _labels("torque"))
         return parts
 
     def plot(self, **options: Any) -> Any:

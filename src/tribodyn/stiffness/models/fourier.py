@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, ModelOption, Problem, require_positive
-from tribodyn.gear import Material, SpurPair
+from tribodyn.errors import InputError, ModelOption, require_positive
 from tribodyn.model import number, numbers
-from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
-from tribodyn.types import Array, Mask
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
+from tribodyn.types import Array
 
 #: Points at which the sign of the series is checked, per cycle of its highest harmonic.
 _POINTS_PER_WAVE = 64
@@ -59,23 +58,18 @@ def fourier_mesh_stiffness(
     coefficients[1, : len(sine)] = sine
     if not np.all(np.isfinite(coefficients)):
         raise InputError(
-            Problem(
-                what="a coefficient of the Fourier series is not a finite number",
-                where=ModelOption("stiffness", "fourier", "cosine, sine"),
-                remedy="Give every coefficient in N/m",
-            )
+            "a coefficient of the Fourier series is not a finite number",
+            where=ModelOption("stiffness", "fourier", "cosine, sine"),
+            remedy="Give every coefficient in N/m",
         )
     scan = np.linspace(0.0, 1.0, _POINTS_PER_WAVE * (coefficients.shape[1] + 1))
     least = _series(scan, mean_stiffness, coefficients)
     if least.min() <= 0.0:
         raise InputError(
-            Problem(
-                what=f"the mesh stiffness is {least.min():.4g} N/m at phase "
-                f"{scan[least.argmin()]:.3f}",
-                where=ModelOption("stiffness", "fourier"),
-                why="A mesh in contact has a positive stiffness over the whole cycle",
-                remedy=f"Raise mean_stiffness = {mean_stiffness:g} N/m or lower the coefficients",
-            )
+            f"the mesh stiffness is {least.min():.4g} N/m at phase {scan[least.argmin()]:.3f}",
+            where=ModelOption("stiffness", "fourier"),
+            why="A mesh in contact has a positive stiffness over the whole cycle",
+            remedy=f"Raise mean_stiffness = {mean_stiffness:g} N/m or lower the coefficients",
         )
     return _series(np.asarray(phase, dtype=float), mean_stiffness, coefficients)
 
@@ -88,25 +82,16 @@ def _series(phase: Array, mean_stiffness: float, coefficients: Array) -> Array:
     return total
 
 
-def _model(
-    pair: SpurPair,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    **options: Any,
-) -> Array:
+def _model(*mesh: Any, **options: Any) -> Array:
+    state = MeshState(*mesh)
     if options["mean_stiffness"] is None:
         raise InputError(
-            Problem(
-                what="mean_stiffness not given",
-                where=ModelOption("stiffness", "fourier"),
-                why="The series needs its mean",
-                remedy='Give for example mean_stiffness = "2.5e8 N/m"',
-            )
+            "mean_stiffness not given",
+            where=ModelOption("stiffness", "fourier"),
+            why="The series needs its mean",
+            remedy='Give for example mean_stiffness = "2.5e8 N/m"',
         )
-    return share_equally(fourier_mesh_stiffness(phase, **options), in_contact)
+    return share_equally(fourier_mesh_stiffness(state.phase, **options), state.in_contact)
 
 
 _GUARD = "guards against a wrong unit"

@@ -9,8 +9,8 @@ import numpy as np
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import require_positive, warn
 from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.model import MODELS, StiffnessModel
-from tribodyn.types import Array, Mask
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel
+from tribodyn.types import Array
 
 #: N/(mm um) in SI.
 _PER_WIDTH = 1e9
@@ -204,17 +204,10 @@ def iso6336_pair_stiffness(
     return pair.common_face_width * single * (1.0 - 3.0 * (1.0 - mean) * from_middle**2)
 
 
-def _model(
-    pair: SpurPair,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    **options: Any,
-) -> Array:
-    stiffness = iso6336_pair_stiffness(pair, material, path, normal_force)
-    return np.where(in_contact, stiffness, 0.0)
+def _model(*mesh: Any, **options: Any) -> Array:
+    state = MeshState(*mesh)
+    stiffness = iso6336_pair_stiffness(state.pair, state.material, state.path, state.normal_force)
+    return np.where(state.in_contact, stiffness, 0.0)
 
 
 MODELS.register("iso6336")(

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
-from tribodyn.errors import ComputationError, ModelOption, Problem, require_positive
+from tribodyn.errors import ComputationError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.model import MODELS, StiffnessModel, reference_option
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
 from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
@@ -227,25 +227,16 @@ def potential_energy_stiffness(
         if change < _TOLERANCE:
             return stiffness
     raise ComputationError(
-        Problem(
-            what=f"the load share still changes by {change:.2g} after {_PASSES} passes",
-            where=ModelOption("stiffness", "potential-energy"),
-            why=f"It must settle to {_TOLERANCE:g}",
-            remedy="Check the load; the local compression formula may be outside its range",
-        )
+        f"the load share still changes by {change:.2g} after {_PASSES} passes",
+        where=ModelOption("stiffness", "potential-energy"),
+        why=f"It must settle to {_TOLERANCE:g}",
+        remedy="Check the load; the local compression formula may be outside its range",
     )
 
 
-def _model(
-    pair: SpurPair,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    **options: Any,
-) -> Array:
-    return potential_energy_stiffness(pair, material, path, in_contact, normal_force, **options)
+def _model(*mesh: Any, **options: Any) -> Array:
+    pair, material, path, in_contact, _, force = MeshState(*mesh)
+    return potential_energy_stiffness(pair, material, path, in_contact, force, **options)
 
 
 MODELS.register("potential-energy")(

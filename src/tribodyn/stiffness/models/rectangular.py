@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, ModelOption, Problem, require_positive
-from tribodyn.gear import Material, SpurPair
+from tribodyn.errors import InputError, ModelOption, require_positive
 from tribodyn.model import number
-from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
 from tribodyn.types import Array, Mask
 
 
@@ -75,12 +74,10 @@ def rectangular_stiffness(
     count = in_contact.sum(axis=1)
     if not np.all(np.isin(count, (1, 2))):
         raise InputError(
-            Problem(
-                what=f"a zone of this mesh has {count.max()} pairs in contact",
-                where="single_pair_stiffness, double_pair_stiffness",
-                why="The two mesh values describe zones of one and two pairs only",
-                remedy="Give pair_stiffness, which holds for any contact ratio",
-            )
+            f"a zone of this mesh has {count.max()} pairs in contact",
+            where="single_pair_stiffness, double_pair_stiffness",
+            why="The two mesh values describe zones of one and two pairs only",
+            remedy="Give pair_stiffness, which holds for any contact ratio",
         )
     return share_equally(np.where(count == 1, single, double), in_contact)
 
@@ -90,35 +87,23 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
     listing = ", ".join(f"{name} = {value:g} N/m" for name, value in given.items())
     if pair_stiffness is not None and given:
         raise InputError(
-            Problem(
-                what=f"pair_stiffness = {pair_stiffness:g} N/m and {listing} are both given",
-                where=ModelOption("stiffness", "rectangular"),
-                why="They are two ways of saying the same thing",
-                remedy="Keep pair_stiffness, or the two mesh values, not both",
-            )
+            f"pair_stiffness = {pair_stiffness:g} N/m and {listing} are both given",
+            where=ModelOption("stiffness", "rectangular"),
+            why="They are two ways of saying the same thing",
+            remedy="Keep pair_stiffness, or the two mesh values, not both",
         )
     if pair_stiffness is None and len(given) < len(totals):
         missing = ", ".join(name for name in totals if name not in given)
         raise InputError(
-            Problem(
-                what=f"{missing} not given" + (f" although {listing} is" if given else ""),
-                where=ModelOption("stiffness", "rectangular"),
-                why="The model needs pair_stiffness, or both mesh values",
-                remedy='Give for example pair_stiffness = "2e8 N/m"',
-            )
+            f"{missing} not given" + (f" although {listing} is" if given else ""),
+            where=ModelOption("stiffness", "rectangular"),
+            why="The model needs pair_stiffness, or both mesh values",
+            remedy='Give for example pair_stiffness = "2e8 N/m"',
         )
 
 
-def _model(
-    pair: SpurPair,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    **options: Any,
-) -> Array:
-    return rectangular_stiffness(in_contact, **options)
+def _model(*mesh: Any, **options: Any) -> Array:
+    return rectangular_stiffness(MeshState(*mesh).in_contact, **options)
 
 
 _RANGE = (None, 1e3, 1e13, "guards against a wrong unit")

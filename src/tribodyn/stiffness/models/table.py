@@ -9,11 +9,9 @@ import numpy as np
 
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
-from tribodyn.gear import Material, SpurPair
 from tribodyn.model import numbers
-from tribodyn.stiffness.model import MODELS, StiffnessModel, share_equally
-from tribodyn.stiffness.monotone import monotone_cubic
-from tribodyn.types import Array, Mask
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
+from tribodyn.types import Array
 
 #: Roll angles of a table may fall short of A..E by this much [rad] (rounding in print).
 _COVERAGE_TOLERANCE = 1e-6
@@ -53,13 +51,16 @@ def tabulated_stiffness(
 
     Notes
     -----
-    Interpolation as :func:`tribodyn.stiffness.monotone.monotone_cubic`. Source: the user's table.
+    A monotone piecewise cubic, Fritsch and Carlson (1980), SIAM J. Numer. Anal. 17, 238-246.
+    Source: the user's table.
 
     Examples
     --------
     >>> tabulated_stiffness([0.0, 0.5, 1.0], [1e8, 2e8, 1e8], np.array([0.0, 0.5]))
     array([1.e+08, 2.e+08])
     """
+    from scipy.interpolate import PchipInterpolator
+
     x = np.asarray(abscissa, dtype=float)
     y = np.asarray(stiffness, dtype=float)
     problems = [*_shape_problems(x, y, name), *_order_problems(x, name, unit)]
@@ -69,14 +70,12 @@ def tabulated_stiffness(
     low, high = float(np.min(at)), float(np.max(at))
     if low < x[0] - _COVERAGE_TOLERANCE or high > x[-1] + _COVERAGE_TOLERANCE:
         raise InputError(
-            Problem(
-                what=f"the table covers {name} {x[0]:.6g} to {x[-1]:.6g} {unit}".rstrip(),
-                where=ModelOption("stiffness", "table", name),
-                why=f"The mesh needs {low:.6g} to {high:.6g} {unit}".rstrip(),
-                remedy="Extend the table to the whole contact; nothing is extrapolated",
-            )
+            f"the table covers {name} {x[0]:.6g} to {x[-1]:.6g} {unit}".rstrip(),
+            where=ModelOption("stiffness", "table", name),
+            why=f"The mesh needs {low:.6g} to {high:.6g} {unit}".rstrip(),
+            remedy="Extend the table to the whole contact; nothing is extrapolated",
         )
-    return monotone_cubic(x, y)(np.clip(at, x[0], x[-1]))
+    return np.asarray(PchipInterpolator(x, y)(np.clip(at, x[0], x[-1])))
 
 
 def _shape_problems(x: Array, y: Array, name: str) -> list[Problem]:
@@ -118,34 +117,23 @@ def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
     return []
 
 
-def _model(
-    pair: SpurPair,
-    material: Material,
-    path: Array,
-    in_contact: Mask,
-    phase: Array,
-    normal_force: float,
-    /,
-    **options: Any,
-) -> Array:
-    options = _named_values(options)
+def _model(*mesh: Any, **options: Any) -> Array:
+    state, options = MeshState(*mesh), _named_values(options)
     given = {name for name, value in options.items() if value is not None}
     if given == {"phase", "mesh_stiffness"}:
-        whole_cycle = np.concatenate(([0.0, 1.0], phase))
+        whole_cycle = np.concatenate(([0.0, 1.0], state.phase))
         total = tabulated_stiffness(
             options["phase"], options["mesh_stiffness"], whole_cycle, name="phase"
         )
-        return share_equally(total[2:], in_contact)
+        return share_equally(total[2:], state.in_contact)
     if given == {"roll_angle", "pair_stiffness"}:
-        return _over_roll_angle(pair, path, in_contact, options)
+        return _over_roll_angle(state, options)
     raise InputError(
-        Problem(
-            what=f"given: {', '.join(sorted(given)) or 'nothing'}",
-            where=ModelOption("stiffness", "table"),
-            why="A table is phase with mesh_stiffness, or roll_angle (of the driving gear) with "
-            "pair_stiffness",
-            remedy="Give one of the two forms, complete and alone",
-        )
+        f"given: {', '.join(sorted(given)) or 'nothing'}",
+        where=ModelOption("stiffness", "table"),
+        why="A table is phase with mesh_stiffness, or roll_angle (of the driving gear) with "
+        "pair_stiffness",
+        remedy="Give one of the two forms, complete and alone",
     )
 
 
@@ -159,15 +147,11 @@ def _named_values(options: dict[str, Any]) -> dict[str, Any]:
     return options
 
 
-def _over_roll_angle(
-    pair: SpurPair,
-    path: Array,
-    in_contact: Mask,
-    options: dict[str, Any],
-) -> Array:
+def _over_roll_angle(state: MeshState, options: dict[str, Any]) -> Array:
+    pair, path, in_contact = state.pair, state.path, state.in_contact
+    ends = path_of_contact(pair).roll_angles
     radius = pair.driving.base_radius
     from_tangent_point = path if pair.driver == "pinion" else pair.line_of_action_length - path
-    ends = path_of_contact(pair).roll_angles
     needed = np.concatenate(([ends["A"], ends["E"]], from_tangent_point[in_contact] / radius))
     values = tabulated_stiffness(
         options["roll_angle"], options["pair_stiffness"], needed, name="roll_angle", unit="rad"

@@ -143,12 +143,10 @@ class GearInfluence:
         """
         if neighbour == 0:
             raise InputError(
-                Problem(
-                    what="neighbour = 0",
-                    where=Argument("neighbour"),
-                    why="The displacement of the loaded tooth has a local part",
-                    remedy="Use the self compliance, and add the compression of the contact",
-                )
+                "neighbour = 0",
+                where=Argument("neighbour"),
+                why="The displacement of the loaded tooth has a local part",
+                remedy="Use the self compliance, and add the compression of the contact",
             )
         first, second = self._inside(loaded_radius), self._inside(seen_radius)
         if abs(neighbour) > self.neighbours:
@@ -164,14 +162,11 @@ class GearInfluence:
         slack = _ROUNDING * (high - low)
         if places.size and (places.min() < low - slack or places.max() > high + slack):
             raise InputError(
-                Problem(
-                    what=f"radius of curvature {places.min() * 1e3:.6g} to "
-                    f"{places.max() * 1e3:.6g} mm",
-                    where=Argument("curvature_radius"),
-                    why=f"The compliance is known from {low * 1e3:.6g} to {high * 1e3:.6g} mm, "
-                    "from the end of the fillet to the tip",
-                    remedy="Load the tooth on its involute",
-                )
+                f"radius of curvature {places.min() * 1e3:.6g} to {places.max() * 1e3:.6g} mm",
+                where=Argument("curvature_radius"),
+                why=f"The compliance is known from {low * 1e3:.6g} to {high * 1e3:.6g} mm, "
+                "from the end of the fillet to the tip",
+                remedy="Load the tooth on its involute",
             )
         return np.asarray(np.clip(places, low, high))
 

@@ -101,7 +101,7 @@ def flank_nodes(gear: SpurGear, count: int = 30) -> Array:
         gear.base_radius * gear.roll_angle(radius) for radius in (gear.form_radius, gear.tip_radius)
     )
     low = max(low, _LEAST_PART * high)
-    part = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, count)))
-    nodes = low + (high - low) * part
+    share = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, count)))
+    nodes = low + (high - low) * share
     nodes[-1] = high
     return nodes

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.gear import Material
 from tribodyn.types import Array
 
@@ -34,14 +34,11 @@ def ring_compliance(
     require_positive("outer_radius", outer_radius, "m")
     if inner_radius > _LARGEST_INNER * outer_radius:
         raise InputError(
-            Problem(
-                what=f"inner radius {inner_radius * 1e3:.6g} mm, outer radius "
-                f"{outer_radius * 1e3:.6g} mm",
-                where="ring under the teeth",
-                why="The body is the ring between the two; it must be at least "
-                f"{1.0 - _LARGEST_INNER:.1%} of the radius thick",
-                remedy="Give a smaller bore",
-            )
+            f"inner radius {inner_radius * 1e3:.6g} mm, outer radius {outer_radius * 1e3:.6g} mm",
+            where="ring under the teeth",
+            why="The body is the ring between the two; it must be at least "
+            f"{1.0 - _LARGEST_INNER:.1%} of the radius thick",
+            remedy="Give a smaller bore",
         )
     ratio = inner_radius / outer_radius
     shear = material.shear_modulus
@@ -118,41 +115,14 @@ def foot_stresses(
     root_radius: float,
     half_angle: float,
 ) -> Array:
-    """Spread a tooth load over the foot of the tooth.
+    """Stresses (3, K) [1/m] per load per width by which a tooth load stands on the foot.
 
     The load turns the gear counter-clockwise. Over the foot an even tangential stress carries the
     torque, an even radial stress the force along the tooth, and a radial stress that grows
-    linearly with the angle from the tooth axis the rest of the force across.
+    linearly with the angle from the tooth axis the rest of the force across; of the latter the
+    value at the counter-clockwise end is given. Force and torque are those of the load exactly.
+    Source: distributions of Sainsot, Velex and Duverger (2004), J. Mech. Des. 126, 748-752.
 
-    Parameters
-    ----------
-    load_angle : float or array (K,) [rad]
-        Angle between the load and the normal of the tooth axis.
-    base_radius : float [m]
-        Base radius, the lever of the load.
-    root_radius : float [m]
-        Radius on which the foot lies.
-    half_angle : float [rad]
-        Half of the angle that the foot covers.
-
-    Returns
-    -------
-    array (3, K) [1/m]
-        Per load per width: tangential stress, even radial stress, and radial stress at the
-        counter-clockwise end of the foot of the part that grows linearly.
-
-    Raises
-    ------
-    InputError
-        If a radius or the half angle is not positive.
-
-    Notes
-    -----
-    Force and torque are those of the load exactly. Source: distributions of Sainsot, Velex and
-    Duverger (2004), J. Mech. Des. 126, 748-752.
-
-    Examples
-    --------
     The tangential stress carries the torque, here 0.03 N m/m per 1 N/m.
 
     >>> stress = foot_stresses(0.3, 0.03, 0.032, 0.1)

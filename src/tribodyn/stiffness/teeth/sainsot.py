@@ -6,7 +6,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_positive, warn
+from tribodyn.errors import InputError, require_positive, warn
 from tribodyn.gear import Material
 from tribodyn.types import Array
 
@@ -196,24 +196,19 @@ def wind_up_compliance(
         require_positive(name, value, "m")
     if bore_radius <= 0.0:
         raise InputError(
-            Problem(
-                what=f"bore radius {bore_radius * 1e3:g} mm",
-                where='stiffness reference = "bore"',
-                why="The bore is the fixed end of the gear body; a shaft of no diameter gives "
-                "way without limit",
-                remedy='Give bore_diameter, or choose reference = "rim", which leaves the wind-up '
-                "of the body out",
-            )
+            f"bore radius {bore_radius * 1e3:g} mm",
+            where='stiffness reference = "bore"',
+            why="The bore is the fixed end of the gear body; a shaft of no diameter gives "
+            "way without limit",
+            remedy='Give bore_diameter, or choose reference = "rim", which leaves the wind-up '
+            "of the body out",
         )
     if bore_radius >= root_radius:
         raise InputError(
-            Problem(
-                what=f"bore diameter {2e3 * bore_radius:.4g} mm, root diameter "
-                f"{2e3 * root_radius:.4g} mm",
-                where="bore_diameter",
-                why="The body is the ring between the two",
-                remedy="Give a bore smaller than the root circle",
-            )
+            f"bore diameter {2e3 * bore_radius:.4g} mm, root diameter {2e3 * root_radius:.4g} mm",
+            where="bore_diameter",
+            why="The body is the ring between the two",
+            remedy="Give a bore smaller than the root circle",
         )
     ring = 1.0 / bore_radius**2 - 1.0 / root_radius**2
     return base_radius**2 / (4.0 * np.pi * material.shear_modulus * face_width) * ring

@@ -2,20 +2,49 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, require_positive
-from tribodyn.gear import Material
-from tribodyn.stiffness.monotone import monotone_cubic
+from tribodyn.errors import Argument, InputError, require_positive
+from tribodyn.gear import Material, ToothForm, half_tooth
 from tribodyn.stiffness.teeth.load_point import LoadPoint
 from tribodyn.types import Array
 
+#: Points of the outline of a tooth.
+_OUTLINE_POINTS = 400
 #: Shear correction of a rectangular section.
 _SHEAR_FACTOR = 1.2
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+class ToothSection(NamedTuple):
+    """Half of the section of a tooth over its axis, from the foot to the tip."""
+
+    height: Array  #: along the tooth axis from the gear centre [m]
+    half_thickness: Array  #: [m]
+
+    @property
+    def foot(self) -> tuple[float, float]:
+        """Height and half thickness of the foot, where the fillet meets the root circle [m]."""
+        return float(self.height[0]), float(self.half_thickness[0])
+
+    @property
+    def root_radius(self) -> float:
+        """Radius of the root circle [m]."""
+        return math.hypot(*self.foot)
+
+    @property
+    def root_half_angle(self) -> float:
+        """Half of the angle that the foot takes on the root circle [rad]."""
+        return math.atan2(self.half_thickness[0], self.height[0])
+
+
+def tooth_section(gear: ToothForm) -> ToothSection:
+    """Section of a tooth on as many points as its compliance needs (2e-6 of itself beyond)."""
+    return ToothSection(*half_tooth(gear, _OUTLINE_POINTS))
 
 
 class ToothBendingCompliance(NamedTuple):
@@ -87,15 +116,17 @@ def tooth_bending_compliance(
     --------
     A square bar of 1 mm by 1 mm, 10 mm long, loaded across: ``F L^3 / (3 E I)``.
 
-    >>> from tribodyn.gear import Material
+    >>> from tribodyn.gear import Material, ToothForm, half_tooth
     >>> bar = (np.array([0.0, 0.01]), np.array([0.5e-3, 0.5e-3]))
     >>> found = tooth_bending_compliance(bar, 0.01, 0.0, 0.0, 1e-3, Material(200e9))
     >>> print(f"{float(found.bending) * 1e3:.4f} mm/N")
     0.0200 mm/N
     """
+    from scipy.interpolate import PchipInterpolator
+
     knots, thickness = _checked(outline, height, face_width)
     y_load = np.asarray(height, dtype=float)
-    section = monotone_cubic(knots, thickness)
+    section = PchipInterpolator(knots, thickness)
     moments = _section_integrals(section, knots, y_load)
     across, along = np.cos(load_angle), np.sin(load_angle)
     # Moment as polynomial in the height above the foot: cos a (reach - s).
@@ -131,26 +162,22 @@ def _checked(
     outline: tuple[Array, Array], height: Array | float, face_width: float
 ) -> tuple[Array, Array]:
     require_positive("face_width", face_width, "m")
-    knots, thickness = (np.asarray(part, dtype=float) for part in outline)
+    knots, thickness = (np.asarray(coordinate, dtype=float) for coordinate in outline)
     require_positive("half thickness of the outline", thickness[:-1], "m")
     if np.any(np.diff(knots) <= 0.0):
         raise InputError(
-            Problem(
-                what="the height of the tooth outline does not increase",
-                where=Argument("outline"),
-                why="The beam runs from the foot to the tip",
-                remedy="Give the outline from the foot upwards without repeated points",
-            )
+            "the height of the tooth outline does not increase",
+            where=Argument("outline"),
+            why="The beam runs from the foot to the tip",
+            remedy="Give the outline from the foot upwards without repeated points",
         )
     tolerance = 1e-9 * (knots[-1] - knots[0])
     if np.min(height) < knots[0] - tolerance or np.max(height) > knots[-1] + tolerance:
         raise InputError(
-            Problem(
-                what=f"load at heights {np.min(height) * 1e3:.6g} to {np.max(height) * 1e3:.6g} mm",
-                where=Argument("height"),
-                why=f"The tooth reaches from {knots[0] * 1e3:.6g} to {knots[-1] * 1e3:.6g} mm",
-                remedy="Load the tooth on its flank",
-            )
+            f"load at heights {np.min(height) * 1e3:.6g} to {np.max(height) * 1e3:.6g} mm",
+            where=Argument("height"),
+            why=f"The tooth reaches from {knots[0] * 1e3:.6g} to {knots[-1] * 1e3:.6g} mm",
+            remedy="Load the tooth on its flank",
         )
     return knots, thickness
 
@@ -158,44 +185,26 @@ def _checked(
 def beam_to_axis(
     outline: tuple[Array, Array], load: LoadPoint, material: Material
 ) -> ToothBendingCompliance:
-    """Compliance of a tooth below the local compression, per unit face width.
+    """Compliance of a tooth below the local compression, per unit face width [m^2/N].
 
     The local compression reaches from the flank along the load to the tooth axis. What bends,
-    shears and compresses the tooth as a beam begins there.
+    shears and compresses the tooth as a beam begins there. Plane stress. A load low on the flank
+    of a gear of many teeth crosses the axis below the foot; it then spares a piece of the body as
+    wide as the foot, whose shear and axial compression are negative contributions. Source: Weber
+    and Banaschek (1953), integrals up to the tooth axis.
 
-    Parameters
-    ----------
-    outline : two arrays (m,) [m]
-        Height along the tooth axis, increasing from the foot, and half thickness.
-    load : LoadPoint
-        Where the load meets the tooth.
-    material : Material
-        Material of the gear.
-
-    Returns
-    -------
-    ToothBendingCompliance
-        Contributions [m^2/N], of the shape of the load point.
-
-    Notes
-    -----
-    Plane stress. A load low on the flank of a gear of many teeth crosses the axis below the foot;
-    it then spares a piece of the body as wide as the foot, whose shear and axial compression are
-    negative contributions. Source: Weber and Banaschek (1953), integrals up to the tooth axis.
-
-    Examples
-    --------
-    >>> from tribodyn.gear import SpurGear, half_tooth
+    >>> from tribodyn.gear import SpurGear
     >>> from tribodyn.stiffness import load_point
     >>> gear = SpurGear(teeth=24, normal_module=4.5e-3, normal_pressure_angle=0.349066,
     ...     profile_shift_coefficient=0.0, tip_diameter=0.117, face_width=0.02)
-    >>> parts = beam_to_axis(half_tooth(gear), load_point(gear, 0.02), Material())
+    >>> parts = beam_to_axis(tooth_section(gear), load_point(gear, 0.02), Material())
     >>> bool(parts.shear > parts.axial > 0.0)
     True
     """
-    foot_height, foot_half_width = float(outline[0][0]), float(outline[1][0])
+    section = ToothSection(*outline)
+    foot_height, foot_half_width = section.foot
     within = np.maximum(load.axis_height, foot_height)
-    parts = tooth_bending_compliance(outline, within, 0.0, load.load_angle, 1.0, material)
+    parts = tooth_bending_compliance(section, within, 0.0, load.load_angle, 1.0, material)
     # Zero, or the negative length of the beam over the width of the foot.
     spared = np.minimum(load.axis_height - foot_height, 0.0) / (2.0 * foot_half_width)
     return ToothBendingCompliance(

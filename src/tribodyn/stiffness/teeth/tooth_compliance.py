@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
-from tribodyn.errors import InputError, ModelOption, Problem
-from tribodyn.gear import Material, SpurGear, half_tooth
+from tribodyn.errors import InputError, ModelOption
+from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.teeth.load_point import LoadPoint
 from tribodyn.stiffness.teeth.sainsot import LARGEST_RATIO, sainsot_compliance, wind_up_compliance
-from tribodyn.stiffness.teeth.tooth_bending import tooth_bending_compliance
+from tribodyn.stiffness.teeth.tooth_bending import tooth_bending_compliance, tooth_section
 from tribodyn.types import Array
 
 #: Where the gear body is held: at the bore, or rigidly under the teeth.
 REFERENCES = ("bore", "rim")
-#: Points of the outline; the compliance changes by 2e-6 of itself beyond.
-_OUTLINE_POINTS = 400
 
 
 class ToothCompliance(NamedTuple):
@@ -44,17 +40,21 @@ class ToothCompliance(NamedTuple):
         return self.bending + self.shear + self.axial + self.foundation + self.wind_up
 
 
+def check_choice(name: str, value: str, known: tuple[str, ...], why: str) -> None:
+    """Refuse a word that an option of the models does not know."""
+    if value not in known:
+        raise InputError(
+            f'{name} = "{value}"',
+            where=ModelOption("stiffness", name=name),
+            why=why,
+            remedy="Write " + " or ".join(f'"{word}"' for word in known),
+        )
+
+
 def check_reference(reference: str) -> None:
     """Refuse a name that is no body reference."""
-    if reference not in REFERENCES:
-        raise InputError(
-            Problem(
-                what=f'reference = "{reference}"',
-                where=ModelOption("stiffness", name="reference"),
-                why="The body of each gear is held at its bore or under its rim",
-                remedy='Write "bore" or "rim"',
-            )
-        )
+    why = "The body of each gear is held at its bore or under its rim"
+    check_choice("reference", reference, REFERENCES, why)
 
 
 def tooth_compliance(
@@ -108,13 +108,11 @@ def tooth_compliance(
     (True, 0.0)
     """
     check_reference(reference)
-    outline = half_tooth(gear, _OUTLINE_POINTS)
-    foot_height, foot_half_width = float(outline[0][0]), float(outline[1][0])
-    root_radius = float(np.hypot(foot_height, foot_half_width))
-    root_half_angle = float(np.arctan2(foot_half_width, foot_height))
+    section = tooth_section(gear)
+    root_radius = section.root_radius
     bore_radius = 0.5 * gear.bore_diameter
     tooth = tooth_bending_compliance(
-        outline, load.height, load.half_thickness, load.load_angle, face_width, material
+        section, load.height, load.half_thickness, load.load_angle, face_width, material
     )
 
     def wind_up(held_at: float) -> float:
@@ -124,7 +122,7 @@ def tooth_compliance(
     held_at_bore = sainsot_compliance(
         load.load_angle,
         load.axis_height - root_radius,
-        root_half_angle,
+        section.root_half_angle,
         root_radius,
         fitted_bore,
         face_width,

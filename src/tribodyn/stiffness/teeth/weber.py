@@ -7,11 +7,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, Problem, require_between, require_positive
-from tribodyn.gear import Material, SpurGear, half_tooth
+from tribodyn.errors import ComputationError, InputError, require_between, require_positive
+from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
-from tribodyn.stiffness.teeth.tooth_bending import beam_to_axis
+from tribodyn.stiffness.teeth.tooth_bending import beam_to_axis, tooth_section
 from tribodyn.stiffness.teeth.tooth_compliance import check_reference
 from tribodyn.types import Array
 
@@ -70,21 +70,15 @@ def weber_banaschek_compression(
     bracket = np.log(2.0 * depth / half_width) - nu / (2.0 * (1.0 - nu))
     if np.any(bracket <= 0.0):
         raise ComputationError(
-            Problem(
-                what=f"contact half width {np.max(half_width) * 1e3:.4g} mm against a depth of "
-                f"{np.min(depth) * 1e3:.4g} mm",
-                where="Weber-Banaschek compression",
-                why="The formula holds for a half width much smaller than the depth",
-                remedy="Lower the load",
-            )
+            f"contact half width {np.max(half_width) * 1e3:.4g} mm against a depth of "
+            f"{np.min(depth) * 1e3:.4g} mm",
+            where="Weber-Banaschek compression",
+            why="The formula holds for a half width much smaller than the depth",
+            remedy="Lower the load",
         )
     modulus = material.youngs_modulus / (1.0 - nu**2)
     compression: Number = 2.0 * load_per_width / (np.pi * modulus) * bracket
     return compression
-
-
-#: Points of the tooth outline, as for the other models.
-_OUTLINE_POINTS = 400
 
 
 def half_plane_compliance(
@@ -93,41 +87,19 @@ def half_plane_compliance(
     foot_width: float,
     material: Material,
 ) -> Array:
-    """Compliance of the half plane under a tooth, per unit face width.
+    """Compliance of the half plane under a tooth, per unit face width [m^2/N].
 
     ``cos^2(a) (1 - nu^2) / E [18/pi (u/s)^2 + 2 (1 - 2 nu)/(1 - nu) u/s
-    + 4.8/pi (1 + (1 - nu)/2.4 tan^2 a)]``
+    + 4.8/pi (1 + (1 - nu)/2.4 tan^2 a)]`` with the angle ``a`` [rad] between the load and the
+    normal of the tooth axis, the height ``u`` [m] above the foot at which the load crosses that
+    axis, and the thickness ``s`` [m] of the tooth at its foot.
 
-    Parameters
-    ----------
-    load_angle : float or array [rad]
-        Angle ``a`` between the load and the normal of the tooth axis.
-    load_height : float or array [m]
-        Height ``u`` above the foot at which the load crosses the tooth axis.
-    foot_width : float [m]
-        Thickness ``s`` of the tooth at its foot.
-    material : Material
-        Material of the gear.
-
-    Returns
-    -------
-    array [m^2/N]
-
-    Raises
-    ------
-    InputError
-        If the foot width is not positive.
-
-    Notes
-    -----
     Plane strain. A half plane gives way without limit under a force; the last term leaves out
     what the body does far from the tooth. Weber (1949) has 5.2, 1.0, 1.4 and 0.294 for the
     coefficients at a Poisson's ratio of 0.3, here 5.73, 1.14, 1.53 and 0.292. Source: Weber and
     Banaschek (1953), Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern,
     Vieweg.
 
-    Examples
-    --------
     >>> compliance = half_plane_compliance(0.3, 5e-3, 8e-3, Material())
     >>> print(f"{float(compliance) * 1e6:.4g} mm^2/N")
     1.824e-05 mm^2/N
@@ -148,39 +120,15 @@ def half_plane_compliance(
 def weber_influence(
     gear: SpurGear, material: Material, *, reference: str = "rim", nodes: int = 30
 ) -> GearInfluence:
-    """Influence of one gear by the energy method on a half plane.
+    """Influence of one gear by the energy method on a half plane, without neighbours.
 
-    Parameters
-    ----------
-    gear : SpurGear
-        The loaded gear.
-    material : Material
-        Material of the gear.
-    reference : str
-        Only ``"rim"``: a half plane has no bore that could be held.
-    nodes : int
-        Number of places along the flank, at least 4.
-
-    Returns
-    -------
-    GearInfluence
-        Without neighbours: in this method each tooth deflects alone.
-
-    Raises
-    ------
-    InputError
-        If the reference is not ``"rim"``, or the number of nodes is out of range.
-
-    Notes
-    -----
     Plane strain, bending, shear and axial compression from the foot of the tooth, where the
     fillet meets the root circle, up to the place where the load crosses the tooth axis, and the
     half plane under the foot. The gear body beyond the neighbourhood of the tooth is rigid, which
-    makes the method the stiffest of all. Source: Weber (1949), The deformation of loaded gears and
-    the effect on their load-carrying capacity, DSIR report 3; Weber and Banaschek (1953).
+    makes the method the stiffest of all; a half plane has no bore, so that ``reference`` is
+    ``"rim"``. Source: Weber (1949), The deformation of loaded gears and the effect on their
+    load-carrying capacity, DSIR report 3; Weber and Banaschek (1953).
 
-    Examples
-    --------
     >>> gear = SpurGear(teeth=24, normal_module=4.5e-3, normal_pressure_angle=0.349066,
     ...     profile_shift_coefficient=0.0, tip_diameter=0.117, face_width=0.02)
     >>> weber_influence(gear, Material()).neighbours
@@ -189,25 +137,23 @@ def weber_influence(
     check_reference(reference)
     if reference != "rim":
         raise InputError(
-            Problem(
-                what=f'reference = "{reference}"',
-                where="stiffness model weber",
-                why="Its tooth stands on a half plane, which has no bore",
-                remedy='Choose reference = "rim", or a model with a gear body: "fe2d", "analytic"',
-            )
+            f'reference = "{reference}"',
+            where="stiffness model weber",
+            why="Its tooth stands on a half plane, which has no bore",
+            remedy='Choose reference = "rim", or a model with a gear body: "fe2d", "analytic"',
         )
     require_between("nodes", nodes, 4, 1000)
-    outline = half_tooth(gear, _OUTLINE_POINTS)
-    foot_height, foot_half_width = float(outline[0][0]), float(outline[1][0])
+    section = tooth_section(gear)
+    foot_height, foot_half_width = section.foot
     radii = flank_nodes(gear, nodes)
     load = load_point(gear, radii)
-    tooth = beam_to_axis(outline, load, material)
+    tooth = beam_to_axis(section, load, material)
     widening = 1.0 - material.poissons_ratio**2
-    own = (
+    self_compliance = (
         widening * (tooth.bending + tooth.axial)
         + tooth.shear
         + half_plane_compliance(
             load.load_angle, load.axis_height - foot_height, 2.0 * foot_half_width, material
         )
     )
-    return GearInfluence(radii, own, np.zeros((0, nodes, nodes)))
+    return GearInfluence(radii, self_compliance, np.zeros((0, nodes, nodes)))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.drawing import draw
-from tribodyn.errors import Argument, InputError, Problem, require_positive
+from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.stiffness.loaded import loaded_contact
@@ -119,12 +119,10 @@ def increasing_torques(torque: ArrayLike) -> Array:
     require_positive("torque", torques, "N*m")
     if torques.ndim != 1 or torques.size == 0:
         raise InputError(
-            Problem(
-                what=f"torque has the shape {torques.shape}",
-                where=Argument("torque"),
-                why="It is one value or a list of values",
-                remedy="Give a list of torques in N*m",
-            )
+            f"torque has the shape {torques.shape}",
+            where=Argument("torque"),
+            why="It is one value or a list of values",
+            remedy="Give a list of torques in N*m",
         )
     return np.unique(torques)
 
@@ -201,28 +199,33 @@ def transmission_error_over_torque(
         phases = _PHASES if work == 1 else _PHASES // 4
     orders = _orders(harmonics, phases)
     given: dict[str, Any] = {
-        "provider": provider, "phases": phases, "extended_contact": extended_contact,
-        "reference": reference, "material": material, "slices": slices, "options": options,
-    }  # fmt: skip
+        "provider": provider,
+        "phases": phases,
+        "extended_contact": extended_contact,
+        "reference": reference,
+        "material": material,
+        "slices": slices,
+        "options": options,
+    }
     size = max(phases, 1) * work * _PAIRS
     count = min(torques.size, 1 + torques.size * size // _AT_ONCE)
     rows = []
-    for part in np.array_split(torques, count):
-        found = loaded_contact(pair, part, **given)
-        secant = found.mesh_stiffness_secant.mean(axis=1)
-        tangent = found.mesh_stiffness_tangent.mean(axis=1)
-        rows.append((found.transmission_error, secant, tangent))
+    for some_torques in np.array_split(torques, count):
+        contact = loaded_contact(pair, some_torques, **given)
+        secant = contact.mesh_stiffness_secant.mean(axis=1)
+        tangent = contact.mesh_stiffness_tangent.mean(axis=1)
+        rows.append((contact.transmission_error, secant, tangent))
     error, secant, tangent = (np.concatenate(column) for column in zip(*rows, strict=True))
     return HarrisMap(
         gear_pair=pair,
-        provider=found.provider,
-        reference=found.reference,
+        provider=contact.provider,
+        reference=contact.reference,
         torque=torques,
-        phase=found.phase,
-        mesh_cycles=found.mesh_cycles,
+        phase=contact.phase,
+        mesh_cycles=contact.mesh_cycles,
         transmission_error=error,
-        unloaded_transmission_error=found.unloaded_transmission_error,
-        harmonics=harmonic_amplitudes(found.phase, error, found.mesh_cycles, orders),
+        unloaded_transmission_error=contact.unloaded_transmission_error,
+        harmonics=harmonic_amplitudes(contact.phase, error, contact.mesh_cycles, orders),
         mean_mesh_stiffness_secant=secant,
         mean_mesh_stiffness_tangent=tangent,
     )
@@ -235,11 +238,9 @@ def _orders(harmonics: int | None, phases: int) -> int:
         return max(1, min(_HARMONICS, most))
     if not 1 <= harmonics <= most:
         raise InputError(
-            Problem(
-                what=f"harmonics = {harmonics}",
-                where=Argument("harmonics"),
-                why=f"{phases} phases of a mesh cycle show 1 to {most} harmonics",
-                remedy="Give more phases, for example phases=64",
-            )
+            f"harmonics = {harmonics}",
+            where=Argument("harmonics"),
+            why=f"{phases} phases of a mesh cycle show 1 to {most} harmonics",
+            remedy="Give more phases, for example phases=64",
         )
     return harmonics

@@ -20,7 +20,12 @@ from tribodyn.gear import (
     profile_gap,
 )
 from tribodyn.gear.profile_map import LARGEST_AMOUNT
-from tribodyn.stiffness.loaded.contact import NO_OPTIONS, contact_problem, phases_of
+from tribodyn.stiffness.loaded.contact import (
+    NO_OPTIONS,
+    contact_problem,
+    contact_settings,
+    phases_of,
+)
 from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.problem import ContactProblem
 from tribodyn.stiffness.model import MODELS
@@ -75,12 +80,10 @@ def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Ar
     fits = weights.shape == given.shape == ordered.shape and np.all(weights >= 0.0)
     if not (fits and 0.0 < weights.sum() < np.inf):
         raise InputError(
-            Problem(
-                what=f"weight = {weights.tolist()}",
-                where=Argument("weight"),
-                why="There is one weight for each torque, none negative and not all zero",
-                remedy=f"Give {given.size} weights for {given.size} different torques",
-            )
+            f"weight = {weights.tolist()}",
+            where=Argument("weight"),
+            why="There is one weight for each torque, none negative and not all zero",
+            remedy=f"Give {given.size} weights for {given.size} different torques",
         )
     spread = np.interp(torques, ordered, weights[np.argsort(given)])
     return torques, spread / spread.sum()
@@ -214,9 +217,11 @@ def relief_mesh(
 ) -> ReliefMesh:
     """Prepare a mesh to be asked for many tip reliefs."""
     total = torque / pair.pinion.base_radius
-    one = MODELS[settings["provider"]].influence is not None
-    totals = [total] if one else [total[k : k + 1] for k in range(total.size)]
-    problems = [contact_problem(pair, total_force=float(part[0]), **settings) for part in totals]
+    whole = MODELS[settings["provider"]].influence is not None
+    totals = [total] if whole else [total[k : k + 1] for k in range(total.size)]
+    problems = [
+        contact_problem(pair, total_force=float(forces[0]), **settings) for forces in totals
+    ]
     return ReliefMesh(pair, gears, shape, problems, totals)
 
 
@@ -225,8 +230,7 @@ _MOST, _LEAST = 512, 64
 #: Points of the map from which the search goes on: the best one, and others that lie apart.
 _STARTS = 3
 #: Steps of a simplex; it ends when neither place nor value move by more than these parts.
-_STEPS = 200
-_PLACE, _VALUE = 1e-4, 1e-5
+_SIMPLEX = {"maxfev": 200, "xatol": 1e-4, "fatol": 1e-5}
 
 
 def optimize_tip_relief(
@@ -321,11 +325,10 @@ def optimize_tip_relief(
     """
     check_choices(grid, gears=gears, shape=shape, objective=objective)
     torques, weights = torques_and_weights(torque, weight)
-    settings = {
-        "provider": provider, "phase": _phases(pair, phases, slices), "slices": slices,
-        "extended_contact": extended_contact, "material": material or Material(),
-        "options": _options(provider, reference, options),
-    }  # fmt: skip
+    phase = _phases(pair, phases, slices)
+    settings = contact_settings(
+        provider, phase, extended_contact, reference, material, slices, options
+    )
     bare = with_tip_relief(pair, 0.0, 0.0, gears=gears)
     mesh = relief_mesh(bare, gears, shape, torques, settings)
     deflection = float(mesh.error(0.0, 0.0)[-1].mean())
@@ -353,7 +356,7 @@ def optimize_tip_relief(
         objective_kind=objective,
         objective=least,
         objective_before=measure(before),
-        phase=mesh.problems[0].places.phase,
+        phase=phase,
         transmission_error_before=before,
         transmission_error_after=mesh.error(*best),
         map_amount=axes[0],
@@ -367,12 +370,6 @@ def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:
     cycles = mesh_period(pair)
     work = cycles * slice_widths(pair, slices).size
     return phases_of(max(_LEAST, _MOST // work) if phases is None else phases, cycles)
-
-
-def _options(provider: str, reference: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of a provider with the reference among them, where it has one."""
-    known = reference is not None and "reference" in MODELS[provider].options
-    return {**options, "reference": reference} if known else dict(options)
 
 
 def _search(
@@ -391,16 +388,14 @@ def _search(
         start = (np.array([axes[0][row], axes[1][column]]) - low) / span
         toward = np.where(start + step > 1.0, -1.0, 1.0) * step
         simplex = start + np.array([[0.0, 0.0], [toward[0], 0.0], [0.0, toward[1]]])
-        found = minimize(
+        minimum = minimize(
             lambda unit: value(low + span * unit) / mapped.max(),
             start,
             method="Nelder-Mead",
             bounds=[(0.0, 1.0), (0.0, 1.0)],
-            options={
-                "initial_simplex": simplex, "maxfev": _STEPS, "xatol": _PLACE, "fatol": _VALUE,
-            },
-        )  # fmt: skip
-        place = low + span * np.clip(found.x, 0.0, 1.0)
+            options={"initial_simplex": simplex, **_SIMPLEX},
+        )
+        place = low + span * np.clip(minimum.x, 0.0, 1.0)
         reached = value(place)
         if reached < least:
             best, least = place, reached

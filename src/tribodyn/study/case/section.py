@@ -165,7 +165,8 @@ def choices(given: Mapping[str, Any]) -> dict[str, Choice]:
 
 def flat(section: Section, prefix: str = "") -> dict[str, Any]:
     """All values of a table and the tables in it, by dotted key."""
-    held, values = vars(section), {}
+    held = vars(section)
+    values: dict[str, Any] = {}
     for name in section.known().keys:
         value = held.get(name)
         if isinstance(value, Section):

@@ -10,8 +10,7 @@ import numpy as np
 
 from tribodyn.errors import ModelWarning, collected
 from tribodyn.study.case.derive import gear_warnings
-from tribodyn.study.case.foundations import body
-from tribodyn.study.case.provenance import changed_keys, effective
+from tribodyn.study.case.provenance import body, changed_keys, effective
 from tribodyn.study.pipeline.record import (
     compression,
     first_touch,

@@ -46,8 +46,8 @@ def _transient(
 ) -> Response:
     """March from the static equilibrium; a balancing torque is that of the steady state."""
     from tribodyn.dynamics import simulate, steady_state
-    from tribodyn.dynamics.march import compile_for
-    from tribodyn.dynamics.start import static_start
+    from tribodyn.dynamics.equations.compiled import compile_for
+    from tribodyn.dynamics.orbits.start import static_start
 
     cycles = effective(case)["solver.cycles"]
     extra = None
@@ -176,8 +176,8 @@ _COARSE = 1024
 def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
     """Steps per mesh cycle that were asked for, else those that follow the fastest motion."""
     from tribodyn.dynamics import recommended_steps
-    from tribodyn.dynamics.program import compile_system
-    from tribodyn.dynamics.step_limit import LIMIT, largest_rate
+    from tribodyn.dynamics.equations.program import compile_system
+    from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 
     spec = Solver.spec(_STEPS)
     most = spec.high if spec else float("inf")
