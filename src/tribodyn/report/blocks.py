@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
 
 #: Order of the figures in the report.
@@ -61,10 +62,16 @@ def drawn_block(name: str, heading: str, drawn: Any, caption: str) -> Block:
 
 
 def _block(figure: Drawing, result: Any) -> Block:
-    reason = figure.missing(result)
-    if reason:
+    try:
+        reason = figure.missing(result)
+        drawn = None if reason else figure(result)
+    except InputError as error:
+        # A mesh table of another program knows no gears.
+        told = error.problems[0]
+        reason, drawn = f"{told.what}: {told.why}", None
+    if drawn is None:
         return Block(figure.name, figure.heading, missing=reason)
-    return drawn_block(figure.name, figure.heading, figure(result), figure.caption_of(result))
+    return drawn_block(figure.name, figure.heading, drawn, figure.caption_of(result))
 
 
 def _joined(blocks: Iterable[Block]) -> list[Block]:
