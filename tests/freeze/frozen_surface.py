@@ -112,7 +112,7 @@ def _is_method(value: Any) -> bool:
 
 def case_keys() -> dict[str, dict[str, Any]]:
     """Keys of the case file: unit, default and what a choice allows."""
-    from tribodyn.study.reference import case_keys as keys
+    from tribodyn.study.case.reference import case_keys as keys
 
     return {
         key: {

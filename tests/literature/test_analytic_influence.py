@@ -27,8 +27,8 @@ from tribodyn.stiffness import (
     loaded_contact,
     weber_banaschek_compression,
 )
-from tribodyn.stiffness.analytic import analytic_influence
-from tribodyn.stiffness.weber import weber_influence
+from tribodyn.stiffness.teeth.analytic import analytic_influence
+from tribodyn.stiffness.teeth.weber import weber_influence
 
 WIDTH = 20e-3
 #: One pair carrying 100 N/mm [N/m].

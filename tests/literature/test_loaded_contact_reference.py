@@ -24,7 +24,8 @@ from tribodyn.contact import path_of_contact
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import Material, SpurPair, default_relief_length, spur_pair
 from tribodyn.stiffness import loaded_contact, with_tip_relief
-from tribodyn.stiffness.loaded import contact_problem, prepare
+from tribodyn.stiffness.loaded import contact as prepare
+from tribodyn.stiffness.loaded import contact_problem
 
 pytestmark = pytest.mark.regression
 

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import tribodyn as td
-from tribodyn.study.geometry import geometry
-from tribodyn.study.provenance import provenance
+from tribodyn.study.case.provenance import provenance
+from tribodyn.study.pipeline.assembly import geometry
 
 _ROUGHNESS = ("0.325 um", "0.53 um", "0.991 um")
 

@@ -10,12 +10,12 @@ import pytest
 from known_systems import hysteresis_system, reference_system
 from references.backlash_orbits import HIGH, LOW
 from tribodyn.analysis import basins, bifurcation, parameter_map, phase_portrait
-from tribodyn.analysis.attractors import Motions, settle
-from tribodyn.analysis.verdict import step_verdict
 from tribodyn.dynamics import Contact, System, continuation, simulate, steady_state
-from tribodyn.dynamics.march import compile_for
-from tribodyn.dynamics.start import static_start
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.errors import InputError
+from tribodyn.nonlinear.attractors import Motions, settle
+from tribodyn.nonlinear.survey import step_verdict
 
 TURN = 2.0 * np.pi
 

@@ -71,4 +71,4 @@ def test_a_long_docstring_off_the_page_is_found() -> None:
     text = 'def f():\n    """One.\n\n    Two.\n    """\n'
     assert size_checks.long_inner_docstrings(read(text))
     assert not size_checks.long_inner_docstrings(read(text, page='__all__ = ["f"]\n'))
-    assert size_checks.long_inner_docstrings(read('class A:\n    """One.\n\n    Two."""\n'))
+    assert size_checks.long_inner_docstrings(read('class Room:\n    """One.\n\n    Two."""\n'))

@@ -17,13 +17,17 @@ from tribodyn.dynamics import FineSamples, Response
 from tribodyn.gear import BasicRack, Material, SpurPair, spur_pair
 from tribodyn.mesh import MeshTable, build
 from tribodyn.study import Case
-from tribodyn.study.provenance import assumptions
+from tribodyn.study.case.provenance import assumptions
 
 Array = NDArray[np.float64]
 
 #: Peak amplitudes of mesh harmonics 1, 2, ... of every signal of the known motion.
 AMPLITUDES = (4.0, 0.0, 1.0, 0.25)
 NAMES = ("pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta")
+
+
+class Result(SimpleNamespace):
+    """Stand-in for the result of a run, drawn by the figures of its class."""
 
 
 def mesh_of(case: Case, film_model: str = "none") -> MeshTable:
@@ -105,7 +109,7 @@ def drawable() -> Any:
     ) -> Any:
         case = load_case("fzg-roughness").replace({"gears.driver": driver, **(changes or {})})
         mesh = mesh_of(case, film_model)
-        return SimpleNamespace(
+        return Result(
             case=case,
             mesh=mesh,
             response=response_of(mesh, names, periods=periods, steady=steady),

@@ -294,8 +294,12 @@ def test_negative_force_is_explained(drawable: Any) -> None:
     assert FIGURES["mesh_force"](result).layout.yaxis.rangemode == "tozero"
 
 
+class MeshTable(SimpleNamespace):
+    """Stand-in of that name."""
+
+
 def test_captions_follow_the_contact_ratio(drawable: Any) -> None:
-    shared = SimpleNamespace(mesh=SimpleNamespace(transverse_contact_ratio=2.2))
+    shared = MeshTable(transverse_contact_ratio=2.2)
     for name in ("friction", "path_of_contact"):
         assert "one carries it alone" in caption(name, drawable())
         assert "Two or three pairs" in caption(name, shared)

@@ -9,7 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.analysis import Bifurcation
-from tribodyn.study.bifurcation_findings import Findings
+from tribodyn.study.studies.bifurcation import Findings
 
 
 @pytest.fixture(scope="module")

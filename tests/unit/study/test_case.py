@@ -11,8 +11,8 @@ from broken import SOUND
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.study import read_case
-from tribodyn.study.citations import cite
-from tribodyn.study.provenance import assumptions, effective, provenance
+from tribodyn.study.case.provenance import assumptions, effective, provenance
+from tribodyn.study.pipeline.citations import cite
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from broken import SOUND
 
 import tribodyn as td
 from tribodyn.study import read_case
-from tribodyn.study.cautions import case_cautions, mesh_cautions
+from tribodyn.study.pipeline.cautions import case_cautions, mesh_cautions
 
 RPM = math.pi / 30.0
 
