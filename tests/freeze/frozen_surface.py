@@ -51,10 +51,13 @@ def page_names(page: str, expected: Mapping[str, Any]) -> dict[str, Any]:
 
 def described(thing: Any) -> dict[str, Any]:
     """How a public thing is used: parameters, members, keys or its value."""
+    if hasattr(thing, "draw") and not inspect.isclass(thing):
+        # a figure is called with what it draws, whatever its function calls that
+        return {"options": {"parameters": parameters(thing.draw)[1:]}}
     if inspect.isclass(thing):
         return {"constructor": parameters(thing), "members": members(thing)}
-    if callable(getattr(thing, "draw", thing)) and not _is_alias(thing):
-        return {"parameters": parameters(getattr(thing, "draw", thing))}
+    if callable(thing) and not _is_alias(thing):
+        return {"parameters": parameters(thing)}
     if isinstance(thing, Mapping) or hasattr(thing, "names"):
         return {"keys": sorted(thing)}
     if isinstance(thing, int | float | str | tuple):
@@ -214,7 +217,12 @@ def _parameter_losses(frozen: list[str] | None, current: list[str] | None, place
     if frozen is None or current is None:
         # a field may become a property or the other way round, but no method
         return [] if frozen == current else [f"{place}: {frozen} became {current}"]
-    gone = [f"{place}: {text!r} is gone" for text in frozen if text not in current]
+    takes_any = any(text.startswith("variadic keyword") for text in current)
+    gone = [
+        f"{place}: {text!r} is gone"
+        for text in frozen
+        if text not in current and not (takes_any and text.startswith("keyword-only"))
+    ]
     added = [text for text in current if text not in frozen]
     gone += [
         f"{place}: {t!r} is new and required" for t in added if "=" not in t and "var" not in t

@@ -108,6 +108,7 @@ def test_domain_of_the_source_starves_its_contacts(torque, loss):
     assert starved.central_film / flooded.central_film - 1.0 == pytest.approx(loss, abs=0.006)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("torque", FZG)
 def test_fzg_pair_with_an_inlet_of_a_hundred_half_widths(torque):
     """The flooded inlet condition against oil that is really there, by another scheme."""

@@ -17,6 +17,8 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import ModelWarning
 
+pytestmark = pytest.mark.slow  # the studies that all tests here share
+
 KINDS = ("tangent", "secant", "seed")
 TORQUES = ("50 N*m", "150 N*m", "200 N*m", "250 N*m", "300 N*m")
 SPEEDS = ("400 rpm", "800 rpm", "1400 rpm", "1800 rpm", "3000 rpm")

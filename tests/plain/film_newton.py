@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from plain.film import PlainContact
-from tribodyn.ehl.formulas.moes import moes_dimensionless_central
+from tribodyn.ehl import moes_dimensionless_central
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.types import Array
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from tribodyn.dynamics import System
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.motion import (
     clearance,
@@ -21,7 +22,6 @@ from tribodyn.dynamics.equations.motion import (
     sides,
 )
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array
 

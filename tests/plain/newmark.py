@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from plain.lane import Motion, PlainLane
+from tribodyn.dynamics import System
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.motion import forces
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.load_friction import carried_load, friction_tangent, push_with_friction
 from tribodyn.types import Array
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from plain.lane import Motion, PlainLane
+from tribodyn.dynamics import System
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array
 
 

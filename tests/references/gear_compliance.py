@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import fsolve
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 from scipy.spatial import Delaunay, cKDTree
@@ -351,84 +350,47 @@ def compliances(name: str | tuple[int, float, float]) -> tuple[list[float], list
     return [1e5 * own for own, _, _ in found], [1e6 * cross for _, cross, _ in found]
 
 
-class Mesh:
-    """FZG type A at one roll angle of the pinion, with the pairs that can touch there."""
+class Pair:
+    """One pair of FZG type A, 20 mm wide, alone at a roll angle of the pinion, off its tips."""
 
     def __init__(self, roll: float) -> None:
-        gears = [outline_of(f"type A {gear}") for gear in ("pinion", "wheel")]
-        line = math.sqrt(91.5**2 - sum(gear.base_radius for gear in gears) ** 2)
-        pitch = 2.0 * math.pi * gears[0].base_radius / gears[0].teeth
-        ends = (
-            line - math.sqrt(gears[1].tip_radius ** 2 - gears[1].base_radius ** 2),
-            math.sqrt(gears[0].tip_radius ** 2 - gears[0].base_radius ** 2),
-        )
-        first = roll * gears[0].base_radius
-        self.pinion_base = gears[0].base_radius
-        paths = [p for p in (first, first + pitch) if p <= ends[1] + 1e-9]
-        self.structure = np.zeros((len(paths), len(paths)))
-        self.depth, self.radius = np.zeros((len(paths), 2)), np.zeros(len(paths))
-        for number, path in enumerate(paths):
-            # the next tooth of the pinion leads, that of the wheel follows
-            pinion = column(gears[0], path, path + pitch)
-            wheel = column(gears[1], line - path, line - path + pitch)
-            self.structure[number, number] = pinion[0] + wheel[0]
-            self.depth[number] = pinion[2], wheel[2]
-            self.radius[number] = path * (line - path) / line
-            if number + 1 < len(paths):
-                self.structure[0, 1] = pinion[1]
-            elif number:
-                self.structure[0, 1] += wheel[1]
-                self.structure[1, 0] = self.structure[0, 1]
+        pinion, wheel = (outline_of(f"type A {gear}") for gear in ("pinion", "wheel"))
+        line = math.sqrt(91.5**2 - (pinion.base_radius + wheel.base_radius) ** 2)
+        path = roll * pinion.base_radius
+        self.pinion_base, self.radius = pinion.base_radius, path * (line - path) / line
+        bodies = [column(gear, at, at) for gear, at in ((pinion, path), (wheel, line - path))]
+        self.structure = sum(own for own, _, _ in bodies)
+        self.depths = np.array([depth for _, _, depth in bodies])
 
-    def compression(self, load: np.ndarray) -> np.ndarray:
-        """Local compression of both flanks [mm] under loads per width [N/mm], plane strain."""
+    def approach(self, load: float) -> float:
+        """Deflection [mm] under a load per width [N/mm]; the compression is in plane strain."""
         strain = MODULUS / (1.0 - POISSON**2)
-        half_width = np.sqrt(8.0 * load * self.radius / (math.pi * strain))
-        logarithm = np.log(2.0 * self.depth / half_width[:, None]) - 0.5 * POISSON / (1 - POISSON)
-        return np.asarray(2.0 * load / (math.pi * strain) * logarithm.sum(axis=1))
+        half_width = math.sqrt(8.0 * load * self.radius / (math.pi * strain))
+        logarithms = np.log(2.0 * self.depths / half_width) - 0.5 * POISSON / (1.0 - POISSON)
+        return load * (self.structure + 2.0 / (math.pi * strain) * float(logarithms.sum()))
 
-    def single_stiffness(self, load: float = 100.0) -> float:
-        """Secant stiffness of the first pair alone, 20 mm wide [1e8 N/m]."""
-        local = self.compression(np.full(self.radius.shape, load))[0] / load
-        return 20.0 / (self.structure[0, 0] + float(local)) * 1e-5
+    def stiffness(self, load: float = 100.0) -> float:
+        """Secant stiffness [1e8 N/m]."""
+        return 20.0 * load / self.approach(load) * 1e-5
 
-    def carried(self, torque: float) -> tuple[float, np.ndarray]:
-        """Deflection [um] under a torque on the pinion [N m], and the load of each pair [N]."""
-        total = torque * 1e3 / self.pinion_base / 20.0
-
-        def residual(unknown: np.ndarray) -> np.ndarray:
-            load = np.append(unknown, total - unknown.sum())
-            approach = self.structure @ load + self.compression(load)
-            return np.asarray(np.diff(approach))
-
-        count = len(self.radius)
-        shares = fsolve(residual, np.full(count - 1, total / count)) if count > 1 else []
-        load = np.append(shares, total - np.sum(shares))
-        approach = self.structure @ load + self.compression(load)
-        return 1e3 * float(approach[0]), 20.0 * load
+    def deflection(self, torque: float) -> float:
+        """Deflection [um] under a torque on the pinion [N m]."""
+        return 1e3 * self.approach(torque * 1e3 / self.pinion_base / 20.0)
 
 
-#: FZG type A: place -> roll angle and secant stiffness of one pair at 100 N/mm [1e8 N/m].
-SINGLE = {"A": (0.3242391, 1.449), "C": (0.4129625, 1.709), "E": (0.8453318, 1.590)}
-#: Roll angle [rad] -> deflection [um] at 90, 150 and 300 N m on the pinion.
-DEFLECTIONS = {
-    0.32424: (9.330, 15.384, 30.317),
-    0.5206: (13.666, 22.457, 44.051),
-    0.6384: (12.938, 21.244, 41.625),
-}
-#: Load on the entering and the leaving pair at the first of them, 90 N m [N].
-SHARES = (1059.5, 1601.0)
+#: FZG type A: roll angle at the pitch point, and secant stiffness of one pair there at 100 N/mm
+#: [1e8 N/m].
+PITCH_POINT, STIFFNESS = 0.4129625, 1.709
+#: Roll angle [rad] where one pair carries -> deflection [um] under these torques on the pinion.
+DEFLECTIONS = {0.5206: (13.666, 22.457, 44.051), 0.6384: (12.938, 21.244, 41.625)}
 TORQUES = (90.0, 150.0, 300.0)
 
 
 if __name__ == "__main__":
-    for place, (roll, stated) in SINGLE.items():
-        print(f"{place}: stated {stated}, found {Mesh(roll).single_stiffness():.4f}")
+    print(f"pitch point: stated {STIFFNESS}, found {Pair(PITCH_POINT).stiffness():.4f}")
     for roll, known in DEFLECTIONS.items():
-        mesh = Mesh(roll)
-        carried = [mesh.carried(torque) for torque in TORQUES]
-        print(f"{roll}: stated {known}, found", *(f"{deflection:.3f}" for deflection, _ in carried))
-        print("  loads at 90 N m", carried[0][1])
+        pair = Pair(roll)
+        print(roll, "stated", *known, " found", *(f"{pair.deflection(t):.3f}" for t in TORQUES))
     for name, (_, *tables) in TRIANGLES.items():
         found = compliances(name)
         print(name)

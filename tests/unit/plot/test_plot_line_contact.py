@@ -219,6 +219,7 @@ def test_animation_refuses_what_it_cannot_draw(contacts: list[Any]) -> None:
         film_along_path(solve_line_contacts(LOADS, 8e-3, 3.0722, OIL, 2.2e11, nodes=129), PATH)
 
 
+@pytest.mark.slow
 def test_response_over_the_frequency(contacts: list[Any], bare: Any) -> None:
     at = np.array([100.0, 1e3, 1e4])
     figure = film_response(contacts[1], [*at, 1e5], length=0.02)

@@ -16,6 +16,7 @@ from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.model import Option
 from tribodyn.report import render_report, write_sweep_report
+from tribodyn.study import read_case
 from tribodyn.study.case.provenance import (
     assumptions,
     changed_keys,
@@ -23,7 +24,6 @@ from tribodyn.study.case.provenance import (
     provenance,
     spec_of,
 )
-from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.cautions import case_cautions
 from tribodyn.study.pipeline.citations import cite
 
