@@ -12,7 +12,7 @@ from tribodyn.ehl.steady.multigrid_engine import multigrid_engine
 from tribodyn.ehl.steady.newton_engine import first_intervals, newton_engine
 from tribodyn.ehl.steady.verification import Verification, verify
 from tribodyn.errors import ComputationError, Problem
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 #: ``lam`` of the easy contact, its pressure over that asked for, and intervals of the path.
 _EASY_LAM, _EASY_PRESSURE, _INTERVALS = 2.0, 0.05, 512

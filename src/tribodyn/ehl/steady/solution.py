@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.drawing import draw
 from tribodyn.ehl.steady.contact_case import ContactCase
 from tribodyn.ehl.steady.contact_problem import DiscreteContact
 from tribodyn.ehl.steady.grid import Domain, regime_name
@@ -213,10 +214,7 @@ class LineContactSolution(Record):
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot.line_contact import line_contact
-
-        return line_contact(self, **options)
+        return draw(self, **options)
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.ehl.steady.batch import solve_line_contacts
-from tribodyn.errors import ModelWarning, warn
+from tribodyn.errors import quiet, warn
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
@@ -44,9 +43,8 @@ def solved_films(
 ) -> Films:
     """Solve many contacts in threads."""
     tangent = stiffness in ("none", "tangent")
-    with warnings.catch_warnings():
+    with quiet("film-stiffness"):
         # Whoever uses the stiffness says what a negative one means for it.
-        warnings.filterwarnings("ignore", r"\[film-stiffness\]", ModelWarning)
         batch = solve_line_contacts(
             load_per_width,
             equivalent_radius,
@@ -86,7 +84,6 @@ def solved_films(
 
 def _sums(solutions: tuple[Any, ...], length: float, kind: str) -> Array:
     """Secant or printed sum of every solution; what the latter has to say is said once."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", r"\[seed-film-stiffness\]", ModelWarning)
+    with quiet("seed-film-stiffness"):
         each = [solution.film_stiffness(length, kind=kind) for solution in solutions]
     return np.array(each)

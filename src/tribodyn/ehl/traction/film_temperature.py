@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import ComputationError, InputError, Problem, require_between, require_positive
 from tribodyn.lubricant import Lubricant
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: ln of the viscosity [Pa*s] in which all curves of the Roelands law meet, with the sign changed.

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
@@ -112,10 +113,7 @@ class TransientLineContact(Record):
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot.film_dynamics import film_transient
-
-        return film_transient(self, **options)
+        return draw(self, **options)
 
     def __repr__(self) -> str:
         """One line with the figures that tell series apart."""
