@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.drawing import draw
 from tribodyn.ehl.steady.contact_case import ContactCase
 from tribodyn.ehl.steady.contact_problem import DiscreteContact
 from tribodyn.ehl.steady.grid import Domain, regime_name
@@ -201,20 +199,6 @@ class LineContactSolution(Record):
             parts.variables[name] = ("position", getattr(self, name), {"units": ""})
         known = {name: value for name, value in parts.attributes.items() if value is not None}
         return parts._replace(attributes=known)
-
-    def plot(self, **options: Any) -> Any:
-        """Draw pressure and film over the position.
-
-        Parameters
-        ----------
-        **options
-            Of the figure.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, **options)
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""

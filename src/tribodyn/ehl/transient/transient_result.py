@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from tribodyn.drawing import draw
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
@@ -100,20 +97,6 @@ class TransientLineContact(Record):
         parts = super()._parts()
         parts.coordinates["kept_time"] = ("kept_time", self.kept_time, {"units": "s"})
         return parts
-
-    def plot(self, **options: Any) -> Any:
-        """Draw films and load over time.
-
-        Parameters
-        ----------
-        **options
-            Of the figure.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, **options)
 
     def __repr__(self) -> str:
         """One line with the figures that tell series apart."""
