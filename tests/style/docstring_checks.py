@@ -31,6 +31,8 @@ PHYSICS = {
     "mesh",
     "dynamics",
     "analysis",
+    "nonlinear",
+    "signals",
 }
 #: Words before a quantity's name that leave its unit alone.
 _PREFIXES = ("pinion_", "wheel_", "mean_", "minimum_", "maximum_", "rms_", "peak_", "nominal_")

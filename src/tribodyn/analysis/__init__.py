@@ -1,48 +1,43 @@
 """Figures read off a motion: rms, peaks, mesh harmonics, spectra, direction indicator."""
 
-from tribodyn.analysis.basins import basins
-from tribodyn.analysis.basins_attractors import Attractor
-from tribodyn.analysis.basins_result import Basins
-from tribodyn.analysis.bifurcation import bifurcation
-from tribodyn.analysis.bifurcation_result import Bifurcation
-from tribodyn.analysis.dynamic_factor import direction_shares, dynamic_factor
-from tribodyn.analysis.envelope import envelope, envelope_spectrum
-from tribodyn.analysis.harmonics import Spectrum, amplitude_spectrum, mesh_harmonics
-from tribodyn.analysis.indicators import (
+from tribodyn.nonlinear.basins import basins
+from tribodyn.nonlinear.basins_attractors import Attractor, Basins
+from tribodyn.nonlinear.bifurcation import Bifurcation, bifurcation
+from tribodyn.nonlinear.lyapunov import LyapunovExponents, lyapunov_exponents
+from tribodyn.nonlinear.parameter_map import ParameterMap, parameter_map
+from tribodyn.nonlinear.phase_portrait import PhasePortrait, phase_portrait
+from tribodyn.nonlinear.poincare import PoincareSection, poincare
+from tribodyn.signals.angular_resampling import AngularSignal, angular_resampling
+from tribodyn.signals.envelope import envelope, envelope_spectrum
+from tribodyn.signals.harmonics import Spectrum, amplitude_spectrum, mesh_harmonics
+from tribodyn.signals.indicators import (
     alternating_rms,
     crest_factor,
+    direction_shares,
+    dynamic_factor,
     extremes,
+    line_of_action_indicator,
     mean,
     peak_to_peak,
     rms,
 )
-from tribodyn.analysis.line_of_action import line_of_action_indicator
-from tribodyn.analysis.lyapunov import LyapunovExponents, lyapunov_exponents
-from tribodyn.analysis.order_map import order_map
-from tribodyn.analysis.order_map_resampling import AngularSignal, angular_resampling
-from tribodyn.analysis.order_map_result import OrderCut, OrderMap
-from tribodyn.analysis.parameter_map import parameter_map
-from tribodyn.analysis.parameter_map_result import ParameterMap
-from tribodyn.analysis.phase_portrait import PhasePortrait, phase_portrait
-from tribodyn.analysis.poincare import PoincareSection, poincare
-from tribodyn.analysis.run_up_orders import (
+from tribodyn.signals.order_map import OrderCut, OrderMap, order_map
+from tribodyn.signals.run_up_orders import (
     OverallLevel,
     order_cut,
     overall_level,
     run_up_order_map,
 )
-from tribodyn.analysis.run_up_resonances import RunUpResonance, resonances
-from tribodyn.analysis.sidebands import Sidebands, sidebands
-from tribodyn.analysis.spectrogram import Spectrogram, spectrogram
-from tribodyn.analysis.spectrum import spectrum
-from tribodyn.analysis.spectrum_peaks import Peak
-from tribodyn.analysis.spectrum_result import SignalSpectrum
-from tribodyn.analysis.spectrum_zoom import zoom_spectrum
-from tribodyn.analysis.synchronous_average import SynchronousAverage, time_synchronous_average
-from tribodyn.analysis.synchronous_average_condition import (
+from tribodyn.signals.run_up_resonances import RunUpResonance, resonances
+from tribodyn.signals.sidebands import Sidebands, sidebands
+from tribodyn.signals.spectrogram import Spectrogram, spectrogram
+from tribodyn.signals.spectrum import Peak, SignalSpectrum, spectrum, zoom_spectrum
+from tribodyn.signals.synchronous_average import (
     ConditionIndicators,
+    SynchronousAverage,
     condition_indicators,
     kurtosis,
+    time_synchronous_average,
 )
 
 __all__ = [

@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.ensemble import LaneStatistics
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
+from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.run_up_march import CycleMarcher, Pace
 from tribodyn.dynamics.run_up_profile import SpeedProfile, read_profile
 from tribodyn.dynamics.run_up_result import CycleStatistics, RunUp
 from tribodyn.dynamics.run_up_samples import Samples
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.steady_state import steady_state
-from tribodyn.dynamics.system import System
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, require_positive
+from tribodyn.dynamics.time.ensemble import LaneStatistics
+from tribodyn.dynamics.time.simulate import read_start
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+    Problem,
+    quiet,
+    require_positive,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -217,9 +222,8 @@ def _begin(
     system = marcher.systems[left + round(part)]
     if start is not None:
         return read_start(system, start)
-    with warnings.catch_warnings():
+    with quiet():
         # A motion that does not repeat is as good a beginning as any other.
-        warnings.simplefilter("ignore", ModelWarning)
         orbit = steady_state(system, beat, steps=marcher.tables.steps_at(beat))
     if orbit.converged and marcher.balance is not None:
         marcher.hold(orbit.extra_force)

@@ -8,7 +8,7 @@ import pytest
 
 from known_systems import BASE_RADIUS, MESH_FREQUENCY, reference_system
 from tribodyn.dynamics import steady_state
-from tribodyn.dynamics.orbit_search import newton_step
+from tribodyn.dynamics.orbits.orbit_map import newton_step
 
 
 def test_what_no_step_takes_away_counts():

@@ -1,0 +1,377 @@
+"""Branches of periodic orbits followed over a parameter, around folds and through instability.
+
+Pseudo-arclength continuation of the map of one or several mesh cycles: a step along the tangent,
+then Newton's method in the plane across it, so that the branch may turn back in the parameter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.continuation_path import (
+    BranchPoint,
+    Family,
+    FamilyMap,
+    Located,
+    StalledError,
+    Stepping,
+    correct,
+    follow,
+    hold,
+    locate,
+    tests_of_multipliers,
+    with_values,
+)
+from tribodyn.dynamics.orbits.orbit_map import OrbitMap
+from tribodyn.dynamics.orbits.search import find_orbit
+from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
+from tribodyn.dynamics.orbits.start import _lowest_of_each_law, static_start
+from tribodyn.dynamics.orbits.steady_state import TOLERANCE
+from tribodyn.dynamics.time.response import Response, build_response
+from tribodyn.dynamics.time.simulate import read_start
+from tribodyn.errors import ComputationError, InputError, Problem, warn
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array
+
+#: A start this close to an orbit, relative to the motion, is taken for that orbit.
+_NEAR = 0.1
+#: First step away from a point where the period doubles, relative to the motion.
+_ASIDE = 1e-2
+
+
+def continuation(
+    make_system: System | Callable[[float], System | tuple[System, float]],
+    mesh_frequency: float | None = None,
+    *,
+    parameter: str = "mesh_frequency",
+    between: tuple[float, float],
+    start: tuple[ArrayLike, ArrayLike] | SpecialPoint | None = None,
+    at: ArrayLike = (),
+    periods: int = 1,
+    steps: int = 512,
+    longest_step: float = 0.02,
+    points: int = 2000,
+    signals: Sequence[str] | None = None,
+    tolerance: float = 1e-9,
+    progress: Progress = SILENT,
+) -> Branch:
+    """Follow periodic orbits over a parameter, stable or not, and mark where they change.
+
+    Parameters
+    ----------
+    make_system : System or function
+        A system, whose mesh frequency is then the parameter; or a function of the parameter that
+        returns a system, or a system and its mesh frequency.
+    mesh_frequency : float, optional
+        Mesh frequency [Hz] where the function returns systems only.
+    parameter : str
+        What the parameter is called.
+    between : (float, float)
+        First and last parameter [its unit]. The branch begins at the first and ends where it
+        leaves the range, at either end.
+    start : (position, velocity) or SpecialPoint, optional
+        Two (n,) arrays [m or rad, m/s or rad/s] from which to look for the first orbit; the static
+        equilibrium by default. Or a period doubling: the branch of twice the period is then
+        followed from there.
+    at : (m,) array
+        Parameters whose orbits are added to the branch [its unit].
+    periods : int
+        Mesh cycles after which the motion repeats.
+    steps : int
+        Steps per mesh cycle.
+    longest_step : float
+        Longest step relative to the range [-].
+    points : int
+        Points at most.
+    signals : sequence of str, optional
+        Names of coordinates or ``"deflection"``, ``"deflection 1"`` ... for the compression of
+        the contacts; the first contact by default.
+    tolerance : float
+        Largest error of a point relative to the first motion [-].
+    progress : Progress
+        Told about the points.
+
+    Returns
+    -------
+    Branch
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or the step is too long.
+    ComputationError
+        If no first orbit is found.
+
+    Notes
+    -----
+    Folds are where the parameter turns back, period doublings where a multiplier passes -1,
+    Neimark-Sacker points where a complex pair passes the unit circle, branch points where another
+    branch crosses, grazing where a contact begins to open. Pairs of such points between two
+    neighbouring orbits are overlooked: a shorter ``longest_step`` finds them. If a branch cannot be
+    followed further, a warning (``steady-state``) says where and why, and the rest is returned.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> mesh = Contact([1.0], stiffness=lambda p: 1 + 0.2 * np.cos(2 * np.pi * p), gap=1.0)
+    >>> pair = System([[1.0]], [[0.1]], [[0.0]], [0.5], [mesh])
+    >>> branch = continuation(pair, between=(0.12, 0.16), steps=256)
+    >>> [f"{2 * np.pi * fold.parameter:.4f}" for fold in branch.special("fold")]
+    ['0.9069', '0.8344']
+    """
+    _check(between, periods, longest_step, points)
+    if isinstance(start, SpecialPoint):
+        periods = 2 * start.period
+    low = min(between) if isinstance(start, SpecialPoint) else between[0]
+    family = Family(make_system, mesh_frequency, steps, min(between))
+    function = FamilyMap(family, int(periods), (float(low), float(sum(between) - low)))
+    progress.start("Following the branch", None)
+    names = signal_names(function.at(low).compiled.system, signals)
+    first = _first(function, start, between, tolerance)
+    stepping = Stepping(longest_step, points, tolerance)
+    found, ending, complete = follow(function, first, stepping, progress)
+    found = with_values(function, found, np.asarray(at, dtype=float), tolerance)
+    branch = _collect(function, found, names, parameter, (ending, complete), tolerance)
+    progress.finish()
+    if not complete:
+        warn("steady-state", f"the branch over {parameter} {ending}", stacklevel=2)
+    return branch
+
+
+def _check(between: tuple[float, float], periods: int, longest: float, points: int) -> None:
+    first, last = between
+    problem = ""
+    if not (np.isfinite(first) and np.isfinite(last) and first != last):
+        problem, where = f"between = {between}", "two different finite numbers"
+    elif int(periods) != periods or periods < 1:
+        problem, where = f"periods = {periods}", "a whole number >= 1"
+    elif not 0.0 < longest <= 1.0:
+        problem, where = f"longest_step = {longest}", "a part of the range in (0, 1]"
+    elif points < 2:
+        problem, where = f"points = {points}", "a whole number >= 2"
+    if problem:
+        name = problem.partition(" ")[0]
+        raise InputError(Problem(what=problem, where=f"argument {name}", why=f"It is {where}"))
+
+
+def _first(
+    function: FamilyMap,
+    start: tuple[ArrayLike, ArrayLike] | SpecialPoint | None,
+    between: tuple[float, float],
+    tolerance: float,
+) -> BranchPoint:
+    if isinstance(start, SpecialPoint):
+        return _aside(function, start, tolerance)
+    mapping = function.at(between[0])
+    system = mapping.compiled.system
+    state = static_start(mapping.compiled) if start is None else read_start(system, start)
+    y = mapping.start(state)
+    if start is not None:
+        # A given state may be that of an unstable orbit, which no search would keep.
+        function.size = _motion(mapping, y)
+        try:
+            point = correct(function, np.append(y / function.size, 0.0), hold(y.size + 1), None,
+                            tolerance)  # fmt: skip
+            if np.linalg.norm(point.x[:-1] - y / function.size) < _NEAR:
+                return point
+        except StalledError:
+            pass
+    orbit = find_orbit(mapping, y, TOLERANCE)
+    if not orbit.error <= TOLERANCE:
+        raise ComputationError(
+            Problem(
+                what=f"no orbit of {function.periods} mesh cycle(s) was found at {between[0]:g}: "
+                f"certified error {orbit.error:.2e}",
+                why=f"The limit is {TOLERANCE:.0e}",
+                remedy="Begin elsewhere, give a start, or take periods = 2, 3, 4",
+            )
+        )
+    function.size = _motion(mapping, orbit.point)
+    x = np.append(orbit.point / function.size, 0.0)
+    return correct(function, x, hold(x.size), None, tolerance)
+
+
+def _motion(mapping: OrbitMap, y: Array) -> float:
+    reduced = mapping.coordinates.reduce(mapping.record(y)[0])
+    return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
+
+
+def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> BranchPoint:
+    """First point of the branch of twice the period, beside the point where it begins."""
+    if not 0.0 <= (start.parameter - function.origin) / function.range <= 1.0:
+        raise InputError(
+            Problem(
+                what=f"start lies at {start.parameter:.8g}",
+                where="argument start",
+                why=f"The range is {function.origin:g} to {function.origin + function.range:g}",
+            )
+        )
+    mapping = function.at(start.parameter)
+    y = mapping.start(np.concatenate((start.position, start.velocity)))
+    function.size = _motion(mapping, y)
+    x = np.append(y / function.size, (start.parameter - function.origin) / function.range)
+    # Over twice the period the multiplier is +1: the direction is that in which nothing changes.
+    values, vectors = np.linalg.eig(function.jet(x).matrix)
+    real = np.real(vectors[:, np.argmin(np.abs(values - 1.0))])
+    along = np.append(real / np.linalg.norm(real), 0.0)
+    for length in _ASIDE * 0.5 ** np.arange(6 if start.kind == "period-doubling" else 0):
+        try:
+            point = correct(function, x + length * along, along, None, tolerance)
+        except StalledError:
+            continue
+        if (point.x - x) @ along > 0.5 * length:
+            outward = np.sign(point.tangent @ along) or 1.0
+            return BranchPoint(
+                point.x, outward * point.tangent, point.jet, point.multipliers, point.error,
+                point.effort,
+            )  # fmt: skip
+    raise ComputationError(
+        Problem(
+            what=f"no branch of {function.periods} mesh cycles was found at {start.parameter:.8g}",
+            why=f"A {start.kind} of period {start.period} was given",
+            remedy="Only a period-doubling has such a branch, and a linear system has none",
+        )
+    )
+
+
+def _collect(
+    function: FamilyMap,
+    found: list[BranchPoint],
+    signals: tuple[str, ...],
+    name: str,
+    ending: tuple[str, bool],
+    tolerance: float,
+) -> Branch:
+    def figures(point: BranchPoint) -> OrbitFigures:
+        value = function.parameter(point.x)
+        mapping = function.at(value)
+        return measure(mapping, function.reduced(point.x), signals)
+
+    measured = [figures(point) for point in found]
+    located: list[Located] = []
+    for kind, (test, holds) in tests_of_multipliers().items():
+        located += locate(function, found, kind, test, holds, tolerance)
+    if np.isfinite(measured[0].opening):
+        by_point = {id(point): one.opening for point, one in zip(found, measured, strict=True)}
+
+        def opening(point: BranchPoint) -> float:
+            known = by_point.get(id(point))
+            return figures(point).opening if known is None else known
+
+        located += locate(function, found, "grazing", opening, lambda point: True, tolerance)
+    order = sorted(
+        located, key=lambda one: (one.after, np.linalg.norm(one.point.x - found[one.after].x))
+    )
+
+    def special(one: Located) -> SpecialPoint:
+        value, own = function.parameter(one.point.x), figures(one.point)
+        return SpecialPoint(
+            one.kind, value, own.mesh_frequency, own.position, own.velocity,
+            one.point.multipliers, own.rms, own.peak_to_peak, function.periods, one.after,
+        )  # fmt: skip
+
+    values = np.array([function.parameter(point.x) for point in found])
+    multipliers = np.array([point.multipliers for point in found])
+    columns = ("position", "velocity", "mean", "rms", "peak_to_peak", "peak_force",
+               "contact_loss", "clearance")  # fmt: skip
+    return Branch(
+        name=name,
+        parameter=values,
+        mesh_frequency=np.array([one.mesh_frequency for one in measured]),
+        period=function.periods,
+        names=tuple(function.at(float(values[0])).compiled.system.names),
+        signals=signals,
+        **{column: np.array([getattr(one, column) for one in measured]) for column in columns},
+        floquet_multipliers=multipliers,
+        stable=np.abs(multipliers).max(axis=1, initial=0.0) < 1.0,
+        error=np.array([point.error for point in found]),
+        special_points=tuple(special(one) for one in order),
+        ending=ending[0],
+        complete=ending[1],
+        cycles_used=function.cycles,
+    )
+
+
+@dataclass(frozen=True)
+class OrbitFigures:
+    """Figures of one orbit."""
+
+    mesh_frequency: float  #: mesh frequency [Hz]
+    position: Array  #: [m or rad, m/s or rad/s]
+    velocity: Array  #: [m or rad, m/s or rad/s]
+    mean: Array
+    rms: Array
+    peak_to_peak: Array
+    peak_force: Array  #: largest force [N]
+    contact_loss: Array  #: part of the time off the driving flank [-]
+    clearance: Array  #: least compression beyond the gap [m]
+    opening: float  #: the least clearance of those contacts that can open [m]
+
+
+def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """Names of the signals to measure."""
+    count = len(system.contacts)
+    known = ("deflection",)[:count] + tuple(f"deflection {j}" for j in range(1, count))
+    if wanted is None:
+        return known[:1] or tuple(system.names)
+    for name in wanted:
+        if name not in (*known, *system.names):
+            raise InputError(
+                Problem(
+                    what=f'no signal is called "{name}"',
+                    where="argument signals",
+                    why=f"Known: {', '.join((*known, *system.names))}",
+                )
+            )
+    return tuple(wanted)
+
+
+def _signal(response: Response, name: str) -> Array:
+    if name in response.names:
+        return response.fine.position[:, response.index(name)]
+    return response.fine.deflection[:, int(name.partition(" ")[2] or 0)]
+
+
+def _extremes(signal: Array) -> tuple[Array, Array]:
+    """Least and greatest value of (3 s, ...) of the parabolas through the samples of each step."""
+    left, middle, right = np.moveaxis(signal.reshape(-1, 3, *signal.shape[1:]), 1, 0)
+    bend, rise = left - 2.0 * middle + right, 0.5 * (right - left)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        place = np.where(bend != 0.0, -rise / bend, 0.0)
+    inner = np.where(np.abs(place) < 1.0, middle + 0.5 * rise * place, middle)
+    every = np.concatenate((left, middle, right, inner))
+    return every.min(axis=0), every.max(axis=0)
+
+
+def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures:
+    """Record one orbit and measure it."""
+    states, extra = mapping.record(y)
+    frequency = float(1.0 / mapping.period)
+    response = build_response(mapping.compiled, frequency, states, extra)
+    fine, nodes = response.fine, mapping.compiled.nodes
+    values = np.stack([_signal(response, name) for name in signals], axis=1)
+    mean = fine.mean(values)
+    low, high = _extremes(values)
+    count = nodes.gap.shape[2]
+    gap = np.tile(nodes.gap, (response.periods, 1, 1))
+    beyond = fine.deflection - gap.reshape(fine.deflection.shape)
+    dead = np.any(nodes.gap > 0.0, axis=(0, 1))
+    clearance = _extremes(beyond)[0] if count else np.zeros(0)
+    able = dead & _lowest_of_each_law(nodes) if count else dead
+    return OrbitFigures(
+        mesh_frequency=frequency,
+        position=states[0, : response.position.shape[1]].copy(),
+        velocity=response.velocity[0].copy(),
+        mean=mean,
+        rms=np.sqrt(fine.mean((values - mean) ** 2)),
+        peak_to_peak=high - low,
+        peak_force=_extremes(fine.contact_force)[1] if count else np.zeros(0),
+        contact_loss=fine.mean(1.0 * ((beyond <= 0.0) & dead)),
+        clearance=clearance,
+        opening=float(clearance[able].min()) if able.any() else float("nan"),
+    )

@@ -1,0 +1,116 @@
+"""Which coordinates a periodic orbit has: all but the free rotation of the whole drive.
+
+With friction the two torques of a gear pair do not balance, the whole drive speeds up or slows
+down, and no periodic orbit exists in the absolute angle. Nothing depends on that angle, so the
+orbit is sought in the remaining coordinates. They are taken orthogonal in the mass metric, where
+the free motion and the rest do not exchange momentum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
+
+_RANK = 1e-9
+
+
+@dataclass(frozen=True)
+class OrbitCoordinates:
+    """Change between a state and the reduced vector in which an orbit closes."""
+
+    lower: Array  #: cholesky factor of the mass matrix
+    elastic: Array  #: orthonormal basis, in the mass metric, of positions that matter
+    moving: Array  #: the same for velocities
+    free: Array  #: free motions: neither position nor velocity matters
+    rate: float  #: weight of positions against velocities [rad/s]
+
+    def reduce(self, state: Array) -> Array:
+        """State (..., 2 n) to reduced vector (..., e + v)."""
+        size = self.lower.shape[0]
+        q, v = state[..., :size] @ self.lower, state[..., size:] @ self.lower
+        return np.concatenate((self.rate * (q @ self.elastic), v @ self.moving), axis=-1)
+
+    def expand(self, reduced: Array) -> Array:
+        """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest."""
+        inverse = np.linalg.inv(self.lower)
+        count = self.elastic.shape[1]
+        q = reduced[..., :count] @ self.elastic.T / self.rate
+        v = reduced[..., count:] @ self.moving.T
+        return np.concatenate((q @ inverse, v @ inverse), axis=-1)
+
+    def free_velocity(self, state: Array) -> Array:
+        """Velocity of the free motions, (..., r), in the mass metric."""
+        size = self.lower.shape[0]
+        return np.asarray(state[..., size:] @ self.lower @ self.free)
+
+
+def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:
+    """Find the coordinates that matter."""
+    system, nodes = compiled.system, compiled.nodes
+    lower = np.linalg.cholesky(np.asarray(system.mass))
+    inverse = np.linalg.inv(lower)
+    used = _used_directions(nodes.direction, nodes.direction_slope) @ inverse.T
+    spring = inverse @ np.asarray(system.stiffness) @ inverse.T
+    damper = inverse @ np.asarray(system.damping) @ inverse.T
+    elastic = _row_space([spring, used])
+    moving = _row_space([spring, used, damper])
+    free = _complement(moving)
+    return OrbitCoordinates(lower, elastic, moving, free, 2.0 * np.pi * mesh_frequency)
+
+
+def refuse_disconnected(compiled: Compiled) -> None:
+    """Refuse a coordinate that no spring, damper or contact joins to anything."""
+    system, nodes = compiled.system, compiled.nodes
+    held = np.zeros(system.size, dtype=bool)
+    for name in ("stiffness", "damping"):
+        matrix = np.asarray(getattr(system, name))
+        held |= np.any(matrix != 0.0, axis=0) | np.any(matrix != 0.0, axis=1)
+    coupled = np.asarray(system.mass) - np.diag(np.diag(np.asarray(system.mass)))
+    held |= np.any(coupled != 0.0, axis=0)
+    for part in (nodes.direction, nodes.direction_slope, nodes.force_direction):
+        held |= np.any(part != 0.0, axis=(0, 1, 2))
+    held |= np.any(nodes.friction_direction != 0.0, axis=(0, 1, 2))
+    if held.all() or not held.any():
+        return
+    names = [system.names[int(i)] for i in np.flatnonzero(~held)]
+    many = len(names) > 1
+    raise InputError(
+        Problem(
+            what=f"the coordinate{'s' if many else ''} {', '.join(names)} "
+            f"{'are' if many else 'is'} connected to nothing",
+            where="System.stiffness",
+            why="No spring, damper or contact reaches it, so that it moves freely and has no "
+            "periodic orbit",
+            remedy="Add the missing shaft, bearing or contact, or remove the coordinate",
+        )
+    )
+
+
+def _used_directions(*parts: Array) -> Array:
+    """Different directions of all contacts (m, n); one row for a contact that keeps its own."""
+    rows = [np.zeros((0, parts[0].shape[-1]))]
+    for part in parts:
+        for number in range(part.shape[-2]):
+            contact = part[..., number, :].reshape(-1, part.shape[-1])
+            rows.append(contact if np.ptp(contact, axis=0).any() else contact[:1])
+    return np.asarray(np.unique(np.vstack(rows), axis=0))
+
+
+def _complement(basis: Array) -> Array:
+    """Orthonormal basis of what is orthogonal to the columns of an orthonormal basis."""
+    full, _ = np.linalg.qr(basis, mode="complete") if basis.shape[1] else (np.eye(len(basis)), None)
+    return np.ascontiguousarray(full[:, basis.shape[1] :])
+
+
+def _row_space(matrices: list[Array]) -> Array:
+    scaled = [matrix / norm for matrix in matrices if (norm := np.linalg.norm(matrix)) > 0.0]
+    size = matrices[0].shape[1]
+    if not scaled:
+        return np.zeros((size, 0))
+    _, values, rows = np.linalg.svd(np.vstack(scaled), full_matrices=False)
+    return np.ascontiguousarray(rows[values > _RANK * values[0]].T)

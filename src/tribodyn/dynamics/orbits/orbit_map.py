@@ -1,0 +1,305 @@
+"""The map whose fixed point is a periodic orbit: the reduced state over one period.
+
+With a balancing torque its size is one more unknown: what the free motion of the drive gains over
+the period is what the torque has to take away. Points, and periods where they differ, are lanes of
+one march.
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.coordinates import (
+    OrbitCoordinates,
+    orbit_coordinates,
+    refuse_disconnected,
+)
+from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array, ComplexArray, Index
+
+#: Lanes that are marched at a time: more do not fit beside each other in the memory near a core.
+_LANES = 16384
+#: Lanes from which on a march chooses its blocks by itself.
+_MANY = 32
+#: Disturbance of the matrix of a map with dead zones relative to the motion, rounds of Newton's
+#: method, and the least by which a round has to bring the error down.
+_DISTURBANCE, _ROUNDS, _CONTRACTION = 1e-6, 8, 0.7
+#: A matrix evaluated farther than this from the orbit, over its size, is evaluated again.
+_FAR = 1e-3
+
+
+class Balance(NamedTuple):
+    """The torque that takes away what the free motion of a drive gains."""
+
+    direction: Array  #: the free motion that it drives
+    force: Array  #: it for a gain of 1 m/s in 1 s [N or N*m]
+    strength: float
+
+    @classmethod
+    def of(cls, system: System, coordinates: OrbitCoordinates) -> Balance | None:
+        """Balance of a system, None without one."""
+        if system.balance is None:
+            return None
+        force = np.asarray(system.balance)
+        push = coordinates.free.T @ np.linalg.solve(coordinates.lower, force)
+        strength = float(np.linalg.norm(push))
+        if strength < 1e-12 * float(np.linalg.norm(np.linalg.solve(coordinates.lower, force))):
+            raise InputError(
+                Problem(
+                    what="balance does not drive any free motion",
+                    where="System.balance",
+                    why="The structure holds the drive in place, so no torque needs balancing",
+                    remedy="Leave balance out",
+                )
+            )
+        return cls(push / strength, force / strength, strength)
+
+    def torque(self, gain: Array, span: Array) -> Array:
+        """Force (lanes, n) that makes a gain (lanes,) [m/s] in a time (lanes,) [s]."""
+        return np.asarray(gain[:, None] * self.force / np.asarray(span)[:, None])
+
+
+class OrbitMap:
+    """The reduced state, and the balancing torque if there is one, over one period.
+
+    With several mesh frequencies points (frequencies, ..., k) are mapped, each at its own.
+    """
+
+    def __init__(
+        self,
+        compiled: Compiled,
+        mesh_frequency: float | Array,
+        periods: int,
+        coordinates: OrbitCoordinates | None = None,
+        width: int | None = 1,
+    ) -> None:
+        self.width, self.threads = width, None if width else 1
+        self.compiled = compiled
+        refuse_disconnected(compiled)
+        lowest = float(np.min(mesh_frequency))
+        self.coordinates = coordinates or orbit_coordinates(compiled, lowest)
+        self.period = 1.0 / mesh_frequency
+        self.periods = periods
+        self.cycles = 0
+        self.contacts = len(compiled.system.contacts)
+        self.balance = Balance.of(compiled.system, self.coordinates)
+
+    def over(self, periods: int) -> OrbitMap:
+        """The map over another number of mesh cycles."""
+        other = copy(self)
+        other.periods, other.cycles = periods, 0
+        return other
+
+    def at(self, which: Index) -> OrbitMap:
+        """The map at some of several mesh frequencies."""
+        other = copy(self)
+        if np.ndim(self.period):
+            other.period = np.asarray(self.period)[which]
+        return other
+
+    def rescaled(self, y: Array, periods: int) -> Array:
+        """Point of the map over ``periods`` mesh cycles as one of this: the torque stays."""
+        if self.balance is None:
+            return y
+        return np.append(y[:-1], y[-1] * self.periods / periods)
+
+    def states(self, y: Array) -> Array:
+        """Points without the balancing torque."""
+        return y if self.balance is None else y[..., :-1]
+
+    def start(self, state: Array) -> Array:
+        """Reduced vector of a state, without a balancing torque."""
+        y = self.coordinates.reduce(state)
+        if y.size == 0:
+            raise InputError(
+                Problem(
+                    what="no coordinate is held by a spring, a damper or a contact",
+                    where="System.stiffness",
+                    why="Nothing vibrates, so that no periodic orbit exists",
+                    remedy="Use simulate for a free motion",
+                )
+            )
+        return y if self.balance is None else np.append(y, 0.0)
+
+    def split(self, y: Array) -> tuple[Array, Array]:
+        """State and balancing force of points (lanes, k)."""
+        y = np.atleast_2d(y)
+        if self.balance is None:
+            return self.coordinates.expand(y), np.zeros((len(y), self.compiled.system.size))
+        extra = self.balance.torque(y[:, -1], self._lane_periods(len(y)) * self.periods)
+        return self.coordinates.expand(y[:, :-1]), extra
+
+    def _lane_periods(self, lanes: int) -> Array:
+        each = np.atleast_1d(self.period)
+        return np.repeat(each, lanes // each.size)
+
+    def __call__(self, y: Array) -> Array:
+        """Map (..., k)."""
+        points = y.reshape(-1, y.shape[-1])
+        state, extra = self.split(points)
+        lanes, period = len(points), self._lane_periods(len(points))
+        new = np.empty_like(state)
+        for first in range(0, lanes, _LANES):
+            block = slice(first, first + _LANES)
+            new[block] = march(
+                self.compiled, period[block], state[block], self.periods,
+                extra_force=extra[block], width=self.width if lanes < _MANY else None,
+                threads=self.threads,
+            )  # fmt: skip
+        self.cycles += self.periods
+        return self._image(points, new).reshape(y.shape)
+
+    def _image(self, points: Array, new: Array) -> Array:
+        reduced = self.coordinates.reduce(new)
+        if self.balance is None:
+            return reduced
+        # What the free motion gained over the period is what the torque has to take away.
+        gained = self.coordinates.free_velocity(new) @ self.balance.direction
+        return np.column_stack((reduced, points[:, -1] - gained))
+
+    def follow(self, y: Array) -> tuple[Array, Array]:
+        """Map points (..., k) and keep every state on the way, (..., rows, 2 n)."""
+        points = y.reshape(-1, y.shape[-1])
+        state, extra = self.split(points)
+        period, new = self._lane_periods(len(points)), np.empty_like(state)
+        rows = self.periods * self.compiled.grid.steps + 1
+        states = np.empty((len(points), rows, state.shape[1]))
+        for lane in range(len(points)):
+            own, record = slice(lane, lane + 1), np.empty((rows, state.shape[1], 1))
+            new[own] = march(
+                self.compiled, period[own], state[own], self.periods, extra_force=extra[own],
+                record=record, threads=1,
+            )  # fmt: skip
+            states[lane] = record[:, :, 0]
+        self.cycles += self.periods
+        image = self._image(points, new).reshape(y.shape)
+        return image, states.reshape(*y.shape[:-1], *states.shape[1:])
+
+    def matrix(
+        self, y: Array, step: Array | float, *, central: bool = False
+    ) -> tuple[Array, Array]:
+        """Images and matrices of the map at points (..., k), by differences of a ``step`` (...)."""
+        eye, step = np.eye(y.shape[-1]), np.asarray(step)[..., None, None]
+        moves = np.vstack((0.0 * eye[:1], eye, -eye if central else eye[:0]))
+        images = self(y[..., None, :] + step * moves)
+        beside = images[..., 1:, :]
+        if central:
+            plus, minus = np.split(beside, 2, axis=-2)
+            slope = (plus - minus) / (2.0 * step)
+        else:
+            slope = (beside - images[..., :1, :]) / step
+        return images[..., 0, :], np.swapaxes(slope, -1, -2)
+
+    @property
+    def affine(self) -> bool:
+        """Whether the map is linear but for a constant: no dead zone, no friction that bends."""
+        code = self.compiled.program.code
+        if self.compiled.nodes.friction_coefficients.shape[-1] > 1:
+            return False
+        return not any(code[4 + 4 * j + 2] for j in range(self.contacts))
+
+    def multipliers(self, matrix: Array) -> ComplexArray:
+        """Floquet multipliers under a held torque, the largest first."""
+        inner = matrix if self.balance is None else matrix[:-1, :-1]
+        values = np.linalg.eigvals(inner).astype(complex)
+        return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+
+    def record(self, y: Array) -> tuple[Array, Array]:
+        """March one period and keep every state."""
+        _, states = self.follow(y)
+        self.cycles -= self.periods
+        return self.without_drift(states), self.split(y)[1][0]
+
+    def without_drift(self, states: Array) -> Array:
+        """Take the mean speed and mean acceleration out of the free motions, in place."""
+        c, size = self.coordinates, self.compiled.system.size
+        phase = np.concatenate(
+            [cycle + self.compiled.nodes.phase[:, 0] for cycle in range(self.periods)]
+            + [np.array([float(self.periods)])]
+        )
+        time = phase[:, None] * self.period
+        end = time[-1]
+        unmoved = np.linalg.solve(c.lower.T, np.eye(size))
+        for basis in (c.free, _complement(c.elastic, c.free)):
+            if basis.shape[1] == 0:
+                continue
+            speed = states[:, size:] @ c.lower @ basis
+            place = states[:, :size] @ c.lower @ basis
+            rise = (speed[-1] - speed[0]) / end
+            speed = speed - rise * time
+            place = place - 0.5 * rise * time**2
+            drift = (place[-1] - place[0]) / end
+            place = place - drift * time
+            middle = place[:-1].mean(axis=0)
+            kept = states[:, :size] @ c.lower @ basis
+            states[:, :size] += (place - middle - kept) @ basis.T @ unmoved.T
+            if basis is c.free:
+                kept = states[:, size:] @ c.lower @ basis
+                states[:, size:] += (speed - drift - kept) @ basis.T @ unmoved.T
+        return states
+
+
+def _complement(elastic: Array, free: Array) -> Array:
+    """Motions whose speed matters but whose place does not."""
+    both = np.hstack((elastic, free))
+    size = both.shape[0]
+    if both.shape[1] == size:
+        return np.zeros((size, 0))
+    _, _, rows = np.linalg.svd(both.T)
+    return np.asarray(rows[both.shape[1] :].T)
+
+
+class Orbits(NamedTuple):
+    """Fixed points of a map, one for each of the points that were searched from."""
+
+    point: Array  #: (m, k) [m/s]
+    matrix: Array  #: derivative of the map there, (m, k, k) [-]
+    error: Array  #: distance to the orbit over its size, (m,) [-]
+
+
+def newton_step(matrix: Array, residual: Array) -> tuple[Array, float]:
+    """Step to the fixed point of a map, and the distance to it."""
+    slope = np.eye(matrix.shape[0]) - matrix
+    step = np.asarray(np.linalg.lstsq(slope, residual, rcond=None)[0], dtype=float)
+    return step, float(np.linalg.norm(step) + np.linalg.norm(residual - slope @ step))
+
+
+def newton(mapping: OrbitMap, points: Array, tolerance: float, rounds: int = _ROUNDS) -> Orbits:
+    """Newton's method from points (m, k) side by side; matrices are kept once an orbit is near."""
+    count, size = points.shape
+    orbits = Orbits(points.copy(), np.zeros((count, size, size)), np.full(count, np.inf))
+    left, far = np.arange(count), np.ones(count, dtype=bool)
+    for _ in range(rounds):
+        scale = np.linalg.norm(orbits.point[left], axis=1) + 1e-300
+        residual = np.empty((left.size, size))
+        for rows in (np.flatnonzero(far[left]), np.flatnonzero(~far[left])):
+            if rows.size:
+                residual[rows] = _residuals(
+                    mapping, orbits, left[rows], scale[rows], far[left[rows[0]]]
+                )
+        steps = [newton_step(orbits.matrix[i], r) for i, r in zip(left, residual, strict=True)]
+        error = np.array([distance for _, distance in steps]) / scale
+        going = np.flatnonzero((error > tolerance) & (error < _CONTRACTION * orbits.error[left]))
+        orbits.error[left] = error
+        left = left[going]
+        if not left.size:
+            break
+        orbits.point[left] += np.array([steps[i][0] for i in going])
+        far[left] = error[going] > _FAR
+    return orbits
+
+
+def _residuals(mapping: OrbitMap, orbits: Orbits, which: Index, scale: Array, fresh: bool) -> Array:
+    """What the map adds to some points; with ``fresh`` their matrices are evaluated as well."""
+    y, here = orbits.point[which], mapping.at(which)
+    if not fresh:
+        return np.asarray(here(y) - y)
+    # Of a linear map any difference is exact, and a large one loses no digits.
+    image, orbits.matrix[which] = here.matrix(y, (1.0 if mapping.affine else _DISTURBANCE) * scale)
+    return np.asarray(image - y)

@@ -1,0 +1,175 @@
+"""The search for a fixed point: settle, finish with Newton's method, accelerate where needed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tribodyn.dynamics.orbits.anderson import anderson
+from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
+from tribodyn.dynamics.orbits.touch import FlankWatch
+from tribodyn.types import Array, ComplexArray
+
+#: Plain periods with dead zones at most, if the flanks part: they keep a start in its own basin
+#: of attraction. A linear system has one orbit and needs none.
+_SETTLE = 24
+#: Plain periods after which Newton's method is tried while the flanks are in touch.
+_TRIES = (2, 8)
+#: A disturbance this small relative to the orbit no longer changes the basin.
+_SETTLED = 1e-3
+#: A motion this far from an unstable orbit, relative to it, has left it.
+_AWAY = 0.1
+_ANDERSON_LIMIT = 40
+_NEWTON_LIMIT = 8
+#: Plain periods of each further attempt.
+PATIENCE = (150, 400)
+#: Size of the disturbances of the monodromy matrix relative to the orbit.
+_DISTURBANCE = 1e-7
+
+
+@dataclass
+class OrbitPoint:
+    """A point of the map with its residual and the matrix of the map."""
+
+    point: Array  #: [m/s]
+    residual: Array  #: [m/s]
+    matrix: Array  #: derivative of the map, the monodromy matrix [-]
+    scale: float  #: size of the motion [m/s]
+    multipliers: ComplexArray  #: floquet multipliers, the largest first
+    states: Array  #: the motion over one period
+    slopes: Array  #: its derivative by the reduced vector
+    search: int = 0
+
+    @property
+    def correction(self) -> Array:
+        """Newton step to the fixed point, (k,)."""
+        return newton_step(self.matrix, self.residual)[0]
+
+    @property
+    def error(self) -> float:
+        """Distance to the orbit over its size; at least the rounding of the map."""
+        return newton_step(self.matrix, self.residual)[1] / self.scale
+
+    @property
+    def attracts(self) -> bool:
+        """Whether motions beside the orbit approach it, or keep their distance."""
+        return bool(np.abs(self.multipliers[:1]).max(initial=0.0) <= 1.0 + 1e-6)
+
+
+def motion_size(mapping: OrbitMap, states: Array) -> float:
+    """Size of a motion, free of drift."""
+    reduced = mapping.coordinates.reduce(mapping.without_drift(states.copy()))
+    return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
+
+
+def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> OrbitPoint:
+    """Evaluate the map and its matrix at a point; that of a linear map is the same everywhere."""
+    image, states = mapping.follow(y)
+    scale = motion_size(mapping, states)
+    if known is not None and mapping.affine:
+        matrix, slopes = known.matrix, known.slopes
+    elif mapping.affine:
+        # Of a linear map any difference is exact, and a large one loses no digits.
+        matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((0, *states.shape))
+    else:
+        step = _DISTURBANCE * scale
+        images, motions = mapping.follow(y + step * np.eye(y.size))
+        matrix, slopes = (images - image).T / step, (motions - states) / step
+    return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix), states, slopes)
+
+
+def finish_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
+    """Newton's method from a point near the orbit."""
+    search = mapping.cycles
+    best = _examine(mapping, y)
+    for _ in range(_NEWTON_LIMIT):
+        if best.error <= 0.01 * tolerance:
+            break
+        trial = _examine(mapping, best.point + best.correction, best)
+        if not trial.error < 0.5 * best.error:
+            break
+        best = trial
+    best.search = search
+    return best
+
+
+def _good(orbit: OrbitPoint, tolerance: float) -> bool:
+    return orbit.error <= tolerance and orbit.attracts
+
+
+def _settle(
+    mapping: OrbitMap, y: Array, periods: int, tolerance: float, unstable: OrbitPoint | None
+) -> tuple[Array, bool, OrbitPoint | None]:
+    """March plain periods until little changes, or the orbit is known to be reached in touch."""
+    watch, candidate, spent = FlankWatch(mapping), None, 0
+    for count in range(1, periods + 1):
+        new, states = mapping.follow(y)
+        change = float(np.linalg.norm(new - y))
+        y = new
+        touching = watch.in_touch(states)
+        if candidate is None and touching and count in _TRIES:
+            before = mapping.cycles
+            candidate = finish_orbit(mapping, y, tolerance)
+            if not (_good(candidate, tolerance) and watch.in_touch(candidate.states)):
+                candidate = None
+            else:
+                spent = mapping.cycles - before
+        if candidate is not None and watch.stays(
+            candidate.states, candidate.slopes, candidate.matrix, y - candidate.point
+        ):
+            candidate.search = mapping.cycles - spent
+            return candidate.point, True, candidate
+        if unstable is not None and np.linalg.norm(y - unstable.point) < _AWAY * unstable.scale:
+            continue
+        if count >= 3 and change < _SETTLED * motion_size(mapping, states):
+            return y, True, None
+    return y, False, None
+
+
+def approach_orbit(
+    mapping: OrbitMap,
+    y: Array,
+    tolerance: float,
+    periods: int = _SETTLE,
+    unstable: OrbitPoint | None = None,
+) -> tuple[OrbitPoint | None, Array]:
+    """Follow a motion until it is known which stable orbit it approaches."""
+    y, settled, known = _settle(mapping, y, periods, tolerance, unstable)
+    if known is None and settled:
+        orbit = finish_orbit(mapping, y, tolerance)
+        known = orbit if _good(orbit, tolerance) else None
+    return known, y
+
+
+def _attempt(
+    mapping: OrbitMap, y: Array, periods: int, tolerance: float, unstable: OrbitPoint | None
+) -> OrbitPoint:
+    """Settle and finish, with acceleration in between if it has to be."""
+    known, y = approach_orbit(mapping, y, tolerance, periods, unstable)
+    if known is not None:
+        return known
+    near, _, _ = anderson(mapping, y, tolerance=1e-3 * tolerance, limit=_ANDERSON_LIMIT)
+    return finish_orbit(mapping, near, tolerance)
+
+
+# A motion on its way beyond all bounds overflows in norms before it is reported.
+@np.errstate(over="ignore", invalid="ignore")
+def find_orbit(
+    mapping: OrbitMap, y: Array, tolerance: float, patience: Sequence[int] = PATIENCE
+) -> OrbitPoint:
+    """Settle, accelerate, finish; with more and more plain marching if that is not enough."""
+    if mapping.affine:
+        return finish_orbit(mapping, y, tolerance)
+    orbit = _attempt(mapping, y, _SETTLE, tolerance, None)
+    generator = np.random.default_rng(0)
+    for periods in patience:
+        if _good(orbit, tolerance):
+            break
+        unstable = orbit if orbit.error <= tolerance else None
+        # A motion leaves an unstable orbit, so the search goes on beside it.
+        beside = _SETTLED * orbit.scale * generator.standard_normal(y.size)
+        start = orbit.point if unstable is None else orbit.point + beside
+        orbit = _attempt(mapping, start, periods, tolerance, unstable)
+    return orbit

@@ -1,0 +1,337 @@
+"""Following the motion from speed to speed as a slow run does: along an orbit until it is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from tribodyn.dynamics._engine.blocks import Statistics, march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.program import Program
+from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
+from tribodyn.dynamics.orbits.orbit_map import OrbitMap, Orbits, newton
+from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.time.ensemble import fresh_moments
+from tribodyn.errors import ComputationError
+from tribodyn.types import Array, ComplexArray, Index, Mask
+
+#: Mesh cycles between two looks at a motion that has left its orbit.
+_LOOK = 24
+#: Rounds of Newton's method from rest: while the flanks are in touch, the first one arrives.
+_FROM_REST = 3
+#: A motion that repeats within this is near its orbit; a part of a period that does so is one.
+_NEAR, _SAME = 5e-3, 1e-5
+#: Longest way to an orbit over what is expected, and how much closer a motion has to come.
+_REACH, _CLOSER = 10.0, 0.98
+#: A way between two motions that is this part of their size may be a jump.
+_JUMP = 0.003
+#: A multiplier beyond this is unstable.
+_UNSTABLE = 1.0 + 1e-7
+#: How much of the patience a motion gets that did not repeat at the speed before.
+_IRREGULAR = 0.25
+
+
+class SpeedFamily:
+    """One system, or several over the speed, at the speeds of a sweep."""
+
+    def __init__(self, tables: Tables, known: Array, frequency: Array) -> None:
+        self.tables, self.frequency = tables, frequency
+        self.system = tables.systems[0]
+        self._compiled: dict[tuple[int, int, float], Compiled] = {}
+        self._key = []
+        for beat in frequency:
+            left, part = blend_weight(known, float(beat))
+            self._key.append((tables.steps_at(float(beat)), left, part))
+        lowest = float(frequency.min())
+        self.coordinates = orbit_coordinates(self.compiled(int(np.argmin(frequency))), lowest)
+        first = OrbitMap(self.compiled(0), float(frequency[0]), 1, self.coordinates)
+        self.balance, self.affine = first.balance, first.affine
+
+    def compiled(self, number: int) -> Compiled:
+        """System of one speed on its grid."""
+        key = self._key[number]
+        if key not in self._compiled:
+            table = self.tables.at(float(self.frequency[number]))
+            blend = _blended(table, key[1], key[2])
+            self._compiled[key] = Compiled(self.system, table.grid, table.nodes[key[1]], *blend)
+        return self._compiled[key]
+
+    def mapping(self, number: int | Index, periods: int) -> OrbitMap:
+        """Map over some mesh cycles of one speed, or of several that share one program."""
+        beat = self.frequency[number]
+        first = int(np.ravel(number)[0])
+        return OrbitMap(self.compiled(first), beat, periods, self.coordinates, 16)
+
+    def start(self, number: int) -> Array:
+        """Reduced vector of the static equilibrium."""
+        y = self.coordinates.reduce(static_start(self.compiled(number)))
+        return y if self.balance is None else np.append(y, 0.0)
+
+    def groups(self) -> list[Index]:
+        """Speeds that share one program."""
+        groups: dict[tuple[int, int, float], list[int]] = {}
+        for number, key in enumerate(self._key):
+            groups.setdefault(key, []).append(number)
+        return [np.array(group, dtype=np.int64) for group in groups.values()]
+
+    def all_at_once(self, tolerance: float) -> Orbits:
+        """Newton's method from rest at all speeds side by side."""
+        start = np.array([self.start(number) for number in range(self.frequency.size)])
+        size = start.shape[1]
+        orbits = Orbits(start, np.zeros((*start.shape, size)), np.zeros(len(start)))
+        for group in self.groups():
+            known = newton(self.mapping(group, 1), start[group], tolerance, _FROM_REST)
+            for values, new in zip(orbits, known, strict=True):
+                values[group] = new
+        return orbits
+
+    def split(self, number: Index, y: Array, periods: Index) -> tuple[Array, Array]:
+        """States and balancing forces of points that repeat after ``periods`` mesh cycles."""
+        state, extra = (
+            np.empty((len(y), 2 * self.system.size)),
+            np.empty((len(y), self.system.size)),
+        )
+        for length in np.unique(periods):
+            lanes = np.flatnonzero(periods == length)
+            mapping = self.mapping(number[lanes], max(int(length), 1))
+            state[lanes], extra[lanes] = mapping.split(y[lanes])
+        return state, extra
+
+    def statistics(
+        self, number: Index, y: Array, periods: Index, cycles: int,
+        outputs: Array,
+    ) -> Array:  # fmt: skip
+        """March motions over their periods and gather their figures."""
+        contacts, others = len(self.system.contacts), self.system.size + len(outputs)
+        figures = np.empty((2 * contacts + others, 5, number.size))
+        state, extra = self.split(number, y, periods)
+        for group in self.groups():
+            inside = np.isin(number, group)
+            for length in np.unique(periods[inside]):
+                lanes = np.flatnonzero(inside & (periods == length))
+                compiled, beat = self.compiled(int(group[0])), self.frequency[number[lanes]]
+                moments = fresh_moments(contacts, others, 0, lanes.size)
+                waves = np.zeros((compiled.grid.steps, 3, 0, 2))
+                march(
+                    compiled, 1.0 / beat, state[lanes], int(length) or cycles,
+                    extra_force=extra[lanes], statistics=Statistics(outputs, waves, moments),
+                )  # fmt: skip
+                figures[:, :, lanes] = moments.reshape(-1, 5, lanes.size)
+        return figures
+
+
+def _blended(table: Table, left: int, part: float) -> tuple[Program, float]:
+    program = table.programs[left]
+    if part > 0.0:
+        other = table.programs[left + 1]
+        program = program._replace(
+            rows=program.rows + part * (other.rows - program.rows),
+            constant_load=program.constant_load
+            + part * (other.constant_load - program.constant_load),
+        )
+    return program, table.step_number
+
+
+class Followed:
+    """What was met at one speed."""
+
+    def __init__(
+        self,
+        point: Array,
+        multipliers: ComplexArray,
+        error: float,
+        period: int,
+        jumped: bool = False,
+    ) -> None:
+        self.point, self.multipliers, self.error = point, multipliers, error
+        self.period, self.jumped = period, jumped
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(self.period > 0 and np.abs(self.multipliers[:1]).max(initial=0.0) < _UNSTABLE)
+
+
+def _orbit_near(mapping: OrbitMap, y: Array, tolerance: float) -> Followed | None:
+    """Orbit that Newton's method finds from a point."""
+    orbit = newton(mapping, y[None], tolerance)
+    error = float(orbit.error[0])
+    if not error <= tolerance:
+        return None
+    multipliers = mapping.multipliers(orbit.matrix[0])
+    return Followed(orbit.point[0], multipliers, error, mapping.periods)
+
+
+def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
+    """March plainly, with the balancing torque brought up at the end."""
+    if cycles > 1:
+        most = mapping.over(cycles - 1)
+        y = mapping.rescaled(most(most.rescaled(y, 1)), cycles - 1)
+    return mapping(y)
+
+
+class _Follower:
+    def __init__(
+        self, family: SpeedFamily, closed: Orbits | None, valid: Mask,
+        tolerance: float, patience: int, periods: Sequence[int],
+    ) -> None:  # fmt: skip
+        self.family, self.closed, self.valid = family, closed, valid
+        self.tolerance, self.patience, self.periods = tolerance, patience, sorted(periods)
+
+    def shut(self, number: int) -> Followed | None:
+        """Orbit of a speed at which the teeth stay in touch, if it is known and stable."""
+        if self.closed is None or not self.valid[number]:
+            return None
+        mapping = self.family.mapping(number, 1)
+        multipliers = mapping.multipliers(self.closed.matrix[number])
+        error = float(self.closed.error[number])
+        orbit = Followed(self.closed.point[number], multipliers, error, 1)
+        return orbit if orbit.stable else None
+
+    def is_shut(self, number: int, orbit: Followed) -> bool:
+        """Tell whether an orbit is the one at which the teeth stay in touch."""
+        if self.closed is None or not self.valid[number] or orbit.period != 1:
+            return False
+        away = float(np.linalg.norm(orbit.point - self.closed.point[number]))
+        return away <= _SAME * float(np.linalg.norm(orbit.point))
+
+    def continued(self, number: int, last: Followed, guess: Array) -> Followed | None:
+        """Orbit that continues that of the speed before."""
+        mapping = self.family.mapping(number, last.period)
+        orbit = _orbit_near(mapping, guess, self.tolerance)
+        if orbit is None and guess is not last.point:
+            orbit = _orbit_near(mapping, last.point, self.tolerance)
+        if orbit is None or not orbit.stable:
+            return None
+        if last.period > 1:
+            orbit = self._shortest(number, orbit)
+        return orbit
+
+    def _shortest(self, number: int, orbit: Followed) -> Followed:
+        """Take an orbit of several mesh cycles for what it is: it may repeat sooner."""
+        for periods in self.periods:
+            if periods < orbit.period and orbit.period % periods == 0:
+                mapping = self.family.mapping(number, periods)
+                point = mapping.rescaled(orbit.point, orbit.period)
+                away = float(np.linalg.norm(mapping.states(mapping(point) - point)))
+                if away <= _SAME * float(np.linalg.norm(point)):
+                    return _orbit_near(mapping, point, self.tolerance) or orbit
+        return orbit
+
+    def lost(self, number: int, y: Array, patience: int) -> Followed:
+        """March on until the motion repeats, and find the orbit that it has come to."""
+        mapping = self.family.mapping(number, 1)
+        marched = 0
+        while marched < patience:
+            y = _march(mapping, y, _LOOK)
+            marched += _LOOK
+            ahead = y
+            near: list[tuple[int, float]] = []
+            for count in range(1, max(self.periods) + 1):
+                ahead = mapping(ahead)
+                away = float(np.linalg.norm(mapping.states(ahead - y)))
+                if count in self.periods and away <= _NEAR * float(np.linalg.norm(y)):
+                    near.append((count, away))
+            for periods, away in near:
+                whole = self.family.mapping(number, periods)
+                orbit = _orbit_near(whole, whole.rescaled(y, 1), self.tolerance)
+                if orbit is not None and orbit.stable and self._arrives(mapping, y, orbit, away):
+                    orbit.jumped = True
+                    return self._again(number, orbit)
+        none = np.full(y.size - (self.family.balance is not None), np.nan, dtype=complex)
+        return Followed(y, none, float("nan"), 0, True)
+
+    def _arrives(self, mapping: OrbitMap, y: Array, orbit: Followed, away: float) -> bool:
+        """Tell whether a marched motion goes to the orbit that Newton's method found from it."""
+        before = float(np.linalg.norm(mapping.states(orbit.point - y)))
+        size = float(np.linalg.norm(orbit.point))
+        if before <= _SAME * size:
+            return True
+        left = max(1.0 - float(np.abs(orbit.multipliers[0])), 1e-3)
+        if before > _REACH * away / left:
+            return False
+        cycles = orbit.period * -(-_LOOK // orbit.period)
+        after = float(np.linalg.norm(mapping.states(orbit.point - _march(mapping, y, cycles))))
+        return after < _CLOSER * before or after <= _SAME * size
+
+    def _again(self, number: int, orbit: Followed) -> Followed:
+        if orbit.period == 1:
+            return orbit
+        orbit = self._shortest(number, orbit)
+        orbit.jumped = True
+        return orbit
+
+
+def follow(
+    family: SpeedFamily,
+    order: Sequence[int],
+    closed: Orbits | None,
+    valid: Mask,
+    *,
+    start: Array | None,
+    tolerance: float,
+    patience: int,
+    periods: Sequence[int],
+    told: Callable[[], None],
+) -> list[Followed]:
+    """Follow the motion over the speeds in one direction."""
+    one = _Follower(family, closed, valid, tolerance, patience, periods)
+    done: list[Followed] = []
+    shut = False
+    for place, number in enumerate(order):
+        orbit: Followed | None = None
+        if place == 0:
+            orbit = one.shut(number) if start is None else None
+            shut = orbit is not None
+            begin = family.start(number) if start is None else start
+            orbit = orbit or _settled(one, number, begin)
+            orbit.jumped = False
+        else:
+            last = done[-1]
+            orbit = one.shut(number) if shut else None
+            if orbit is None and last.period > 0:
+                shut = False
+                guess = _guess(family.frequency, order, place, done)
+                orbit = one.continued(number, last, guess)
+                shut = orbit is not None and one.is_shut(number, orbit)
+            if orbit is None:
+                share = _IRREGULAR if last.period == 0 else 1.0
+                begin = family.mapping(number, 1).rescaled(last.point, max(last.period, 1))
+                orbit = _settled(one, number, begin, share)
+                orbit.jumped = _is_jump(done, orbit)
+        done.append(orbit)
+        told()
+    return done
+
+
+def _is_jump(done: Sequence[Followed], orbit: Followed) -> bool:
+    """Tell a jump from a bend: the way from the last motion is long, and longer than the last."""
+    last = done[-1]
+    if last.period == 0 or orbit.period == 0:
+        return last.period != orbit.period
+    size = last.point.size if last.period == orbit.period else last.point.size - 1
+    usual = 0.0
+    if len(done) > 1 and done[-2].period == last.period:
+        usual = float(np.linalg.norm(last.point - done[-2].point))
+    away = float(np.linalg.norm((orbit.point - last.point)[:size]))
+    return away > max(_JUMP * float(np.linalg.norm(last.point)), 3.0 * usual)
+
+
+def _settled(one: _Follower, number: int, begin: Array, share: float = 1.0) -> Followed:
+    patience = max(int(share * one.patience), _LOOK)
+    try:
+        return one.lost(number, begin, patience)
+    except ComputationError:
+        # The motion grew beyond all bounds: begin again at rest.
+        return one.lost(number, one.family.start(number), patience)
+
+
+def _guess(frequency: Array, order: Sequence[int], place: int, done: Sequence[Followed]) -> Array:
+    """Continue the last two orbits in a straight line where they belong together."""
+    last = done[-1]
+    if place < 2 or last.jumped or done[-2].period != last.period:
+        return last.point
+    here, before, old = (float(frequency[order[place - k]]) for k in (0, 1, 2))
+    return last.point + (last.point - done[-2].point) * ((here - before) / (before - old))

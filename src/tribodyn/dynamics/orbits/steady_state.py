@@ -1,0 +1,178 @@
+"""Periodic orbits: the steady state found directly, with a certified error.
+
+The map of the state over the mesh cycles of one period has the orbit as its fixed point. Newton's
+method with the full matrix of the map (the monodromy matrix, one marched lane per column) finds
+it, after plain cycles where dead zones leave a choice of orbits, and after Anderson-accelerated
+iteration where the motion does not settle. The same matrix gives the Floquet
+multipliers and the error: the residual alone understates the distance to the orbit by a factor
+1/(1 - rho), where rho is the largest multiplier.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.orbit_map import OrbitMap
+from tribodyn.dynamics.orbits.periods import find_any_orbit, shortest_period
+from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit
+from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.time.response import Response, build_response
+from tribodyn.dynamics.time.simulate import read_start
+from tribodyn.errors import InputError, Problem, warn
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array
+
+#: An orbit whose certified error is above this is not converged.
+TOLERANCE = 1e-8
+
+
+def steady_state(
+    system: System,
+    mesh_frequency: float,
+    *,
+    steps: int = 512,
+    periods: int | Literal["auto"] = 1,
+    start: tuple[ArrayLike, ArrayLike] | None = None,
+    tolerance: float = TOLERANCE,
+    progress: Progress = SILENT,
+) -> Response:
+    """Find the periodic orbit of a system that runs at constant speed.
+
+    Parameters
+    ----------
+    system : System
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    steps : int
+        Steps per mesh cycle.
+    periods : int or "auto"
+        Mesh cycles after which the motion repeats. With ``"auto"`` the motion from the start is
+        followed, and the stable orbit of up to 8 mesh cycles that it approaches is returned.
+    start : (position, velocity), optional
+        Two (n,) arrays from which to look [m or rad, m/s or rad/s]; the static equilibrium at
+        mean stiffness by default.
+    tolerance : float
+        Largest certified error of a converged orbit.
+    progress : Progress
+        Told about the search.
+
+    Returns
+    -------
+    Response
+        With ``steps * periods`` rows, ``error``, ``converged``, ``stable``,
+        ``floquet_multipliers`` and ``period``, the mesh cycles after which it repeats. A warning
+        is issued when the orbit is not converged (``steady-state``) or not stable
+        (``unstable-orbit``).
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, the step is too long or nothing can vibrate.
+    ComputationError
+        If the motion grows beyond all bounds.
+
+    Notes
+    -----
+    With ``system.balance`` the size of the balancing torque is an unknown of the orbit and is
+    returned in ``extra_force``; without it every force is held and the mean acceleration of the
+    whole drive is left out of the orbit. With dead zones the start decides which of several
+    orbits is found. If the search ends on an unstable orbit, it is repeated from beside it.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
+    >>> steady_state(System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair]), 1.0).converged
+    True
+    """
+    count = _whole_periods(periods)
+    compiled = compile_for(system, mesh_frequency, steps)
+    mapping = OrbitMap(compiled, mesh_frequency, count or 1)
+    state = static_start(compiled) if start is None else read_start(system, start)
+    y = mapping.start(state)
+    progress.start("Searching the steady state", None)
+    if count is None:
+        any_orbit = find_any_orbit(mapping, y, tolerance)
+        mapping, orbit, apart = any_orbit.mapping, any_orbit.orbit, any_orbit.apart
+        mapping.cycles = any_orbit.cycles
+    else:
+        orbit, apart = find_orbit(mapping, y, tolerance), np.zeros(0)
+    progress.finish()
+    return _finish(mapping, orbit, mesh_frequency, tolerance, apart)
+
+
+def _whole_periods(periods: int | str) -> int | None:
+    """Check the number of mesh cycles; None stands for "auto"."""
+    if periods == "auto":
+        return None
+    if isinstance(periods, str) or int(periods) != periods or periods < 1:
+        raise InputError(
+            Problem(
+                what=f"periods = {periods!r}",
+                where="argument periods",
+                why='A whole number >= 1, or "auto"',
+            )
+        )
+    return int(periods)
+
+
+def _advice(mapping: OrbitMap, apart: Array) -> str:
+    """What to do where no stable orbit was found."""
+    if np.isinf(apart).any():
+        return "The motion itself was marched on and grows without bounds: nothing holds it"
+    if apart.size:
+        listed = ", ".join(f"{value:.1e}" for value in apart)
+        return (
+            f"The motion itself was marched on: it is {listed} of its size away from where it was "
+            f"1 to {apart.size} mesh cycles before. It repeats later, is quasi-periodic or "
+            "chaotic: tribodyn.analysis.lyapunov_exponents tells"
+        )
+    if mapping.affine:
+        return "The system is linear, so that its motion grows without bounds"
+    return (
+        'Try periods = "auto" and other starts; if no orbit of up to 8 mesh cycles is stable, '
+        "march over time, and let tribodyn.analysis.lyapunov_exponents tell whether it is chaos"
+    )
+
+
+def _finish(
+    mapping: OrbitMap,
+    orbit: OrbitPoint,
+    frequency: float,
+    tolerance: float,
+    apart: Array,
+) -> Response:
+    error = max(orbit.error, float(np.finfo(float).eps))
+    converged = bool(np.isfinite(error) and error <= tolerance)
+    if not converged:
+        warn(
+            "steady-state",
+            f"no periodic orbit of {mapping.periods} mesh cycle(s) was found: certified error "
+            f"{error:.2e}, limit {tolerance:.0e}. {_advice(mapping, apart)}",
+            stacklevel=3,
+        )
+    elif np.abs(orbit.multipliers[0]) > 1.0:
+        warn(
+            "unstable-orbit",
+            f"the orbit exists but a motion leaves it: largest multiplier "
+            f"{np.abs(orbit.multipliers[0]):.6g}, limit 1. {_advice(mapping, apart)}",
+            stacklevel=3,
+        )
+    states, extra = mapping.record(orbit.point)
+    return build_response(
+        mapping.compiled,
+        frequency,
+        states,
+        extra,
+        error=error,
+        converged=converged,
+        floquet_multipliers=orbit.multipliers,
+        cycles_used=mapping.cycles,
+        search_cycles=orbit.search,
+        period=shortest_period(mapping, states),
+    )

@@ -1,0 +1,15 @@
+"""Nonlinear motions: which there are, where they change, and whether they are physics.
+
+The public names stand on the page of :mod:`tribodyn.analysis`.
+
+| module | what it answers |
+|---|---|
+| ``attractors`` | how many motions are marched side by side until they repeat |
+| ``basins``, ``basins_attractors`` | which motion a start comes to, and which motions there are |
+| ``bifurcation``, ``bifurcation_sweep`` | how motions change over a parameter, up and down |
+| ``lyapunov``, ``lyapunov_tangent`` | how fast motions that begin side by side part |
+| ``parameter_map`` | how motions change over two parameters |
+| ``phase_portrait`` | how a motion looks in its phase plane |
+| ``poincare`` | after how many mesh cycles a motion repeats |
+| ``survey`` | how motions are marched, measured and judged by half the step |
+"""

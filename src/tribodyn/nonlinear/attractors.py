@@ -1,0 +1,288 @@
+"""Many motions marched until they repeat, in blocks of lanes that are refilled as they settle.
+
+A motion has settled when its states after ``p`` = 1 to 8 mesh cycles come back, and when the rate
+at which they do so bounds the distance to the motion that repeats exactly: the change ``d`` over
+``p`` cycles, shrinking by ``r`` every ``p`` cycles, leaves at most ``d / (1 - r)``.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
+from tribodyn.dynamics.orbits.orbit_map import Balance
+from tribodyn.errors import ComputationError
+from tribodyn.interrupt import in_threads
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array, Index, Mask
+
+#: Longest period that ends a transient early [mesh cycles].
+LONGEST_PERIOD = 8
+#: Mesh cycles between two looks at the lanes.
+_PART = 2 * LONGEST_PERIOD
+#: Lanes of the kernel.
+_LANES = 16
+#: A motion this much smaller than its start is at rest.
+_REST = 1e-6
+#: Points that differ by less than this, relative to their size, are the same.
+_SAME = 1e-5
+#: A change as small as rounding, relative to the state.
+_ROUNDING = 1e-12
+#: Numbers that are recorded at most; beyond, the cycles are marched one by one.
+_MOST_RECORDED = 2_000_000
+#: Part of the change after fewer cycles that is left whole periods later, where it settles.
+_FALLS = 0.999
+
+
+class Motions:
+    """Motions of one compiled system, one lane each, and what became of them."""
+
+    def __init__(
+        self,
+        compiled: Compiled,
+        frequency: Array,
+        start: Array,
+        force: Array | None = None,
+        parameters: dict[str, Array] | None = None,
+        *,
+        keep_states: bool = False,
+    ) -> None:
+        count, size = frequency.size, compiled.system.size
+        self.compiled, self.frequency, self.parameters = compiled, frequency, parameters or {}
+        self.start = np.array(start, dtype=float)
+        self.force = np.zeros((count, size)) if force is None else np.array(force, dtype=float)
+        self.coordinates = orbit_coordinates(compiled, float(frequency.min()))
+        self.balance = Balance.of(compiled.system, self.coordinates)
+        width = self.coordinates.elastic.shape[1] + self.coordinates.moving.shape[1]
+        self.state = np.full((count, 2 * size), np.nan)
+        self.period = np.zeros(count, dtype=np.int64)
+        self.change, self.rate = np.full(count, np.inf), np.ones(count)
+        self.recent = np.full((count if keep_states else 0, LONGEST_PERIOD, width), np.nan)
+        self.finished = np.zeros(count, dtype=bool)
+        self.stop = threading.Event()
+        self.progress = SILENT
+        self._waiting: Iterator[int] = iter(())
+        self._lock = threading.Lock()
+
+    def queue(self, indices: Any) -> None:
+        """Say which motions are to be marched."""
+        self._waiting = iter([int(i) for i in indices])
+
+    def take(self, count: int) -> list[int]:
+        """Take motions out of the queue."""
+        with self._lock:
+            taken = []
+            for item in self._waiting:
+                taken.append(item)
+                if len(taken) == count:
+                    break
+            return taken
+
+    def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
+        """Keep what became of a motion."""
+        self.state[index] = state
+        self.period[index], self.change[index], self.force[index], recent = facts
+        if len(self.recent):
+            self.recent[index] = recent
+        self.finished[index] = True
+        with self._lock:
+            self.progress.advance()
+        return -1
+
+    def march(self, index: Index, state: Array, cycles: int, force: Array, **options: Any) -> Array:
+        """March lanes by whole mesh cycles."""
+        if self.parameters:
+            options["any_step"] = True
+            options["parameters"] = LaneParameters(
+                **{name: values[index] for name, values in self.parameters.items()}
+            )
+        period = 1.0 / self.frequency[index]
+        return march(self.compiled, period, state, cycles, extra_force=force, **options)
+
+
+class _Block:
+    """Lanes marched side by side; each has a motion of its own, then another when it is done."""
+
+    def __init__(self, motions: Motions, transient: int, tolerance: float, width: int) -> None:
+        self.motions, self.tolerance, self.width = motions, tolerance, width
+        self.parts = -(-transient // _PART)
+        self.steps = motions.compiled.grid.steps
+        self.scale = float(np.abs(motions.compiled.nodes.force).max(initial=0.0)) or 1.0
+        size = motions.start.shape[1]
+        self.job = np.full(width, -1)
+        self.state, self.force = np.zeros((width, size)), np.zeros((width, size // 2))
+        self.part = np.zeros(width, dtype=np.int64)
+        self.least = np.full(width, 1e-300)
+        self.before = np.full((LONGEST_PERIOD, width), np.inf)
+        coordinates = motions.coordinates
+        reduced = coordinates.elastic.shape[1] + coordinates.moving.shape[1]
+        self.earlier = np.full((LONGEST_PERIOD + 1, width, reduced), np.nan)
+        points = LONGEST_PERIOD * self.steps + 1
+        self.record = None
+        self.lanes = min(width, _LANES)
+        if points * size * self.lanes <= _MOST_RECORDED:
+            self.record = np.empty((points, size, self.lanes))
+
+    def run(self) -> None:
+        """March until the queue is empty, or another block was stopped by an error."""
+        try:
+            while not self.motions.stop.is_set() and self._fill():
+                self._advance()
+        except BaseException:
+            self.motions.stop.set()
+            raise
+
+    def _fill(self) -> bool:
+        """Give a motion to every lane that has none; tell whether any lane has one."""
+        idle = np.flatnonzero(self.job < 0)
+        if idle.size:
+            for lane, job in zip(idle, self.motions.take(idle.size), strict=False):
+                self._begin(int(lane), job)
+        busy = np.flatnonzero(self.job >= 0)
+        if not busy.size:
+            return False
+        idle = np.flatnonzero(self.job < 0)
+        # Idle lanes go along with one that is busy.
+        self.state[idle], self.force[idle] = self.state[busy[0]], self.force[busy[0]]
+        return True
+
+    def _begin(self, lane: int, job: int) -> None:
+        m = self.motions
+        while job >= 0:
+            self.job[lane], self.part[lane], self.before[:, lane] = job, 0, np.inf
+            self.earlier[:, lane] = np.nan
+            self.state[lane], self.force[lane] = m.start[job], m.force[job]
+            begin = np.abs(m.coordinates.reduce(m.start[job])).max(initial=0.0)
+            self.least[lane] = max(_REST * begin, 1e-300)
+            if self.parts:
+                return
+            recent = np.repeat(m.coordinates.reduce(m.start[job])[None], LONGEST_PERIOD, axis=0)
+            job = m.store(job, m.start[job], (0, np.inf, m.force[job], recent))
+        self.job[lane] = -1
+
+    def _advance(self) -> None:
+        """March one part, look at every lane, and put others in place of those that are done."""
+        m, c = self.motions, self.motions.coordinates
+        index = np.where(self.job >= 0, self.job, self.job.max())
+        try:
+            middle = m.march(
+                index, self.state, _PART - LONGEST_PERIOD, self.force, width=self.lanes, threads=1
+            )
+            gained = c.free_velocity(middle)
+            last, states = self._last_cycles(index, c.expand(c.reduce(middle)))
+        except ComputationError:
+            self._drop_lost(index)
+            return
+        gained = gained + c.free_velocity(last)
+        self.state = c.expand(c.reduce(last))
+        shift = np.zeros(self.width)
+        if m.balance is not None:
+            more = m.balance.torque(gained @ m.balance.direction, _PART / m.frequency[index])
+            self.force -= more
+            shift = np.abs(more).max(axis=1)
+        self.part += 1
+        self._look(c.reduce(states), shift <= self.tolerance * self.scale)
+
+    def _last_cycles(self, index: Index, state: Array) -> tuple[Array, Array]:
+        """March the last 8 mesh cycles of a part; also returns all states, (9, lanes, 2 n)."""
+        m = self.motions
+        options: dict[str, Any] = {"width": self.lanes, "threads": 1}
+        if self.record is not None:
+            options["record"] = self.record
+            kept = np.empty((LONGEST_PERIOD + 1, *state.shape))
+            for first in range(0, self.width, self.lanes):
+                own = slice(first, first + self.lanes)
+                m.march(index[own], state[own], LONGEST_PERIOD, self.force[own], **options)
+                kept[:, own] = np.moveaxis(self.record[:: self.steps], 2, 1)
+            return kept[-1], kept
+        states = [state]
+        for _ in range(LONGEST_PERIOD):
+            states.append(m.march(index, states[-1], 1, self.force, **options))
+        return states[-1], np.array(states)
+
+    def _look(self, states: Array, balanced: Mask) -> None:
+        """Look which lanes repeat; ``states`` are (9, lanes, k), the last of them the present."""
+        size = np.maximum(np.abs(states[-1]).max(axis=1, initial=0.0), self.least)
+        change = np.abs(states[-1] - states[-2::-1]).max(axis=2, initial=0.0) / size
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            rate = np.where(change < self.before, change / self.before, 1.0)
+            rate **= np.arange(1, LONGEST_PERIOD + 1)[:, None] / _PART
+            certified = change / (1.0 - rate) <= self.tolerance
+        repeats = ((certified & np.isfinite(self.before)) | (change <= _ROUNDING)) & balanced
+        period = np.where(repeats.any(axis=0), repeats.argmax(axis=0) + 1, 0)
+        # Turning states come near after several cycles first: the shortest of its divisors counts,
+        # and while they still come nearer after fewer cycles, it is too early to tell.
+        for lane in np.flatnonzero(period > 1):
+            shorter = [p for p in range(1, period[lane]) if period[lane] % p == 0]
+            period[lane] = next((p for p in shorter if change[p - 1, lane] <= _SAME), period[lane])
+            if still_settles(states[:, lane], self.earlier[:, lane], _PART, int(period[lane])):
+                period[lane] = 0
+        self.earlier = states
+        m = self.motions
+        done = (self.job >= 0) & ((period > 0) | (self.part >= self.parts))
+        self.before = change
+        for lane in np.flatnonzero(done):
+            if period[lane]:
+                m.rate[self.job[lane]] = rate[period[lane] - 1, lane]
+            facts = (
+                int(period[lane]), float(change[:, lane].min()), self.force[lane],
+                states[1:, lane],
+            )  # fmt: skip
+            self._begin(int(lane), m.store(int(self.job[lane]), self.state[lane], facts))
+
+    def _drop_lost(self, index: Index) -> None:
+        """Take out the lanes that grow beyond all bounds; the others try again."""
+        m = self.motions
+        lost = []
+        for lane in np.flatnonzero(self.job >= 0):
+            one = slice(lane, lane + 1)
+            with suppress(ComputationError):
+                m.march(index[one], self.state[one], _PART, self.force[one], threads=1)
+                continue
+            lost.append(int(lane))
+        # A lane on the edge may pass alone: then the farthest one goes.
+        size = np.where(self.job >= 0, np.abs(self.state).max(axis=1), -1.0)
+        for number in lost or [int(size.argmax())]:
+            nan = np.full(self.state.shape[1], np.nan)
+            recent = np.full((LONGEST_PERIOD, m.recent.shape[2]), np.nan)
+            force = np.zeros(self.force.shape[1])
+            self._begin(number, m.store(int(self.job[number]), nan, (0, np.inf, force, recent)))
+
+
+def settle(
+    motions: Motions,
+    indices: Any,
+    transient: int,
+    *,
+    tolerance: float = 1e-7,
+    width: int = 16,
+    threads: int | None = None,
+    progress: Progress = SILENT,
+) -> None:
+    """March motions until they repeat, or over the whole transient."""
+    motions.queue(indices)
+    motions.progress = progress
+    count = 1 if width == 1 and len(indices) == 1 else threads or os.cpu_count() or 1
+    blocks = [_Block(motions, transient, tolerance, width) for _ in range(count)]
+    in_threads(_Block.run, blocks, count)
+
+
+def still_settles(states: Array, earlier: Array, apart: int, period: int) -> bool:
+    """Tell whether a motion comes nearer after fewer cycles than whole periods ago."""
+    back = period * -(-apart // period) - apart
+    for fewer in range(1, period):
+        if period % fewer == 0:
+            new = states[-1] - states[-1 - fewer]
+            old = earlier[-1 - back] - earlier[-1 - back - fewer]
+            if np.linalg.norm(new) < _FALLS * np.linalg.norm(old):
+                return True
+    return False

@@ -1,0 +1,262 @@
+"""Basins of attraction: which motion a start comes to, over a plane of starts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.time.simulate import read_start
+from tribodyn.errors import InputError, Problem
+from tribodyn.nonlinear.attractors import Motions
+from tribodyn.nonlinear.basins_attractors import Attractor, Basins, Catalogue, multiplier_of
+from tribodyn.nonlinear.survey import Survey, signal_name, step_verdict
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array, Index, Mask
+
+#: Certified distance to an attractor at which a start has come to it, relative to the state.
+_NEAR = 1e-4
+#: A motion this much smaller than the starts is at rest.
+_REST = 1e-9
+#: Lanes of one block.
+_WIDTH = 64
+#: Ending of the name of a velocity.
+_VELOCITY = "_velocity"
+
+
+def basins(
+    system: System,
+    mesh_frequency: float,
+    *,
+    between: tuple[tuple[float, float], tuple[float, float]],
+    coordinates: tuple[str, str] | None = None,
+    points: tuple[int, int] = (101, 101),
+    start: tuple[ArrayLike, ArrayLike] | None = None,
+    cycles: int = 400,
+    steps: int = 256,
+    signal: int | str = 0,
+    extra_force: ArrayLike | None = None,
+    verdict: bool = True,
+    keep_partial: bool = False,
+    progress: Progress = SILENT,
+) -> Basins:
+    """Find which motion every start of a plane comes to.
+
+    Parameters
+    ----------
+    system : System
+        The structure and its contacts.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    between : two pairs of float
+        Range of each of the two components of the state [m, rad, m/s or rad/s].
+    coordinates : two str, optional
+        The components: the name of a coordinate, or of one followed by ``_velocity``; the first
+        coordinate and its velocity by default.
+    points : two int
+        Values of each.
+    start : (position, velocity), optional
+        What the other components are [m or rad, m/s or rad/s]; the static equilibrium at mean
+        stiffness by default.
+    cycles : int
+        Mesh cycles at most for a start to come near its motion.
+    steps : int
+        Steps per mesh cycle.
+    signal : int or str
+        Contact whose compression rms and contact loss are of, or name of a coordinate.
+    extra_force : (n,) array, optional
+        Constant generalized force on top of the system's [N or N*m].
+    verdict : bool
+        Repeat everything with half the step, and judge.
+    keep_partial : bool
+        Return what is finished when interrupted (Ctrl-C), see ``finished``.
+    progress : Progress
+        Told about the starts.
+
+    Returns
+    -------
+    Basins
+        Attractors with their shares, the largest first.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or the step is too long.
+    KeyboardInterrupt
+        As it came, unless ``keep_partial``.
+
+    Notes
+    -----
+    A motion that repeats only after ``p`` mesh cycles is one attractor, whichever of its ``p``
+    states a start comes to. Motions that do not repeat are told apart by their rms. Boundaries
+    between basins can be fractal: ``changed`` is the part of the starts that another step sends to
+    another motion, which no step makes zero.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> pair = Contact([1.0], stiffness=lambda p: 1.0 + 0.2 * np.cos(2 * np.pi * p), gap=1.0)
+    >>> system = System([[1.0]], [[0.1]], [[0.0]], [0.5], [pair], names=["x"])
+    >>> found = basins(system, 0.14, between=((1.0, 2.0), (0.0, 1.0)), points=(3, 3), steps=64)
+    >>> found.coordinates, [each.period for each in found.attractors]
+    (('x', 'x_velocity'), [1, 1])
+    """
+    compiled = compile_for(system, mesh_frequency, steps)
+    names = coordinates or (system.names[0], system.names[0] + _VELOCITY)
+    axes = _axes(between, points, cycles)
+    rest = static_start(compiled) if start is None else read_start(system, start)
+    starts = _starts(_columns(system, names), axes, rest)
+    force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    name = signal_name(system, signal)
+    kept = signal if system.contacts else name
+    survey = Survey(cycles, max(64, cycles), 2, kept, keep_partial, tolerance=_NEAR, width=_WIDTH)
+    catalogue = Catalogue(survey, _REST * float(np.abs(starts[:, : system.size]).max()))
+    progress.start("Marching the starts", len(starts) * (1 + bool(verdict)))
+    beat = float(mesh_frequency)
+    motions = _motions(compiled, starts, beat, force)
+    survey.settle(motions, np.arange(len(starts)), progress)
+    label = catalogue.label(motions)
+    attractors = [
+        _attractor(catalogue, n, label[motions.finished] == n, motions, steps)
+        for n in range(len(catalogue.known))
+    ]
+    refined = np.full(label.shape, -3)
+    if verdict and motions.finished.all():
+        again = _motions(compile_for(system, beat, 2 * steps), starts, beat, force)
+        fine = _followed_again(catalogue, again, force, progress)
+        attractors = _judged(attractors, fine, compiled.step_number)
+        refined = _labels_again(fine, again, len(attractors))
+    progress.finish()
+    order = sorted(range(len(attractors)), key=lambda n: -attractors[n].share)
+    rank = np.argsort(np.array(order, dtype=np.int64))
+    shape = (axes[0].size, axes[1].size)
+    return Basins(
+        coordinates=(names[0], names[1]),
+        units=(_unit(names[0]), _unit(names[1])),
+        first=axes[0],
+        second=axes[1],
+        attractor=_renumbered(label, rank).reshape(shape),
+        attractors=tuple(attractors[n] for n in order),
+        refined_attractor=_renumbered(refined, rank).reshape(shape),
+        names=tuple(system.names),
+        signal=name,
+        mesh_frequency=float(mesh_frequency),
+        steps=steps,
+        step_number=compiled.step_number,
+        finished=motions.finished.reshape(shape),
+    )
+
+
+def _followed_again(
+    catalogue: Catalogue, again: Motions, force: Array, progress: Progress
+) -> Catalogue:
+    """Follow all attractors, then all starts, with shorter steps."""
+    fine = catalogue.again(again.compiled, float(again.frequency[0]), force)
+    catalogue.survey.settle(again, np.arange(again.frequency.size), progress)
+    return fine
+
+
+def _starts(columns: tuple[int, int], axes: tuple[Array, Array], rest: Array) -> Array:
+    """States of all starts of the plane."""
+    starts = np.tile(rest, (axes[0].size * axes[1].size, 1))
+    for column, values in zip(columns, np.meshgrid(*axes, indexing="ij"), strict=True):
+        starts[:, column] = values.ravel()
+    return starts
+
+
+def _motions(compiled: Compiled, starts: Array, beat: float, force: Array) -> Motions:
+    count = len(starts)
+    return Motions(compiled, np.full(count, beat), starts, np.tile(force, (count, 1)))
+
+
+def _attractor(
+    catalogue: Catalogue, number: int, mine: Mask, motions: Motions, steps: int
+) -> Attractor:
+    found = catalogue.known[number]
+    half = found.full.shape[1] // 2
+    multiplier = multiplier_of(found, motions, steps)
+    return Attractor(
+        position=found.full[:, :half],
+        velocity=found.full[:, half:],
+        period=found.period,
+        rms=found.rms,
+        contact_loss_share=found.contact_loss_share,
+        largest_multiplier=multiplier,
+        stable=not multiplier >= 1.0,
+        share=float(np.mean(mine)) if mine.size else 0.0,
+    )
+
+
+def _judged(attractors: list[Attractor], fine: Catalogue, step_number: float) -> list[Attractor]:
+    """Attractors with what half the step says of them."""
+    return [
+        replace(
+            each,
+            verdict=step_verdict(step_number, each.period, each.rms, other.period, other.rms),
+            refined_period=other.period,
+            refined_rms=other.rms,
+        )
+        for each, other in zip(attractors, fine.known, strict=True)
+    ]
+
+
+def _labels_again(fine: Catalogue, again: Motions, known: int) -> Index:
+    """Which attractor every start comes to with shorter steps; -2 for one that is new."""
+    if not again.finished.all():
+        return np.full(again.frequency.size, -3)
+    refined = fine.label(again)
+    refined[refined >= known] = -2
+    return refined
+
+
+def _renumbered(label: Index, rank: Index) -> Index:
+    known = label >= 0
+    out = label.copy()
+    out[known] = rank[label[known]]
+    return out
+
+
+def _columns(system: System, names: tuple[str, str]) -> tuple[int, int]:
+    known = [*system.names, *(name + _VELOCITY for name in system.names)]
+    if len(names) != 2 or names[0] == names[1] or not set(names) <= set(known):
+        raise InputError(
+            Problem(
+                what=f"coordinates = {names!r}",
+                where="argument coordinates",
+                why=f"Two different ones of {', '.join(known)}",
+            )
+        )
+    return known.index(names[0]), known.index(names[1])
+
+
+def _axes(
+    between: tuple[tuple[float, float], tuple[float, float]], points: tuple[int, int], cycles: int
+) -> tuple[Array, Array]:
+    ends = np.asarray(between, dtype=float)
+    counts = np.asarray(points)
+    wrong = ends.shape != (2, 2) or counts.shape != (2,)
+    if wrong or not np.all(np.isfinite(ends)) or np.any(counts < 2) or cycles < 1:
+        raise InputError(
+            Problem(
+                what=f"between = {between}, points = {points}, cycles = {cycles}",
+                where="argument between",
+                why="A plane has two ranges of at least two values, and needs a mesh cycle",
+                remedy="Write, for example, between=((-1e-4, 1e-4), (-0.1, 0.1))",
+            )
+        )
+    first, second = (
+        np.linspace(float(low), float(high), int(n))
+        for (low, high), n in zip(ends, counts, strict=True)
+    )
+    return first, second
+
+
+def _unit(name: str) -> str:
+    angle = "theta" in name
+    if name.endswith(_VELOCITY):
+        return "rad/s" if angle else "m/s"
+    return "rad" if angle else "m"

@@ -1,0 +1,300 @@
+"""Attractors of a plane of starts: which motions there are, and which of them a start comes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.orbits.steady_state import steady_state
+from tribodyn.errors import ComputationError, InputError, quiet
+from tribodyn.nonlinear.attractors import Motions, settle
+from tribodyn.nonlinear.survey import Survey, follow, measure
+from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    pass
+
+#: States of one motion differ by less than this part of the largest state.
+_SAME = 1e-3
+#: Motions this much smaller than their starts are at rest.
+_REST = 1e-3
+#: Certified distance of an attractor to the motion that repeats, relative to the state.
+_EXACT = 1e-9
+#: Motions that still change by more than this are taken for irregular ones.
+_WILD = 1e-3
+#: Rms values of one irregular motion agree within this.
+_IRREGULAR = 0.1
+#: Attractors at most; what comes after is left unresolved.
+_MOST = 64
+
+
+@dataclass(frozen=True)
+class Attractor:
+    """A motion that starts are drawn to.
+
+    Parameters
+    ----------
+    position, velocity : (p, n) array
+        State at the mesh phase 0 of its ``p`` mesh cycles; of an irregular motion one state
+        [m or rad, m/s or rad/s].
+    period : int
+        Mesh cycles after which it repeats; 0 if it does not.
+    rms : float
+        Alternating rms of the signal [m or rad].
+    contact_loss_share : float
+        Part of the time off the driving flank [-].
+    largest_multiplier : float
+        Modulus of its largest Floquet multiplier [-]; NaN if it does not repeat.
+    stable : bool
+        Whether that is below one; true of a motion that does not repeat, since starts come to it.
+    share : float
+        Part of the starts that come to it [-].
+    verdict : str
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not asked for.
+    refined_period : int
+        Period with half the step [mesh cycles].
+    refined_rms : float
+        Rms with half the step [m or rad].
+    """
+
+    position: Array = field(repr=False)
+    velocity: Array = field(repr=False)
+    period: int
+    rms: float
+    contact_loss_share: float
+    largest_multiplier: float
+    stable: bool = field(repr=False)
+    share: float
+    verdict: str = ""
+    refined_period: int = field(default=0, repr=False)
+    refined_rms: float = field(default=float("nan"), repr=False)
+
+
+@dataclass
+class Found:
+    """An attractor as it comes out of the marching."""
+
+    states: Array  #: reduced states at the mesh phase 0
+    state: Array  #: one state [mixed]
+    force: Array  #: generalized force that balanced the drive [N or N*m]
+    period: int  #: mesh cycles after which it repeats
+    rms: float  #: [m or rad, -]
+    contact_loss_share: float  #: [m or rad, -]
+    full: Array  #: states at the mesh phase 0 [mixed]
+
+
+class Catalogue:
+    """Attractors known so far."""
+
+    def __init__(self, survey: Survey, least: float = 0.0) -> None:
+        self.survey, self.least = survey, least
+        self.known: list[Found] = []
+
+    def label(self, motions: Motions) -> Index:
+        """Tell which attractor every motion came to; unknown ones are added."""
+        label = np.full(motions.frequency.size, -1)
+        alive = motions.finished & np.all(np.isfinite(motions.state), axis=1)
+        if not alive.any():
+            return label
+        reduced = motions.coordinates.reduce(np.where(alive[:, None], motions.state, 0.0))
+        begin = motions.coordinates.reduce(motions.start[alive])
+        size = max(float(np.abs(reduced[alive]).max()), _REST * float(np.abs(begin).max())) or 1.0
+        for number, found in enumerate(self.known):
+            self._claim(label, number, found, motions, reduced, size)
+        while True:
+            free = np.flatnonzero((label < 0) & alive & (motions.period > 0))
+            if not free.size or len(self.known) >= _MOST:
+                break
+            label[free[0]] = self._number(self._trace(motions, free[:1]), size)
+            number = int(label[free[0]])
+            self._claim(label, number, self.known[number], motions, reduced, size)
+        self._irregular(label, alive, motions)
+        return label
+
+    def _number(self, new: Found, size: float) -> int:
+        """Number of an attractor; that of a known one if both come to the same states."""
+        for number, found in enumerate(self.known):
+            if found.period == new.period:
+                apart = np.abs(found.states - new.states[0]).max(axis=1)
+                if apart.min() <= _SAME * size:
+                    return number
+        self.known.append(new)
+        return len(self.known) - 1
+
+    def _claim(
+        self, label: Index, number: int, found: Found, motions: Motions, reduced: Array, size: float
+    ) -> None:
+        """Give a number to all motions near the states of an attractor."""
+        if not found.period:
+            return
+        for state in found.states:
+            near = np.abs(reduced - state).max(axis=1) <= _SAME * size
+            settled = (motions.period > 0) | (motions.change <= _WILD)
+            label[near & settled & (label < 0) & motions.finished] = number
+
+    def _trace(self, motions: Motions, index: Index) -> Found:
+        """Follow one motion over its period, or over the cycles of the statistics."""
+        period = int(motions.period[index[0]])
+        if period:
+            one = Motions(
+                motions.compiled, motions.frequency[index], motions.state[index],
+                motions.force[index],
+            )  # fmt: skip
+            settle(one, [0], self.survey.cycles, tolerance=_EXACT, width=1)
+            motions, index = one, np.array([0])
+            shorter = int(motions.period[0])
+            period = shorter if shorter and period % shorter == 0 else period
+        path = follow(
+            motions, index, motions.state[index], period or self.survey.cycles, self.survey.signal
+        )
+        full = path.states[: max(period, 1), 0]
+        rms = float(path.rms[0])
+        return Found(
+            motions.coordinates.reduce(full), full[0], motions.force[index[0]].copy(), period,
+            0.0 if rms < self.least else rms, float(path.contact_loss_share[0]), full,
+        )  # fmt: skip
+
+    def _irregular(self, label: Index, alive: Mask, motions: Motions) -> None:
+        """Sort motions that do not repeat by their rms; those that still approach stay open."""
+        wild = np.flatnonzero((label < 0) & alive & (motions.period == 0))
+        wild = wild[motions.change[wild] > _WILD]
+        if not wild.size:
+            return
+        rms = measure(motions, wild, self.survey).rms
+        open_ = np.isfinite(rms)
+        while open_.any() and len(self.known) < _MOST:
+            known = [n for n, f in enumerate(self.known) if not f.period]
+            for number in known:
+                near = np.abs(rms - self.known[number].rms) <= _IRREGULAR * self.known[number].rms
+                label[wild[open_ & near]] = number
+                open_ &= ~near
+            if not open_.any():
+                break
+            middle = np.flatnonzero(open_)[np.argsort(rms[open_])[np.count_nonzero(open_) // 2]]
+            self.known.append(self._trace(motions, wild[middle : middle + 1]))
+            self.known[-1].rms = float(rms[middle])
+
+    def again(self, compiled: Compiled, beat: float, force: Array) -> Catalogue:
+        """Follow every attractor with other steps."""
+        new, count = Catalogue(self.survey, self.least), len(self.known)
+        if not count:
+            return new
+        begin = np.array([attractor.state for attractor in self.known])
+        motions = Motions(compiled, np.full(count, beat), begin, np.tile(force, (count, 1)))
+        settle(motions, np.arange(count), self.survey.transient, tolerance=self.survey.tolerance)
+        new.known += [self._trace(motions, np.array([number])) for number in range(count)]
+        return new
+
+
+def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
+    """Modulus of the largest Floquet multiplier of an attractor."""
+    half = found.state.size // 2
+    start = (found.state[:half], found.state[half:])
+    if not found.period:
+        return float("nan")
+    try:
+        # An orbit that is not found is told by NaN; at rest its relative error means nothing.
+        with quiet():
+            orbit = steady_state(
+                motions.compiled.system, float(motions.frequency[0]), steps=steps,
+                periods=found.period, start=start,
+            )  # fmt: skip
+    except (ComputationError, InputError):
+        return float("nan")
+    if not orbit.converged or not orbit.floquet_multipliers.size:
+        return float("nan")
+    return float(np.abs(orbit.floquet_multipliers).max())
+
+
+@record
+class Basins(Record):
+    """Which motion every start of a plane comes to.
+
+    Parameters
+    ----------
+    coordinates : tuple of two str
+        Components of the state that vary; a velocity ends in ``_velocity``.
+    units : tuple of two str
+        Their units.
+    first, second : (nx,), (ny,) array
+        Their values [m, rad, m/s or rad/s].
+    attractor : (nx, ny) int array
+        Number of the attractor; -1 where the motion grew beyond all bounds or has not come near
+        any motion that repeats.
+    attractors : tuple of Attractor
+        The motions, the one with the largest share first.
+    refined_attractor : (nx, ny) int array
+        The same with half the step, -2 for an attractor that the longer step does not show; all
+        -3 if not asked for.
+    names : tuple of str
+        Names of the coordinates of the system.
+    signal : str
+        Name of what rms and contact loss are of, a contact or a coordinate.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    steps : int
+        Steps per mesh cycle.
+    step_number : float
+        ``omega_max * dt`` [-].
+    finished : (nx, ny) bool array
+        Which starts were marched; all of them unless the work was interrupted.
+    """
+
+    coordinates: tuple[str, str]
+    units: tuple[str, str]
+    first: Array = quantity("first", axis=True)
+    second: Array = quantity("second", axis=True)
+    attractor: Index = quantity("first", "second")
+    attractors: tuple[Attractor, ...]
+    refined_attractor: Index = quantity("first", "second")
+    names: tuple[str, ...]
+    signal: str = fact()
+    mesh_frequency: float = fact()
+    steps: int = fact()
+    step_number: float = fact()
+    finished: Mask = quantity("first", "second")
+
+    @property
+    def complete(self) -> bool:
+        """Whether every start was marched."""
+        return bool(self.finished.all())
+
+    @property
+    def unresolved(self) -> float:
+        """Part of the starts that come to no attractor [-]."""
+        return float(np.mean(self.attractor[self.finished] < 0)) if self.finished.any() else 1.0
+
+    @property
+    def changed(self) -> float:
+        """Part of the starts that come to another attractor with half the step [-]."""
+        judged = self.finished & (self.refined_attractor > -3)
+        if not judged.any():
+            return float("nan")
+        return float(np.mean(self.attractor[judged] != self.refined_attractor[judged]))
+
+    def __repr__(self) -> str:
+        """One line."""
+        kinds = [
+            f"{100.0 * a.share:.3g} % {f'period {a.period}' if a.period else 'irregular'}"
+            for a in self.attractors
+        ]
+        extra = f", {100.0 * self.unresolved:.3g} % unresolved" if self.unresolved else ""
+        count = f"{self.first.size} x {self.second.size}"
+        return (
+            f"Basins({count} starts over {' and '.join(self.coordinates)} at "
+            f"{self.mesh_frequency:.6g} Hz: {', '.join(kinds) or 'no attractor'}{extra}"
+            f"{'' if self.complete else ', interrupted'})"
+        )
+
+    def _parts(self) -> Parts:
+        parts = super()._parts().over(self.coordinates, self.units)
+        units = {"rms": "m or rad"}
+        for name in ("period", "rms", "contact_loss_share", "largest_multiplier", "share"):
+            values = [getattr(each, name) for each in self.attractors]
+            parts.variables[name] = ("number", values, {"units": units.get(name, "1")})
+        parts.variables["verdict"] = ("number", [each.verdict for each in self.attractors])
+        return parts

@@ -1,0 +1,342 @@
+"""Surveys of motions: marched until they repeat, measured, and judged by half the step.
+
+A survey has motions that differ in their system, mesh frequency, factors, steps or start. Those
+that share a system and its steps are lanes of one march.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.periods import open_period
+from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.interrupt import in_threads
+from tribodyn.nonlinear.attractors import Motions, settle
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array, Index, Mask
+
+Verdict = Literal["physical", "step-limited", "undecided"]
+
+#: Rms values agree within this: of motions that repeat, and of those that do not.
+_PERIODIC, _IRREGULAR = 0.01, 0.1
+#: Distance of the motion of half the step at which both are the same, relative to the state.
+_AGREES = 5e-3
+#: Statistics of a signal without harmonics: mean, mean square, minimum, maximum, share off flank.
+_PLAIN = 5
+#: Fewer lanes than these are marched one by one.
+_FEW = 4
+
+
+def step_verdict(
+    step_number: float, period: int, rms: float, refined_period: int, refined_rms: float
+) -> Verdict:
+    """Judge a motion by the same computation with shorter steps."""
+    if step_number > LIMIT:
+        return "step-limited"
+    unsettled = period == 0 or refined_period == 0
+    tolerance = _IRREGULAR if unsettled else _PERIODIC
+    agrees = abs(rms - refined_rms) <= tolerance * max(abs(rms), abs(refined_rms))
+    if period != refined_period:
+        return "undecided" if unsettled and agrees else "step-limited"
+    return "physical" if agrees else "undecided"
+
+
+def signal_name(system: System, signal: int | str) -> str:
+    """Name of what is looked at: a contact or a coordinate."""
+    names = tuple(system.names)
+    if isinstance(signal, str) and signal in names:
+        return signal
+    if isinstance(signal, int) and 0 <= signal < len(system.contacts):
+        return f"contact {signal}"
+    if signal == 0 and not system.contacts:
+        return names[0]
+    raise InputError(
+        Problem(
+            f"signal = {signal!r}",
+            "argument signal",
+            f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
+        )
+    )
+
+
+def compile_unchecked(system: System, mesh_frequency: float, steps: int) -> Compiled:
+    """Compile a system without refusing a long step; whoever calls has to look at its number."""
+    grid, nodes, program = compile_system(system, steps)
+    number = largest_rate(system, nodes) * float(grid.width.max()) / mesh_frequency
+    return Compiled(system, grid, nodes, program, number)
+
+
+@dataclass(frozen=True)
+class Survey:
+    """How motions are marched, and what is measured of them."""
+
+    transient: int  #: mesh cycles before, fewer where the motion repeats
+    cycles: int  #: mesh cycles of the statistics of a motion that does not repeat
+    keep: int  #: the last mesh cycles, of which the points are kept
+    signal: int | str  #: contact whose compression is looked at, or name of a coordinate
+    keep_partial: bool = False  #: whether an interruption leaves what is finished
+    tolerance: float = 1e-7  #: certified distance to the motion that repeats, over its size
+    width: int = 16  #: lanes of one block
+    stop: threading.Event = field(default_factory=threading.Event, repr=False, compare=False)
+
+    def uninterrupted(self, work: Callable[[], None]) -> None:
+        """Do some work; if it is interrupted, go on with what there is, where that is wanted."""
+        try:
+            work()
+        except KeyboardInterrupt:
+            self.stop.set()
+            if not self.keep_partial:
+                raise
+
+    def settle(self, motions: Motions, indices: Index, progress: Progress = SILENT) -> None:
+        """March motions until they repeat, or over the whole transient."""
+        width = 1 if indices.size == 1 else self.width
+        self.uninterrupted(
+            lambda: settle(
+                motions,
+                indices,
+                self.transient,
+                tolerance=self.tolerance,
+                width=width,
+                progress=progress,
+            )
+        )
+
+
+class Points:
+    """Systems, mesh frequencies, factors and steps of all motions of a survey."""
+
+    def __init__(
+        self,
+        systems: Sequence[System],
+        mesh_frequency: Array,
+        steps: Index,
+        factors: dict[str, Array] | None = None,
+    ) -> None:
+        self.systems, self.mesh_frequency, self.steps = list(systems), mesh_frequency, steps
+        self.factors = factors or {}
+        self.count, self.size = len(self.systems), self.systems[0].size
+        self.step_number = np.zeros(self.count)
+        groups: dict[tuple[int, int], list[int]] = {}
+        for number, system in enumerate(self.systems):
+            groups.setdefault((id(system), int(steps[number])), []).append(number)
+        self.groups = [np.array(group, dtype=np.int64) for group in groups.values()]
+
+    def compiled(self, group: Index) -> Compiled:
+        """System of a group on its grid; notes ``omega_max * dt``."""
+        slowest = float(self.mesh_frequency[group].min())
+        first = int(group[0])
+        compiled = compile_unchecked(self.systems[first], slowest, int(self.steps[first]))
+        self.step_number[group] = compiled.step_number * slowest / self.mesh_frequency[group]
+        return compiled
+
+    def motions(self, compiled: Compiled, group: Index, outcomes: Outcomes) -> Motions:
+        """Motions of a group from the starts in their outcomes."""
+        factors = {name: values[group] for name, values in self.factors.items()}
+        starts = outcomes.first[group], outcomes.force[group]
+        return Motions(compiled, self.mesh_frequency[group], *starts, factors)
+
+    def refined(self, steps: Index) -> Points:
+        """The same with other steps."""
+        return Points(self.systems, self.mesh_frequency, steps, self.factors)
+
+
+class Outcomes:
+    """What came of all motions of a survey; filled while marching."""
+
+    def __init__(self, count: int, keep: int, size: int) -> None:
+        self.section = np.full((count, keep), np.nan)
+        self.period = np.zeros(count, dtype=np.int64)
+        self.rms, self.contact_loss_share = np.full(count, np.nan), np.full(count, np.nan)
+        #: States at the start, when settled, and after the statistics.
+        self.first, self.settled, self.last = (np.full((count, 2 * size), np.nan) for _ in range(3))
+        self.force = np.zeros((count, size))
+        #: Period when settled, and the rate at which a disturbance shrinks within it.
+        self.repeats, self.rate = np.zeros(count, dtype=np.int64), np.ones(count)
+        self.finished = np.zeros(count, dtype=bool)
+
+    def fill(self, survey: Survey, motions: Motions, indices: Index, numbers: Index) -> None:
+        """Measure those of some motions that are finished."""
+        done = motions.finished[indices]
+        index, to = indices[done], numbers[done]
+        figures = measure(motions, index, survey)
+        self.first[to], self.settled[to] = motions.start[index], motions.state[index]
+        self.section[to], self.period[to], self.rms[to] = (
+            figures.points,
+            figures.period,
+            figures.rms,
+        )
+        self.contact_loss_share[to], self.last[to] = figures.contact_loss_share, figures.last
+        self.force[to], self.finished[to] = motions.force[index], True
+        self.repeats[to], self.rate[to] = motions.period[index], motions.rate[index]
+
+
+def march_group(
+    points: Points, survey: Survey, outcomes: Outcomes, group: Index,
+    chosen: Mask | None = None, progress: Progress = SILENT,
+) -> None:  # fmt: skip
+    """March motions of one group from ``outcomes.first``, or from rest where that is unknown."""
+    compiled = points.compiled(group)
+    unknown = group[~np.all(np.isfinite(outcomes.first[group]), axis=1)]
+    if unknown.size:
+        outcomes.first[unknown] = static_start(compiled)
+    motions = points.motions(compiled, group, outcomes)
+    indices = np.arange(group.size) if chosen is None else np.flatnonzero(chosen[group])
+    if indices.size:
+        survey.settle(motions, indices, progress)
+        outcomes.fill(survey, motions, indices, group[indices])
+
+
+def march_points(
+    points: Points, survey: Survey, outcomes: Outcomes, chosen: Mask | None = None,
+    progress: Progress = SILENT,
+) -> None:  # fmt: skip
+    """March all motions side by side, each from a start of its own."""
+
+    def march(group: Index) -> None:
+        if not survey.stop.is_set():
+            march_group(points, survey, outcomes, group, chosen, progress)
+
+    groups = points.groups if chosen is None else [g for g in points.groups if chosen[g].any()]
+    alone = [group for group in groups if group.size == 1]
+    if alone:
+        survey.uninterrupted(lambda: each_in_threads(march, alone))
+    for group in groups:
+        if group.size > 1:
+            march(group)
+
+
+def each_in_threads(function: Callable[[Any], None], items: Sequence[Any]) -> None:
+    """Do the same with every item, as many at a time as there are cores."""
+    in_threads(function, items, os.cpu_count() or 1)
+
+
+def comes_back(points: Points, outcomes: Outcomes) -> Mask:
+    """Motions whose period with these shorter steps ends so near that both motions are the same."""
+    same = np.zeros(points.count, dtype=bool)
+    for group in points.groups:
+        compiled = points.compiled(group)
+        motions = points.motions(compiled, group, outcomes)
+        reduce = motions.coordinates.reduce
+        repeats, rate = outcomes.repeats[group], outcomes.rate[group]
+        for period in np.unique(repeats[repeats > 0]):
+            index = np.flatnonzero((repeats == period) & (rate < 1.0))
+            if not index.size:
+                continue
+            state, force = outcomes.settled[group[index]], outcomes.force[group[index]]
+            try:
+                new = motions.march(index, state, int(period), force)
+            except ComputationError:
+                continue
+            apart = np.abs(reduce(new) - reduce(state)).max(axis=1) / (1.0 - rate[index])
+            same[group[index]] = apart <= _AGREES * np.abs(reduce(state)).max(axis=1)
+    return same
+
+
+class Figures(NamedTuple):
+    """What was gathered of motions that go on from their last state, all of them (motions, ...)."""
+
+    points: Array  #: the signal once per mesh cycle [m or rad]
+    period: Index  #: mesh cycles after which it repeats
+    rms: Array  #: alternating rms of the signal [m or rad]
+    contact_loss_share: Array  #: part of the time off the driving flank [-]
+    last: Array  #: last state [mixed]
+
+
+class Path(NamedTuple):
+    """Motions once per mesh cycle, and statistics of their signal over all of these cycles."""
+
+    states: Array  #: at the mesh phase 0, (cycles, lanes, 2 n) [mixed]
+    points: Array  #: the signal, (cycles, lanes) [m or rad]
+    rms: Array  #: alternating rms of the signal, (lanes,) [m or rad]
+    largest: Array  #: largest size of the signal, (lanes,) [m or rad]
+    contact_loss_share: Array  #: part of the time off the driving flank, (lanes,) [-]
+    last: Array  #: state at the end [mixed]
+
+
+def measure(motions: Motions, indices: Index, survey: Survey) -> Figures:
+    """March on from the last states, and gather statistics."""
+    nan = np.full(indices.size, np.nan)
+    figures = Figures(
+        np.full((indices.size, survey.keep), np.nan), np.zeros(indices.size, dtype=np.int64), nan,
+        nan.copy(), np.full((indices.size, motions.start.shape[1]), np.nan),
+    )  # fmt: skip
+    alive = np.all(np.isfinite(motions.state[indices]), axis=1)
+    for period in np.unique(motions.period[indices]):
+        rows = np.flatnonzero(alive & (motions.period[indices] == period))
+        if rows.size:
+            _measure_rows(motions, indices, rows, int(period), survey, figures)
+    return figures
+
+
+def _measure_rows(
+    motions: Motions, indices: Index, rows: Index, period: int, survey: Survey, figures: Figures
+) -> None:
+    """Motions of one period together; one by one if one of them grows beyond all bounds."""
+    index = indices[rows]
+    try:
+        path = follow(motions, index, motions.state[index], period or survey.cycles, survey.signal)
+    except ComputationError:
+        if rows.size > 1:
+            for row in rows:
+                _measure_rows(motions, indices, np.array([row]), period, survey, figures)
+        return
+    keep = survey.keep
+    history = motions.coordinates.reduce(path.states[-keep:])
+    figures.points[rows] = np.resize(path.points[-keep:], (keep, rows.size)).T
+    figures.period[rows] = period or [open_period(history[:, n]) for n in range(rows.size)]
+    figures.rms[rows], figures.last[rows] = path.rms, path.last
+    figures.contact_loss_share[rows] = path.contact_loss_share
+
+
+def follow(
+    motions: Motions, index: Index, state: Array, cycles: int, signal: int | str, elapsed: int = 0
+) -> Path:
+    """March motions cycle by cycle, and gather statistics of their signal."""
+    system = motions.compiled.system
+    contacts, size, lanes = len(system.contacts), system.size, index.size
+    outputs = np.zeros((1, 2 * size))
+    if isinstance(signal, str):
+        outputs[0, tuple(system.names).index(signal)] = 1.0
+    row = -1 if isinstance(signal, str) else signal
+    flank = contacts + (signal if isinstance(signal, int) else 0)
+    states, total, largest = np.empty((cycles, *state.shape)), np.zeros((3, lanes)), np.zeros(lanes)
+    for cycle in range(cycles):
+        states[cycle] = state
+        moments = np.zeros((2 * contacts + size + 1, _PLAIN, lanes))
+        moments[:, 2], moments[:, 3] = np.inf, -np.inf
+        state = motions.march(
+            index, state, 1, motions.force[index], outputs=outputs,
+            moments=moments.reshape(-1, lanes), width=1 if lanes < _FEW else 16,
+            threads=os.cpu_count() or 1, elapsed=elapsed + cycle,
+        )  # fmt: skip
+        state = motions.coordinates.expand(motions.coordinates.reduce(state))
+        total[:2] += moments[row, :2] / cycles
+        largest = np.maximum(largest, np.abs(moments[row, 2:4]).max(axis=0))
+        if contacts:
+            total[2] += moments[flank, 4] / cycles
+    # A motion on its way beyond all bounds has no rms.
+    with np.errstate(over="ignore", invalid="ignore"):
+        rms = np.sqrt(np.maximum(total[1] - total[0] ** 2, 0.0))
+    points = _signal(motions, states, signal, outputs[0])
+    return Path(states, points, rms, largest, total[2], state)
+
+
+def _signal(motions: Motions, state: Array, signal: int | str, output: Array) -> Array:
+    """Compression of the contact, or the coordinate, at the mesh phase 0."""
+    if isinstance(signal, str):
+        return np.asarray(state @ output)
+    nodes = motions.compiled.nodes
+    place = state[..., : state.shape[-1] // 2]
+    return np.asarray(place @ nodes.direction[0, 0, signal] - nodes.error[0, 0, signal])

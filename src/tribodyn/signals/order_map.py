@@ -1,0 +1,255 @@
+"""Order map: what turns with the shaft, apart from what does not, over its speed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import draw
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.signals.angular_resampling import angular_resampling, shaft_rotation
+from tribodyn.signals.recorded_signal import checked_rising, checked_signal, window_values
+from tribodyn.signals.spectrum import window_gain
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    pass
+
+
+def order_map(
+    signal: Any,
+    time: Any,
+    *,
+    rotation: Any = None,
+    speed: Any = None,
+    highest_order: float = 50.0,
+    revolutions: int = 8,
+    overlap: float = 0.75,
+    window: str = "hann",
+    unit: str = "",
+) -> OrderMap:
+    """Amplitude over orders and speed of a run-up, by resampling over the rotation.
+
+    Parameters
+    ----------
+    signal : (n,) array
+        Signal over time, in any unit.
+    time : (n,) array
+        Time of each sample [s].
+    rotation : (n,) array, optional
+        Rotation of the shaft at each sample [rad], counted on without wrap.
+    speed : float or (n,) array, optional
+        Rotational speed [rad/s], instead of the rotation.
+    highest_order : float
+        Highest order, in cycles per revolution [-].
+    revolutions : int
+        Revolutions in a block: orders are told apart down to about two over this number, and
+        amplitudes are means over so many revolutions.
+    overlap : float
+        Part of a block that it shares with the next [-].
+    window : str
+        Window of :func:`scipy.signal.get_window`; ``"flattop"`` for orders that are no multiple
+        of one over ``revolutions``.
+    unit : str
+        Unit of the signal, for display.
+
+    Returns
+    -------
+    OrderMap
+
+    Raises
+    ------
+    InputError
+        If the record is not finite, does not rise, is shorter than a block or was sampled with
+        less than twice the highest order at the highest speed.
+
+    Notes
+    -----
+    Over the rotation an order is one line at every speed, so that it does not smear while the
+    speed changes; a natural frequency, which stays where it is in hertz, becomes a hyperbola.
+
+    Examples
+    --------
+    >>> time = np.linspace(0.0, 4.0, 16001)
+    >>> speed = 2 * np.pi * (10.0 + 5.0 * time)
+    >>> rotation = 2 * np.pi * (10.0 * time + 2.5 * time**2)
+    >>> made = order_map(np.cos(3 * rotation) * 2.0, time, speed=speed, highest_order=8, unit="N")
+    >>> float(made.order[made.strongest()[0]]), float(made.order[1])
+    (3.0, 0.125)
+    >>> round(float(made.cut(3).amplitude.min()), 3)
+    2.0
+    """
+    values = checked_signal(signal, 16)
+    moments = checked_rising(time, values.size, "time", "s")
+    angle = shaft_rotation(rotation, speed, moments)
+    require_positive("highest_order", highest_order)
+    require_positive("revolutions", revolutions)
+    require_between("overlap", overlap, 0.0, 0.95)
+    per_turn = 2 * int(np.ceil(1.3 * highest_order + 2))
+    made = angular_resampling(
+        values,
+        moments,
+        angle,
+        samples_per_revolution=per_turn,
+        highest_order=highest_order,
+    )
+    length = revolutions * per_turn
+    if made.signal.size < length:
+        raise InputError(
+            Problem(
+                what=f"the record holds {made.signal.size / per_turn:.3g} revolutions",
+                where="argument revolutions",
+                why=f"One block takes {revolutions}",
+                remedy="Take shorter blocks, or record longer",
+            )
+        )
+    hop = max(length - round(overlap * length), 1)
+    starts = np.arange(0, made.signal.size - length + 1, hop)
+    weights = window_values(window, length)
+    blocks = np.lib.stride_tricks.sliding_window_view(made.signal, length)[starts]
+    lines = np.abs(np.fft.rfft(blocks * weights, axis=1)) * (2.0 / weights.sum())
+    lines[:, 0] *= 0.5
+    orders = np.arange(lines.shape[1]) / revolutions
+    kept = orders <= highest_order + 1e-9
+    middle = starts + length // 2
+    return OrderMap(
+        orders[kept],
+        made.speed[middle],
+        made.time[middle],
+        lines[:, kept].T,
+        float(revolutions),
+        window,
+        unit,
+    )
+
+
+@record
+class OrderCut(Record):
+    """Amplitude of one order over the speed.
+
+    Parameters
+    ----------
+    order : float
+        Cycles per revolution [-].
+    speed : (m,) array
+        Rotational speed [rad/s].
+    amplitude : (m,) array
+        Peak amplitude, in the unit of the signal.
+    unit : str
+        Unit of the signal.
+    """
+
+    ARRAY = "amplitude"
+
+    order: float = fact()
+    speed: Array = quantity("block", unit="rad/s", axis=True)
+    amplitude: Array = quantity("block", unit="@unit")
+    unit: str = ""
+
+    def __repr__(self) -> str:
+        """One line."""
+        top = int(np.argmax(self.amplitude))
+        return (
+            f"OrderCut(order {self.order:g}, largest {self.amplitude[top]:.4g} {self.unit} at "
+            f"{self.speed[top]:.5g} rad/s)"
+        ).replace("  ", " ")
+
+
+@record
+class OrderMap(Record):
+    """Amplitude over order and speed.
+
+    Parameters
+    ----------
+    order : (k,) array
+        Cycles per revolution of the shaft [-].
+    speed : (m,) array
+        Mean rotational speed of each block [rad/s].
+    time : (m,) array
+        Time of the middle of each block [s].
+    amplitude : (k, m) array
+        Peak amplitude, in the unit of the signal.
+    revolutions : float
+        Revolutions in one block [-]; orders differ by its inverse.
+    window : str
+        Name of the window.
+    unit : str
+        Unit of the signal.
+    """
+
+    ARRAY = "amplitude"
+
+    order: Array = quantity("order", unit="1", axis=True)
+    speed: Array = quantity("block", unit="rad/s", axis=True)
+    time: Array = quantity("block", unit="s", axis=True)
+    amplitude: Array = quantity("order", "block", unit="@unit")
+    revolutions: float = fact()
+    window: str = "hann"
+    unit: str = ""
+
+    def __repr__(self) -> str:
+        """One line."""
+        line, block = self.strongest()
+        return (
+            f"OrderMap({self.speed.size} blocks from {self.speed[0]:.5g} to "
+            f"{self.speed[-1]:.5g} rad/s, to order {self.order[-1]:g}, largest "
+            f"{self.amplitude[line, block]:.4g} {self.unit} at order {self.order[line]:g} and "
+            f"{self.speed[block]:.5g} rad/s)"
+        ).replace("  ", " ")
+
+    def strongest(self) -> tuple[int, int]:
+        """Return where the amplitude is largest, the mean left out.
+
+        Returns
+        -------
+        tuple of two int
+            Index of the order and of the block.
+        """
+        # the mean reaches into the orders beside zero as far as the main lobe of the window
+        start = int(np.searchsorted(self.order, 2.5 / self.revolutions))
+        line, block = divmod(int(np.argmax(self.amplitude[start:])), self.speed.size)
+        return start + line, block
+
+    def cut(self, order: float) -> OrderCut:
+        """Amplitude of one order over the speed.
+
+        Parameters
+        ----------
+        order : float
+            Cycles per revolution [-].
+
+        Returns
+        -------
+        OrderCut
+            Between two lines of the map the gain of the window at that distance is taken out.
+
+        Raises
+        ------
+        InputError
+            If the map does not reach that order.
+        """
+        if not self.order[0] <= order <= self.order[-1]:
+            raise InputError(
+                Problem(
+                    what=f"order {order:g} asked for",
+                    where="argument order",
+                    why=f"The map reaches from order {self.order[0]:g} to {self.order[-1]:g}",
+                    remedy="Make the map with a larger highest_order",
+                )
+            )
+        line = int(np.argmin(np.abs(self.order - order)))
+        away = (order - float(self.order[line])) * self.revolutions
+        offset, gain = window_gain(self.window, 2048)
+        loss = 1.0 if abs(away) < 1e-9 else float(np.interp(-away, offset, np.abs(gain)))
+        return OrderCut(float(order), self.speed, self.amplitude[line] / loss, self.unit)
+
+    def plot_waterfall(self) -> Any:
+        """Draw the order spectra one behind the other.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, "waterfall")

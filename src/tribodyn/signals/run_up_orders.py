@@ -1,0 +1,315 @@
+"""Orders of a run-up: their amplitude over the speed, the overall level, and what resonates."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from tribodyn.dynamics.run_up_result import RunUp
+from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.record import Record, quantity, record
+from tribodyn.signals.order_map import OrderCut, OrderMap
+from tribodyn.signals.recorded_signal import window_values
+from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    pass
+
+
+Part = Literal["all", "up", "down"]
+
+#: Fewest and most mesh cycles in a block of one order.
+_SHORT, _LONG = 4, 64
+
+
+@record
+class OverallLevel(Record):
+    """Alternating rms of a signal over the speed.
+
+    Parameters
+    ----------
+    time : (m,) array
+        Time of the middle of each block [s].
+    speed : (m,) array
+        Speed of the shaft there [rad/s].
+    rms : (m,) array
+        Alternating rms, in the unit of the signal.
+    unit : str
+        Unit of the signal.
+    """
+
+    ARRAY = "rms"
+
+    time: Array = quantity("block", unit="s", axis=True)
+    speed: Array = quantity("block", unit="rad/s", axis=True)
+    rms: Array = quantity("block", unit="@unit")
+    unit: str = ""
+
+    def __repr__(self) -> str:
+        """One line."""
+        top = int(np.argmax(self.rms))
+        return (
+            f"OverallLevel({self.speed.size} blocks, largest {self.rms[top]:.4g} {self.unit} at "
+            f"{self.speed[top]:.5g} rad/s)"
+        ).replace("  ", " ")
+
+
+def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
+    """Tell which blocks lie wholly in a part of the run."""
+    if part not in ("all", "up", "down"):
+        raise InputError(Problem(f'part = "{part}"', "argument part", '"all", "up" or "down"'))
+    if part == "all":
+        return np.ones(starts.size, dtype=bool)
+    inside = run.cycles.rate > 0.0 if part == "up" else run.cycles.rate < 0.0
+    count = np.append(0, np.cumsum(inside))
+    found = count[starts + cycles] - count[starts] == cycles
+    if not found.any():
+        raise InputError(
+            Problem(
+                what=f"the speed never goes {part} for {cycles} mesh cycles",
+                where="argument part",
+                remedy='Take part="all", or a profile that does',
+            )
+        )
+    return np.asarray(found)
+
+
+def _starts(run: RunUp, cycles: int, hop: int, part: Part) -> tuple[Index, Index]:
+    """First mesh cycle of each block, and the sample in its middle."""
+    total = run.cycles.time.size
+    if total < cycles:
+        raise InputError(
+            Problem(
+                what=f"the run has {total} mesh cycles",
+                where="argument cycles",
+                why=f"One block takes {cycles}",
+                remedy="Take shorter blocks, or a longer run",
+            )
+        )
+    starts: Index = np.arange(0, total - cycles + 1, hop, dtype=np.int64)
+    starts = starts[_wholly(run, starts, cycles, part)]
+    return starts, starts * run.samples + cycles * run.samples // 2
+
+
+def run_up_order_map(
+    run: RunUp,
+    signal: str = "contact_force",
+    *,
+    cycles: int = 16,
+    overlap: float = 0.75,
+    highest_order: float | None = None,
+    window: str = "hann",
+    part: Part = "all",
+) -> OrderMap:
+    """Amplitude over orders and speed of a computed run-up.
+
+    Parameters
+    ----------
+    run : RunUp
+    signal : str
+        ``"deflection"``, ``"contact_force"``, a coordinate (its acceleration) or an output.
+    cycles : int
+        Mesh cycles in a block: mesh orders are told apart down to about two over this number.
+    overlap : float
+        Part of a block that it shares with the next [-].
+    highest_order : float, optional
+        Highest mesh order [-]; all by default.
+    window : str
+        Window of :func:`scipy.signal.get_window`.
+    part : "all", "up" or "down"
+        Part of the run.
+
+    Returns
+    -------
+    OrderMap
+        Over orders of the shaft: mesh order times ``run.teeth``.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or the run is shorter than a block.
+
+    Notes
+    -----
+    The samples of a run-up lie equally in the mesh phase, so that nothing is resampled.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact, System, run_up
+    >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
+    >>> system = System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair])
+    >>> run = run_up(system, ([0.0, 60.0], [1.0, 2.0]), samples=16)
+    >>> made = run_up_order_map(run, "deflection")
+    >>> float(made.order[made.strongest()[0]])
+    1.0
+    """
+    require_positive("cycles", cycles)
+    require_between("overlap", overlap, 0.0, 0.95)
+    values, unit = run.signal(signal)
+    length = int(cycles) * run.samples
+    starts, middle = _starts(run, int(cycles), max(round((1.0 - overlap) * cycles), 1), part)
+    weights = window_values(window, length)
+    view = np.lib.stride_tricks.sliding_window_view(values, length)[starts * run.samples]
+    lines = np.abs(np.fft.rfft(view * weights, axis=1)) * (2.0 / weights.sum())
+    lines[:, 0] *= 0.5
+    order = np.arange(lines.shape[1]) / cycles
+    kept = order <= (run.samples / 2 if highest_order is None else highest_order) + 1e-9
+    return OrderMap(
+        order[kept] * run.teeth,
+        run.speed[middle],
+        run.time[middle],
+        lines[:, kept].T,
+        cycles / run.teeth,
+        window,
+        unit,
+    )
+
+
+def order_cut(
+    source: RunUp | OrderMap,
+    order: float,
+    signal: str = "contact_force",
+    *,
+    of: Literal["mesh", "shaft"] = "mesh",
+    cycles: int | None = None,
+    part: Part = "all",
+) -> OrderCut:
+    """Amplitude of one order over the speed.
+
+    Parameters
+    ----------
+    source : RunUp or OrderMap
+        Of an order map the order counts per revolution, and the other arguments do not matter.
+    order : float
+        Cycles per mesh cycle, or per revolution of the shaft [-].
+    signal : str
+        ``"deflection"``, ``"contact_force"``, a coordinate (its acceleration) or an output.
+    of : "mesh" or "shaft"
+        What the order counts.
+    cycles : int, optional
+        Mesh cycles in a block; by default the fewest, from 4 to 64, in which the order fits a whole
+        number of times: orders that do so too leave no trace.
+    part : "all", "up" or "down"
+        Part of the run.
+
+    Returns
+    -------
+    OrderCut
+        Its order counts per revolution.
+
+    Raises
+    ------
+    InputError
+        If the order is not below half of the samples, or an argument is out of range.
+
+    Notes
+    -----
+    A Hann window over the mesh phase. Amplitudes are means over a block, in which the speed changes
+    a little: a narrow resonance passed quickly comes out lower in longer blocks.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact, System, run_up
+    >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
+    >>> system = System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair])
+    >>> run = run_up(system, ([0.0, 60.0], [1.0, 2.0]), samples=16, teeth=2)
+    >>> float(order_cut(run, 1, "deflection").order)
+    2.0
+    """
+    if isinstance(source, OrderMap):
+        return source.cut(order)
+    if of not in ("mesh", "shaft"):
+        raise InputError(Problem(f'of = "{of}"', "argument of", '"mesh" or "shaft"'))
+    require_positive("order", order)
+    mesh = order / source.teeth if of == "shaft" else order
+    if mesh >= source.samples / 2:
+        raise InputError(
+            Problem(
+                what=f"mesh order {mesh:g} with {source.samples} samples per mesh cycle",
+                where="argument order",
+                why="Orders up to half of the samples can be told",
+                remedy=f"Run with samples = {4 * int(np.ceil(mesh))} or more",
+            )
+        )
+    values, unit = source.signal(signal)
+    count = cycles or _whole(mesh)
+    starts, middle = _starts(source, count, max(count // 4, 1), part)
+    phase = np.arange(count * source.samples) / source.samples
+    weights = window_values("hann", phase.size)
+    wave = weights * np.exp(-2j * np.pi * mesh * phase) * (2.0 / weights.sum())
+    view = np.lib.stride_tricks.sliding_window_view(values, phase.size)
+    amplitude = np.array([abs(view[each] @ wave) for each in starts * source.samples])
+    return OrderCut(mesh * source.teeth, source.speed[middle], amplitude, unit)
+
+
+def _whole(mesh: float) -> int:
+    """Fewest mesh cycles in which an order fits a whole number of times."""
+    counts = np.arange(_SHORT, _LONG + 1)
+    away = np.abs(counts * mesh - np.round(counts * mesh))
+    # Less than one period in a block cannot be told from the mean.
+    fits = (away < 1e-9) & (counts * mesh >= 2.0 - 1e-9)
+    return int(counts[np.argmax(fits)]) if fits.any() else _LONG
+
+
+def overall_level(
+    run: RunUp, signal: str = "contact_force", *, cycles: int = 4, part: Part = "all"
+) -> OverallLevel:
+    """Alternating rms of a signal over the speed.
+
+    Parameters
+    ----------
+    run : RunUp
+    signal : str
+        ``"deflection"``, ``"contact_force"``, a coordinate (its acceleration) or an output.
+    cycles : int
+        Mesh cycles over which the mean and the mean square are taken.
+    part : "all", "up" or "down"
+        Part of the run.
+
+    Returns
+    -------
+    OverallLevel
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or the run is shorter than a block.
+
+    Notes
+    -----
+    From the figures of the mesh cycles, which are exact to the order of the integrator; for the sum
+    of several contacts from the samples.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact, System, run_up
+    >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
+    >>> system = System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair])
+    >>> overall_level(run_up(system, ([0.0, 60.0], [1.0, 2.0]), samples=16)).speed.size
+    87
+    """
+    require_positive("cycles", cycles)
+    starts, middle = _starts(run, int(cycles), 1, part)
+    mean, square, unit = _cycle_moments(run, signal)
+    sums = [np.append(0.0, np.cumsum(each)) for each in (mean, square)]
+    first, second = ((each[starts + cycles] - each[starts]) / cycles for each in sums)
+    rms = np.sqrt(np.maximum(second - first**2, 0.0))
+    return OverallLevel(run.time[middle], run.speed[middle], rms, unit)
+
+
+def _cycle_moments(run: RunUp, signal: str) -> tuple[Array, Array, str]:
+    """Mean and mean square of a signal in every mesh cycle, and its unit."""
+    values, unit = run.signal(signal)
+    if signal in run.names:
+        part, column = run.cycles.acceleration, run.names.index(signal)
+    elif signal in run.output_names:
+        part, column = run.cycles.output, run.output_names.index(signal)
+    elif signal == "deflection":
+        part, column = run.cycles.deflection, 0
+    elif run.contact_force.shape[1] == 1:
+        part, column = run.cycles.contact_force, 0
+    else:
+        rows = values.reshape(-1, run.samples)
+        return rows.mean(axis=1), (rows**2).mean(axis=1), unit
+    return part.mean[:, column], part.rms[:, column] ** 2, unit
