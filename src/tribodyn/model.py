@@ -313,7 +313,8 @@ class Registry(Generic[T]):
         def keep(function: Callable[..., Any]) -> Callable[..., Any]:
             if self.model is None:
                 raise TypeError(f"a {self.kind} is registered, not defined")
-            self.register(name)(self.model(name=name, **{self.part: function}, **details))
+            made = {"name": name, self.part: function, "options": {}, **details}
+            self.register(name)(self.model(**made))
             return function
 
         return keep

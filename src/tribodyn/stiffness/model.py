@@ -7,7 +7,7 @@ question in the same form, so the mesh table does not know which one it asks.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,7 +59,7 @@ class StiffnessModel(Model):
 
     name: str
     function: Callable[..., Array]
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, Any]
     influence: Callable[..., GearInfluence] | None = None
     coupled: bool = False
     source: str = ""

@@ -214,6 +214,7 @@ MODELS.register("iso6336")(
     StiffnessModel(
         "iso6336",
         _model,
+        {},
         meaning="stiffness from the fitted formulas of ISO 6336-1, over the path as a parabola",
         papers=("iso-6336-1",),
     )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from inspect import Signature
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.errors import InputError
 from tribodyn.model import text
@@ -14,7 +15,7 @@ from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears, is_needed
 from tribodyn.study.case.given import Given, Source, plain
 from tribodyn.study.case.provenance import effective_values, provenance
-from tribodyn.study.case.section import Section, Table, choices, flat, table
+from tribodyn.study.case.section import Section, Table, choices, flat, signature_of, table
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -71,6 +72,8 @@ class Case(Section, whole=True):
     >>> case.gears.pinion.teeth
     16
     """
+
+    __signature__: ClassVar[Signature]
 
     title: str = text("Gear pair", meaning="one line that names this case", example='"My gear"')
     origin: str | None = text(
@@ -289,3 +292,6 @@ class Case(Section, whole=True):
         return case_table(self)
 
     __str__ = __repr__
+
+
+Case.__signature__ = signature_of(Case)

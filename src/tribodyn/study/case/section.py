@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from inspect import Parameter, Signature
 from typing import Any, ClassVar, NamedTuple
 
 from tribodyn.errors import InputError, Problem
@@ -190,3 +191,24 @@ def in_force(case: Section) -> dict[str, Any]:
             elif values[key] is None:
                 values[key] = options[name]
     return values
+
+
+class _Made:
+    """Default of a table that may be left out."""
+
+    def __repr__(self) -> str:
+        """As :mod:`dataclasses` show it."""
+        return "<factory>"
+
+
+def signature_of(whole: type[Section]) -> Signature:
+    """What editors and ``help`` show of the class that holds all tables."""
+    first = Parameter("source", Parameter.POSITIONAL_ONLY, default=None)
+    keywords = []
+    for name, field in {**whole.fields, "assumed": Table(whole, "", "empty")}.items():
+        if isinstance(field, Table):
+            default = {"required": Parameter.empty, "none": None}.get(field.default, _Made())
+        else:
+            default = Parameter.empty if field.required else field.default
+        keywords.append(Parameter(name, Parameter.KEYWORD_ONLY, default=default))
+    return Signature([first, *keywords])
