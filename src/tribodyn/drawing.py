@@ -57,7 +57,7 @@ class Drawing:
     heading : str
         Heading of the figure in a report.
     caption : str or callable
-        What to look for, in plain language; a callable takes the result and says it.
+        What to look for, in plain language; a callable takes what is drawn and says it.
     of : tuple of str
         Classes that it draws, by name: ``"Campbell"``, or ``"Result.mesh"`` for a part of one.
     made_by : str
@@ -122,13 +122,13 @@ class Drawing:
         Parameters
         ----------
         result : object
-            Any result.
+            One of the classes in ``of``.
 
         Returns
         -------
         str
         """
-        return self.caption if isinstance(self.caption, str) else self.caption(result)
+        return self.caption if isinstance(self.caption, str) else self.caption(self.subject(result))
 
     def __call__(self, result: Any, **options: Any) -> Any:
         """Draw the figure of a result.
@@ -176,7 +176,7 @@ def drawing(
     heading : str
         Heading of the figure in a report.
     caption : str or callable
-        What to look for, in plain language; a callable takes the result and says it.
+        What to look for, in plain language; a callable takes what is drawn and says it.
     of : str or iterable of str
         Classes that it draws, by name, or parts of them: ``("MeshTable", "Result.mesh")``. The
         function is handed the part. Empty: any result, which is handed over as it is.
@@ -208,7 +208,7 @@ def drawing(
 
 @cache
 def load_figures() -> None:
-    """Import the modules of the entry-point group ``tribodyn.figures``, whose figures register."""
+    """Import the modules of the entry-point group: their figures and reports register."""
     for entry in entry_points(group="tribodyn.figures"):
         import_module(entry.module)
 

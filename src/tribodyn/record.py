@@ -21,18 +21,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
+from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
 import numpy as np
 
 from tribodyn.drawing import draw
 from tribodyn.errors import OutputExistsError, Problem
-
-if TYPE_CHECKING:
-    pass
 
 T = TypeVar("T")
 _KEY = "tribodyn"
@@ -83,12 +80,29 @@ class Parts(NamedTuple):
     coordinates: dict[str, Any]
     attributes: dict[str, Any]
 
+    def over(self, names: tuple[str, str], units: tuple[str, str]) -> Parts:
+        """Call the dimensions ``first`` and ``second`` by names of their own, with their units."""
+        new = dict(zip(("first", "second"), names, strict=True))
+        variables = {
+            name: (tuple(new.get(dim, dim) for dim in dims), values, told)
+            for name, (dims, values, told) in self.variables.items()
+        }
+        axes = {
+            new[old]: (new[old], self.coordinates[old][1], {"units": unit})
+            for old, unit in zip(new, units, strict=True)
+        }
+        return Parts(variables, axes, self.attributes)
+
 
 class Record:
     """Base of the results: what its fields declare is exported, shown, compared and drawn."""
 
     #: Variable that ``to_xarray`` returns as a DataArray with its coordinates; empty: a Dataset.
     ARRAY: ClassVar[str] = ""
+
+    def _array_name(self) -> str:
+        """Name of the DataArray."""
+        return self.ARRAY
 
     def _labelled(self) -> list[tuple[Field[Any], Labels]]:
         return [(each, each.metadata[_KEY]) for each in fields(self) if _KEY in each.metadata]  # type: ignore[arg-type]
@@ -124,7 +138,8 @@ class Record:
         if not self.ARRAY:
             return xarray.Dataset(variables, coordinates, attributes)
         dims, values, told = variables[self.ARRAY]
-        return xarray.DataArray(values, coordinates, dims, self.ARRAY, {**told, **attributes})
+        name, told = self._array_name(), {**told, **attributes}
+        return xarray.DataArray(values, coordinates, dims, name, told)
 
     def plot(self, **options: Any) -> Any:
         """Draw the result by the figure registered for its class.
@@ -175,10 +190,7 @@ class Record:
         """Results are equal when they are of one class and all their fields are equal."""
         if type(other) is not type(self):
             return NotImplemented
-        return all(
-            _equal(getattr(self, each.name), getattr(other, each.name))
-            for each in fields(self)  # type: ignore[arg-type]
-        )
+        return self is other or _same_fields(self, other)
 
     def __hash__(self) -> int:
         """Hash of the class and the facts: equal results have equal ones."""
@@ -214,6 +226,10 @@ class Record:
         return f"<b>{escape(repr(self))}</b><table><tr>{head}</tr>{body}</table>"
 
 
+def _same_fields(one: Any, other: Any) -> bool:
+    return all(_equal(getattr(one, each.name), getattr(other, each.name)) for each in fields(one))
+
+
 def _equal(one: Any, other: Any) -> bool:
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         a, b = np.asarray(one), np.asarray(other)
@@ -223,6 +239,8 @@ def _equal(one: Any, other: Any) -> bool:
         return one.keys() == other.keys() and all(_equal(one[key], other[key]) for key in one)
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return len(one) == len(other) and all(map(_equal, one, other))
+    if is_dataclass(one) and type(one) is type(other):
+        return _same_fields(one, other)
     return bool(one == other) or (one != one and other != other)
 
 

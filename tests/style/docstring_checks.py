@@ -92,7 +92,8 @@ def _is_contract(module: Module, function: Function) -> bool:
 
 def _constructor(node: ast.ClassDef) -> list[str] | None:
     """Return the parameters of a dataclass or of an explicit constructor, else None."""
-    if any("dataclass" in ast.unparse(decorator) for decorator in node.decorator_list):
+    decorators = [ast.unparse(decorator) for decorator in node.decorator_list]
+    if any("dataclass" in text or text == "record" for text in decorators):
         return [
             item.target.id
             for item in node.body

@@ -22,6 +22,10 @@ AMPLITUDES = (4.0, 0.0, 1.0, 0.25)
 NAMES = ("pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta")
 
 
+class Result(SimpleNamespace):
+    """Stand-in for the result of a run, drawn by the figures of its class."""
+
+
 def mesh_of(case: Case, film_model: str = "none") -> MeshTable:
     """Mesh table of a case at a coarse step."""
     oil = case.lubricant_properties
@@ -101,7 +105,7 @@ def drawable() -> Any:
     ) -> Any:
         case = load_case("fzg-roughness").replace({"gears.driver": driver, **(changes or {})})
         mesh = mesh_of(case, film_model)
-        return SimpleNamespace(
+        return Result(
             case=case,
             mesh=mesh,
             response=response_of(mesh, names, periods=periods, steady=steady),

@@ -111,3 +111,36 @@ def test_a_figure_of_something_else_is_refused_with_the_way_to_it(figure: Drawin
     empty = Level(np.ones(1), None, np.ones(1), 2)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="No force was computed"):
         figure(empty)
+
+
+def test_a_report_is_written_by_whoever_registered_for_the_class(tmp_path) -> None:
+    from tribodyn.reporting import REPORTS, report_of, write_report_of
+
+    @report_of("Level")
+    def text_of_level(subject: Level, path):
+        path.write_text(repr(subject))
+        return path
+
+    try:
+        assert write_report_of(level(), tmp_path / "level.txt").read_text() == repr(level())
+    finally:
+        REPORTS._items.pop("Level")
+    with pytest.raises(InputError, match="no report tells of a Line"):
+        write_report_of(Line(np.ones(1), np.ones(1), ""), tmp_path / "line.txt")
+
+
+def test_results_within_results_are_compared_field_by_field() -> None:
+    @record
+    class Pair(Record):
+        levels: tuple[Level, ...]
+
+    assert Pair((level(), level(5.0))) == Pair((level(), level(5.0)))
+    assert Pair((level(), level(5.0))) != Pair((level(), level(6.0)))
+
+
+def test_a_plane_calls_its_dimensions_by_their_names() -> None:
+    axes = {"first": ("first", np.ones(1), {}), "second": ("second", np.ones(2), {})}
+    parts = Parts({"a": (("first", "second"), np.ones((1, 2)), {})}, axes, {})
+    data = xarray.Dataset(*parts.over(("speed", "load"), ("rad/s", "")))
+    assert data.a.dims == ("speed", "load")
+    assert data.speed.units == "rad/s"

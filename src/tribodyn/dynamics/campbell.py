@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,10 +12,8 @@ from tribodyn.dynamics.natural_modes import natural_modes
 from tribodyn.dynamics.natural_modes_linear import ModePhase
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    import xarray
 
 
 @dataclass(frozen=True)
@@ -50,8 +47,8 @@ class Resonance:
     damping_ratio: float
 
 
-@dataclass(frozen=True)
-class Campbell:
+@record
+class Campbell(Record):
     """Natural frequencies over speed, mesh-order lines and where they cross.
 
     Parameters
@@ -81,12 +78,12 @@ class Campbell:
     Campbell(1 elastic mode, 2 orders, 2 resonances)
     """
 
-    speed: Array
-    mesh_frequency: Array
+    speed: Array = quantity("speed", unit="rad/s", axis=True)
+    mesh_frequency: Array = quantity("speed", unit="Hz")
     orders: tuple[int, ...]
-    frequency: Array
-    contact_share: Array
-    damping_ratio: Array
+    frequency: Array = quantity("speed", "mode", unit="Hz")
+    contact_share: Array = quantity("speed", "mode", unit="1")
+    damping_ratio: Array = quantity("speed", "mode", unit="1")
     first_mode: int
     resonances: tuple[Resonance, ...]
 
@@ -102,39 +99,10 @@ class Campbell:
             f"{several(met, 'resonance')})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the curves over speed.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``speed`` and ``mode``.
-        """
-        import xarray
-
-        both = ("speed", "mode")
-        data: dict[str, Any] = {
-            "mesh_frequency": ("speed", self.mesh_frequency, {"units": "Hz"}),
-            "frequency": (both, self.frequency, {"units": "Hz"}),
-            "contact_share": (both, self.contact_share, {"units": "1"}),
-            "damping_ratio": (both, self.damping_ratio, {"units": "1"}),
-        }
-        coords: dict[str, Any] = {
-            "speed": ("speed", self.speed, {"units": "rad/s"}),
-            "mode": self.first_mode + np.arange(self.frequency.shape[1]),
-        }
-        return xarray.Dataset(data, coords)
-
-    def plot(self) -> Any:
-        """Draw the diagram.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["campbell"](self)
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["mode"] = self.first_mode + np.arange(self.frequency.shape[1])
+        return parts
 
 
 def campbell(

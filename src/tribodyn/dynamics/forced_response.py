@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.natural_modes_linear import LinearSystem, ModePhase, linear_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
 
-if TYPE_CHECKING:
-    import xarray
 
-
-@dataclass(frozen=True)
-class ForcedResponse:
+@record
+class ForcedResponse(Record):
     """ComplexArray amplitudes of the motion that a harmonic error excites.
 
     A signal is ``Re(amplitude*exp(2 pi i f t))`` where the error is ``Re(error*exp(2 pi i f t))``.
@@ -54,14 +49,14 @@ class ForcedResponse:
     """
 
     names: tuple[str, ...]
-    frequency: Array
-    error: float
+    frequency: Array = quantity("frequency", unit="Hz", axis=True)
+    error: float = fact()
     contact: tuple[int, ...]
-    position: ComplexArray
-    transmission_error: ComplexArray
-    deflection: ComplexArray
-    contact_force: ComplexArray
-    structure_force: ComplexArray
+    position: ComplexArray = quantity("frequency", "coordinate", unit="m or rad")
+    transmission_error: ComplexArray = quantity("frequency", "contact", unit="m")
+    deflection: ComplexArray = quantity("frequency", "contact", unit="m")
+    contact_force: ComplexArray = quantity("frequency", "contact", unit="N")
+    structure_force: ComplexArray = quantity("frequency", "coordinate", unit="N or N*m")
 
     @property
     def mesh_force(self) -> ComplexArray:
@@ -89,40 +84,10 @@ class ForcedResponse:
             f"{size[top]:.6g} N at {self.frequency[top]:.6g} Hz)"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the complex amplitudes over frequency.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``frequency``, ``coordinate`` and ``contact``.
-        """
-        import xarray
-
-        contact, coordinate = ("frequency", "contact"), ("frequency", "coordinate")
-        data: dict[str, Any] = {
-            "position": (coordinate, self.position, {"units": "m or rad"}),
-            "transmission_error": (contact, self.transmission_error, {"units": "m"}),
-            "deflection": (contact, self.deflection, {"units": "m"}),
-            "contact_force": (contact, self.contact_force, {"units": "N"}),
-            "structure_force": (coordinate, self.structure_force, {"units": "N or N*m"}),
-        }
-        coords: dict[str, Any] = {
-            "frequency": ("frequency", self.frequency, {"units": "Hz"}),
-            "coordinate": list(self.names),
-        }
-        return xarray.Dataset(data, coords, {"error": self.error})
-
-    def plot(self) -> Any:
-        """Draw mesh force and transmission error over frequency.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["forced_response"](self)
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["coordinate"] = list(self.names)
+        return parts
 
 
 def forced_response(

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,18 +11,15 @@ from tribodyn.dynamics.natural_modes_elements import structure_elements
 from tribodyn.dynamics.natural_modes_linear import LinearSystem, ModePhase, linear_system
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
+from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array, ComplexArray
-
-if TYPE_CHECKING:
-    import xarray
-
 
 #: Squared frequencies below this share of the largest are rounding: the mode is rigid.
 _RIGID = 1e-12
 
 
-@dataclass(frozen=True)
-class NaturalModes:
+@record
+class NaturalModes(Record):
     """Undamped modes of a system about its static load, and the damped motion beside them.
 
     Modes are sorted by frequency; rigid ones come first, with exactly 0 Hz.
@@ -63,16 +58,16 @@ class NaturalModes:
     """
 
     names: tuple[str, ...]
-    frequency: Array
-    shape: Array
-    damping_ratio: Array
-    kinetic_share: Array
+    frequency: Array = quantity("mode", unit="Hz")
+    shape: Array = quantity("mode", "coordinate", unit="kg^-1/2 or kg^-1/2/m")
+    damping_ratio: Array = quantity("mode", unit="1")
+    kinetic_share: Array = quantity("mode", "coordinate", unit="1")
     elements: tuple[str, ...]
-    strain_share: Array
+    strain_share: Array = quantity("mode", "element", unit="1")
     contacts: int
     eigenvalues: ComplexArray
     complex_shape: ComplexArray
-    linear: LinearSystem = field(repr=False)
+    linear: LinearSystem
 
     @property
     def rigid(self) -> int:
@@ -136,37 +131,11 @@ class NaturalModes:
         first = f"first {elastic[0]:.6g} Hz" if elastic.size else "no elastic mode"
         return f"NaturalModes({len(self.names)} coordinates, {self.rigid} rigid, {first})"
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return frequencies, shapes and shares with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``mode``, ``coordinate`` and ``element``.
-        """
-        import xarray
-
-        data: dict[str, Any] = {
-            "frequency": ("mode", self.frequency, {"units": "Hz"}),
-            "damping_ratio": ("mode", self.damping_ratio, {"units": "1"}),
-            "shape": (("mode", "coordinate"), self.shape, {"units": "kg^-1/2 or kg^-1/2/m"}),
-            "kinetic_share": (("mode", "coordinate"), self.kinetic_share, {"units": "1"}),
-            "strain_share": (("mode", "element"), self.strain_share, {"units": "1"}),
-        }
-        return xarray.Dataset(
-            data, {"coordinate": list(self.names), "element": list(self.elements)}
-        )
-
-    def plot(self) -> Any:
-        """Draw where the energy of each mode sits.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["mode_shapes"](self)
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["coordinate"] = list(self.names)
+        parts.coordinates["element"] = list(self.elements)
+        return parts
 
 
 def natural_modes(

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.dynamics.ensemble import LaneStatistics
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.errors import InputError, Problem
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
-    import xarray
-
     from tribodyn.dynamics.natural_modes import NaturalModes
 
 
@@ -38,8 +38,8 @@ class CycleStatistics:
         return f"CycleStatistics({self.time.size} mesh cycles)"
 
 
-@dataclass(frozen=True)
-class RunUp:
+@record
+class RunUp(Record):
     """Motion while the speed changes as prescribed, sampled equally in the mesh phase.
 
     Parameters
@@ -74,23 +74,23 @@ class RunUp:
         Natural modes at the middle of the speeds; None where there are none.
     """
 
-    time: Array
-    phase: Array
-    mesh_frequency: Array
-    position: Array
-    velocity: Array
-    acceleration: Array
-    deflection: Array
-    contact_force: Array
-    output: Array
+    time: Array = quantity("time", unit="s", axis=True)
+    phase: Array = quantity("time", unit="1", axis=True)
+    mesh_frequency: Array = quantity("time", unit="Hz", axis=True)
+    position: Array = quantity("time", "coordinate", unit="m or rad")
+    velocity: Array = quantity("time", "coordinate", unit="m/s or rad/s")
+    acceleration: Array = quantity("time", "coordinate", unit="m/s^2 or rad/s^2")
+    deflection: Array = quantity("time", "contact", unit="m")
+    contact_force: Array = quantity("time", "contact", unit="N")
+    output: Array = quantity("time", "output_name", unit="@output_unit")
     names: tuple[str, ...]
     output_names: tuple[str, ...]
     output_unit: str
-    samples: int
-    teeth: int
-    cycles: CycleStatistics = field(repr=False)
+    samples: int = fact()
+    teeth: int = fact()
+    cycles: CycleStatistics
     profile: SpeedProfile
-    step_number: float
+    step_number: float = fact(name="omega_max_dt")
     modes: NaturalModes | None = field(default=None, repr=False)
 
     @property
@@ -151,60 +151,6 @@ class RunUp:
             f"{self.samples} samples per cycle{', teeth separate' if lost > 0.0 else ''})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return samples and figures of the cycles with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``time``, ``coordinate``, ``contact``, ``output_name`` and ``mesh_cycle``.
-        """
-        import xarray
-
-        data: dict[str, Any] = {}
-        units = {
-            "position": ("coordinate", "m or rad"),
-            "velocity": ("coordinate", "m/s or rad/s"),
-            "acceleration": ("coordinate", "m/s^2 or rad/s^2"),
-            "deflection": ("contact", "m"),
-            "contact_force": ("contact", "N"),
-            "output": ("output_name", self.output_unit),
-        }
-        for name, (kind, unit) in units.items():
-            data[name] = (("time", kind), getattr(self, name), {"units": unit})
-            found = getattr(self.cycles, name, None)
-            for figure in ("mean", "rms", "minimum", "maximum") if found else ():
-                values = (("mesh_cycle", kind), getattr(found, figure), {"units": unit})
-                data[f"{name}_{figure}"] = values
-        loss = (("mesh_cycle", "contact"), self.cycles.contact_loss_share, {"units": "1"})
-        extra = (("mesh_cycle", "coordinate"), self.cycles.extra_force, {"units": "N or N*m"})
-        coords: dict[str, Any] = {
-            "time": ("time", self.time, {"units": "s"}),
-            "phase": ("time", self.phase, {"units": "1"}),
-            "mesh_frequency": ("time", self.mesh_frequency, {"units": "Hz"}),
-            "speed": ("time", self.speed, {"units": "rad/s"}),
-            "coordinate": list(self.names),
-            "output_name": list(self.output_names),
-            "cycle_time": ("mesh_cycle", self.cycles.time, {"units": "s"}),
-            "cycle_mesh_frequency": ("mesh_cycle", self.cycles.mesh_frequency, {"units": "Hz"}),
-        }
-        facts = {"teeth": self.teeth, "samples": self.samples, "omega_max_dt": self.step_number}
-        return xarray.Dataset(
-            {**data, "contact_loss_share": loss, "extra_force": extra}, coords, facts
-        )
-
-    def plot(self) -> Any:
-        """Draw overall level and orders over the speed.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["run_up"](self)
-
     def plot_map(self) -> Any:
         """Draw amplitudes over speed and frequency, with mesh orders and natural modes.
 
@@ -212,6 +158,25 @@ class RunUp:
         -------
         plotly.graph_objects.Figure
         """
-        from tribodyn.plot import FIGURES
+        return draw(self, "run_up_map")
 
-        return FIGURES["run_up_map"](self)
+    def _units(self, unit: str | None) -> dict[str, str]:
+        return {"units": self.output_unit} if unit == "@output_unit" else super()._units(unit)
+
+    def _parts(self) -> Parts:
+        variables, coordinates, _ = parts = super()._parts()
+        cycles, cycle = self.cycles, "mesh_cycle"
+        for name in ("acceleration", "deflection", "contact_force", "output"):
+            (_, kind), _, units = variables[name]
+            for figure in ("mean", "rms", "minimum", "maximum"):
+                values = getattr(getattr(cycles, name), figure)
+                variables[f"{name}_{figure}"] = ((cycle, kind), values, units)
+        loss, force = cycles.contact_loss_share, cycles.extra_force
+        variables["contact_loss_share"] = ((cycle, "contact"), loss, {"units": "1"})
+        variables["extra_force"] = ((cycle, "coordinate"), force, {"units": "N or N*m"})
+        coordinates["speed"] = ("time", self.speed, {"units": "rad/s"})
+        coordinates["coordinate"] = list(self.names)
+        coordinates["output_name"] = list(self.output_names)
+        coordinates["cycle_time"] = (cycle, cycles.time, {"units": "s"})
+        coordinates["cycle_mesh_frequency"] = (cycle, cycles.mesh_frequency, {"units": "Hz"})
+        return parts

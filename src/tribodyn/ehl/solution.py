@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.drawing import draw
 from tribodyn.ehl.discrete import DiscreteContact
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
@@ -236,10 +237,7 @@ class LineContactSolution:
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot.line_contact import line_contact
-
-        return line_contact(self)
+        return draw(self)
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""

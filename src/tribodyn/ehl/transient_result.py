@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
@@ -150,10 +151,7 @@ class TransientLineContact:
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot.film_dynamics import film_transient
-
-        return film_transient(self)
+        return draw(self)
 
     def __repr__(self) -> str:
         """One line with the figures that tell series apart."""

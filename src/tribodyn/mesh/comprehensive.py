@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,19 +15,16 @@ from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.build import build
 from tribodyn.mesh.table import MeshTable
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    import xarray
-
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 _OF_A_PAIR = ("film_stiffness", "tooth_stiffness", "pair_stiffness", "load_share")
 _OF_THE_MESH = ("film_mesh_stiffness", "tooth_mesh_stiffness", "comprehensive_mesh_stiffness")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class ComprehensiveStiffness:
+@record
+class ComprehensiveStiffness(Record):
     """Stiffness of oil film and teeth; made by :func:`tribodyn.mesh.comprehensive_stiffness`.
 
     Values of one tooth pair stand in the order in which it passes them from A to E, a place where
@@ -69,21 +65,21 @@ class ComprehensiveStiffness:
     """
 
     gear_pair: SpurPair
-    kind: str
-    stiffness_model: str
-    film_model: str
-    pinion_torque: Array
-    pinion_speed: Array
-    path: Array
-    roll_angle: Array
-    load_share: Array
-    film_stiffness: Array
-    tooth_stiffness: Array
-    pair_stiffness: Array
-    phase: Array
-    film_mesh_stiffness: Array
-    tooth_mesh_stiffness: Array
-    comprehensive_mesh_stiffness: Array
+    kind: str = fact()
+    stiffness_model: str = fact()
+    film_model: str = fact()
+    pinion_torque: Array = quantity("torque", unit="N*m", axis=True)
+    pinion_speed: Array = quantity("speed", unit="rad/s", axis=True)
+    path: Array = quantity("place", unit="m", axis=True)
+    roll_angle: Array = quantity("place", unit="rad", axis=True)
+    load_share: Array = quantity("torque", "speed", "place", unit="1")
+    film_stiffness: Array = quantity("torque", "speed", "place", unit="N/m")
+    tooth_stiffness: Array = quantity("torque", "speed", "place", unit="N/m")
+    pair_stiffness: Array = quantity("torque", "speed", "place", unit="N/m")
+    phase: Array = quantity("phase", unit="1", axis=True)
+    film_mesh_stiffness: Array = quantity("torque", "speed", "phase", unit="N/m")
+    tooth_mesh_stiffness: Array = quantity("torque", "speed", "phase", unit="N/m")
+    comprehensive_mesh_stiffness: Array = quantity("torque", "speed", "phase", unit="N/m")
 
     @property
     def mean_mesh_stiffness(self) -> Array:
@@ -108,49 +104,6 @@ class ComprehensiveStiffness:
 
     def _mean(self, values: Array) -> Array:
         return np.asarray(np.trapezoid(values, self.phase, axis=2) / np.ptp(self.phase))
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``torque``, ``speed``, ``place`` and ``phase``.
-        """
-        import xarray
-
-        stiffness = {"units": "N/m"}
-        variables: dict[str, Any] = {
-            name: (("torque", "speed", "place"), getattr(self, name), stiffness)
-            for name in _OF_A_PAIR
-        }
-        variables["load_share"] = (("torque", "speed", "place"), self.load_share, {"units": "1"})
-        for name in _OF_THE_MESH:
-            variables[name] = (("torque", "speed", "phase"), getattr(self, name), stiffness)
-        coordinates: dict[str, Any] = {
-            "pinion_torque": ("torque", self.pinion_torque, {"units": "N*m"}),
-            "pinion_speed": ("speed", self.pinion_speed, {"units": "rad/s"}),
-            "path": ("place", self.path, {"units": "m"}),
-            "roll_angle": ("place", self.roll_angle, {"units": "rad"}),
-            "phase": ("phase", self.phase, {"units": "1"}),
-        }
-        made = {
-            "kind": self.kind, "film_model": self.film_model,
-            "stiffness_model": self.stiffness_model,
-        }  # fmt: skip
-        return xarray.Dataset(variables, coordinates, made)
-
-    def plot(self) -> Any:
-        """Draw the stiffness of film, teeth and both over the roll angle.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["comprehensive_stiffness"](self)
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,29 +20,16 @@ from tribodyn.mesh.positions import PathPositions, path_positions
 from tribodyn.mesh.teeth import LEAST_SHARE, teeth_of
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array, Mask
-
-if TYPE_CHECKING:
-    import xarray
-
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 #: Positions for the models that have no such option.
 _POSITIONS = 30
-#: Dimensions of the arrays of a result by their number of axes, and of those with fewer.
-_AXES = {
-    "pinion_torque": ("torque",),
-    "pinion_speed": ("speed",),
-    "roll_angle": ("position",),
-    "path": ("position",),
-    "load_per_width": ("torque", "position"),
-    "hertz_pressure": ("torque", "position"),
-    "entrainment_speed": ("speed", "position"),
-}
 
 
-@dataclass(frozen=True, eq=False)
-class FilmOverOperation:
+@record
+class FilmOverOperation(Record):
     """Films of one tooth pair from entry to exit, for every torque at every speed.
 
     Positions stand in the order in which the pair passes them; where the load jumps a position
@@ -76,38 +62,18 @@ class FilmOverOperation:
         Stiffness of the film over the common face width.
     """
 
-    pinion_torque: Array
-    pinion_speed: Array
-    path: Array
-    roll_angle: Array
-    load_per_width: Array
-    hertz_pressure: Array
-    entrainment_speed: Array
-    central_film: Array | None = None
-    minimum_film: Array | None = None
-    film_ratio: Array | None = None
-    film_pressure: Array | None = None
-    film_stiffness: Array | None = None
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``torque``, ``speed`` and ``position``.
-        """
-        import xarray
-
-        data = {}
-        for name, values in vars(self).items():
-            if values is not None:
-                axes = _AXES.get(name, ("torque", "speed", "position"))
-                quantity = QUANTITIES[name]
-                told = {"units": quantity.unit or "1", "long_name": quantity.meaning}
-                data[name] = (axes, values, told)
-        coordinates = ("pinion_torque", "pinion_speed", "path", "roll_angle")
-        return xarray.Dataset(data).set_coords(coordinates)
+    pinion_torque: Array = quantity("torque", axis=True)
+    pinion_speed: Array = quantity("speed", axis=True)
+    path: Array = quantity("position", axis=True)
+    roll_angle: Array = quantity("position", axis=True)
+    load_per_width: Array = quantity("torque", "position")
+    hertz_pressure: Array = quantity("torque", "position")
+    entrainment_speed: Array = quantity("speed", "position")
+    central_film: Array | None = quantity("torque", "speed", "position", default=None)
+    minimum_film: Array | None = quantity("torque", "speed", "position", default=None)
+    film_ratio: Array | None = quantity("torque", "speed", "position", default=None)
+    film_pressure: Array | None = quantity("torque", "speed", "position", default=None)
+    film_stiffness: Array | None = quantity("torque", "speed", "position", default=None)
 
     def __repr__(self) -> str:
         """One line."""
@@ -115,6 +81,15 @@ class FilmOverOperation:
         film = self.minimum_film if self.minimum_film is not None else self.central_film
         least = "no film" if film is None else f"films from {np.nanmin(film) * 1e6:.4g} um"
         return "FilmOverOperation({} torques, {} speeds, {} positions, {})".format(*shape, least)
+
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        for place in (parts.variables, parts.coordinates):
+            for name, (dims, values, _) in place.items():
+                known = QUANTITIES[name]
+                told = {"units": known.unit or "1", "long_name": known.meaning}
+                place[name] = (dims, values, told)
+        return parts
 
 
 def film_over_operation(

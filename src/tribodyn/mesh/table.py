@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from os import PathLike
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.contact import path_of_contact
+from tribodyn.drawing import draw
 from tribodyn.errors import InputError, Problem
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.force_law import MeshForceLaw
@@ -222,7 +222,7 @@ class MeshTable(MeshColumns):
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("mesh_stiffness")
+        return draw(self, "mesh_stiffness")
 
     def plot_friction(self) -> Any:
         """Draw the friction of a tooth pair over the path of contact.
@@ -231,7 +231,7 @@ class MeshTable(MeshColumns):
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("friction")
+        return draw(self, "friction")
 
     def plot_film(self) -> Any:
         """Draw the oil film of a tooth pair and its ratio to the roughness over the path.
@@ -240,7 +240,7 @@ class MeshTable(MeshColumns):
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("film")
+        return draw(self, "film")
 
     def plot_film_stiffness(self) -> Any:
         """Draw the stiffness of the oil film against that of the teeth over the path.
@@ -249,15 +249,7 @@ class MeshTable(MeshColumns):
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("film_stiffness")
-
-    def _figure(self, name: str) -> Any:
-        # The one step upward of the layers: a result draws itself. Figures take whatever has
-        # a mesh and a case with a gear pair, of which this table is the part they need.
-        from tribodyn.plot import FIGURES
-
-        case = SimpleNamespace(gear_pair=self.gear_pair)
-        return FIGURES[name](SimpleNamespace(mesh=self, case=case))
+        return draw(self, "film_stiffness")
 
     def __repr__(self) -> str:
         """One line with the figures that tell tables apart."""

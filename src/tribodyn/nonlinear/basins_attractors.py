@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,11 @@ from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.survey import Survey, follow, measure
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 #: States of one motion differ by less than this part of the largest state.
 _SAME = 1e-3
@@ -211,8 +212,8 @@ def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
     return float(np.abs(orbit.floquet_multipliers).max())
 
 
-@dataclass(frozen=True)
-class Basins:
+@record
+class Basins(Record):
     """Which motion every start of a plane comes to.
 
     Parameters
@@ -247,17 +248,17 @@ class Basins:
 
     coordinates: tuple[str, str]
     units: tuple[str, str]
-    first: Array = field(repr=False)
-    second: Array = field(repr=False)
-    attractor: Index = field(repr=False)
+    first: Array = quantity("first", axis=True)
+    second: Array = quantity("second", axis=True)
+    attractor: Index = quantity("first", "second")
     attractors: tuple[Attractor, ...]
-    refined_attractor: Index = field(repr=False)
-    names: tuple[str, ...] = field(repr=False)
-    signal: str
-    mesh_frequency: float
-    steps: int
-    step_number: float
-    finished: Mask = field(repr=False)
+    refined_attractor: Index = quantity("first", "second")
+    names: tuple[str, ...]
+    signal: str = fact()
+    mesh_frequency: float = fact()
+    steps: int = fact()
+    step_number: float = fact()
+    finished: Mask = quantity("first", "second")
 
     @property
     def complete(self) -> bool:
@@ -291,46 +292,11 @@ class Basins:
             f"{'' if self.complete else ', interrupted'})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the plane and its attractors as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions are the two coordinates and ``number``.
-        """
-        import xarray
-
-        plane, number = self.coordinates, ("number",)
-        data: dict[str, Any] = {
-            "attractor": (plane, self.attractor),
-            "refined_attractor": (plane, self.refined_attractor),
-            "finished": (plane, self.finished),
-        }
-        units = {"rms": "m or rad", "verdict": ""}
+    def _parts(self) -> Parts:
+        parts = super()._parts().over(self.coordinates, self.units)
+        units = {"rms": "m or rad"}
         for name in ("period", "rms", "contact_loss_share", "largest_multiplier", "share"):
             values = [getattr(each, name) for each in self.attractors]
-            data[name] = (number, values, {"units": units.get(name, "1")})
-        data["verdict"] = (number, [each.verdict for each in self.attractors])
-        axes = {
-            name: (name, values, {"units": unit})
-            for name, values, unit in zip(
-                self.coordinates, (self.first, self.second), self.units, strict=True
-            )
-        }
-        facts = {
-            "mesh_frequency": self.mesh_frequency, "steps": self.steps,
-            "step_number": self.step_number, "signal": self.signal,
-        }  # fmt: skip
-        return xarray.Dataset(data, axes, facts)
-
-    def plot(self) -> Any:
-        """Draw the plane.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["basins"](self)
+            parts.variables[name] = ("number", values, {"units": units.get(name, "1")})
+        parts.variables["verdict"] = ("number", [each.verdict for each in self.attractors])
+        return parts

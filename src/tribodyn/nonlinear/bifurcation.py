@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -25,10 +24,11 @@ from tribodyn.nonlinear.survey import (
     step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 Sweep = Literal["up", "down", "both", "independent"]
 
@@ -313,8 +313,8 @@ def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: 
     return found
 
 
-@dataclass(frozen=True)
-class Bifurcation:
+@record
+class Bifurcation(Record):
     """Motions over a parameter; the first axis of every result is the branch.
 
     Parameters
@@ -356,24 +356,24 @@ class Bifurcation:
         period 0 and an empty verdict.
     """
 
-    parameter: Array
-    parameter_name: str
+    parameter: Array = quantity("value", unit="@parameter_unit")
+    parameter_name: str = fact()
     parameter_unit: str
-    mesh_frequency: Array = field(repr=False)
+    mesh_frequency: Array = quantity("value", unit="Hz")
     branches: tuple[str, ...]
-    signal: str
-    section: Array = field(repr=False)
-    period: Index = field(repr=False)
-    rms: Array = field(repr=False)
-    contact_loss_share: Array = field(repr=False)
-    step_number: Array = field(repr=False)
-    steps: Index = field(repr=False)
-    verdict: NDArray[np.str_] = field(repr=False)
-    refined_period: Index = field(repr=False)
-    refined_rms: Array = field(repr=False)
-    refined_steps: Index = field(repr=False)
-    largest_exponent: Array = field(repr=False)
-    finished: Mask = field(repr=False)
+    signal: str = fact()
+    section: Array = quantity("branch", "value", "mesh_cycle", unit="m or rad")
+    period: Index = quantity("branch", "value", unit="1")
+    rms: Array = quantity("branch", "value", unit="m or rad")
+    contact_loss_share: Array = quantity("branch", "value", unit="1")
+    step_number: Array = quantity("value", unit="1")
+    steps: Index = quantity("value", unit="1")
+    verdict: NDArray[np.str_] = quantity("branch", "value")
+    refined_period: Index = quantity("branch", "value", unit="1")
+    refined_rms: Array = quantity("branch", "value", unit="m or rad")
+    refined_steps: Index = quantity("value", unit="1")
+    largest_exponent: Array = quantity("branch", "value", unit="1/s")
+    finished: Mask = quantity("branch", "value")
 
     @property
     def complete(self) -> bool:
@@ -408,43 +408,8 @@ class Bifurcation:
         words, counts = np.unique(self.verdict, return_counts=True)
         return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the diagram as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``branch``, ``value`` and ``mesh_cycle``.
-        """
-        import xarray
-
-        both, value = ("branch", "value"), ("value",)
-        data: dict[str, Any] = {
-            "section": ((*both, "mesh_cycle"), self.section, {"units": "m or rad"}),
-            "period": (both, self.period, {"units": "1"}),
-            "rms": (both, self.rms, {"units": "m or rad"}),
-            "contact_loss_share": (both, self.contact_loss_share, {"units": "1"}),
-            "verdict": (both, self.verdict),
-            "finished": (both, self.finished),
-            "refined_period": (both, self.refined_period, {"units": "1"}),
-            "refined_rms": (both, self.refined_rms, {"units": "m or rad"}),
-            "largest_exponent": (both, self.largest_exponent, {"units": "1/s"}),
-            "mesh_frequency": (value, self.mesh_frequency, {"units": "Hz"}),
-            "step_number": (value, self.step_number, {"units": "1"}),
-            "steps": (value, self.steps, {"units": "1"}),
-            "refined_steps": (value, self.refined_steps, {"units": "1"}),
-            "parameter": (value, self.parameter, {"units": self.parameter_unit}),
-        }
-        names = {"parameter_name": self.parameter_name, "signal": self.signal}
-        return xarray.Dataset(data, {"branch": list(self.branches)}, names)
-
-    def plot(self) -> Any:
-        """Draw the diagram.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["bifurcation"](self)
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["branch"] = list(self.branches)
+        parts.variables["parameter"] = ("value", self.parameter, {"units": self.parameter_unit})
+        return parts

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,10 +25,11 @@ from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings, contact_sides
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
 #: Numbers kept at a time while disturbances are carried.
@@ -53,8 +54,8 @@ _APART = 1e-10
 _SPREAD = 1e6
 
 
-@dataclass(frozen=True)
-class LyapunovExponents:
+@record
+class LyapunovExponents(Record):
     """Spectrum of Lyapunov exponents of one motion.
 
     Parameters
@@ -81,15 +82,15 @@ class LyapunovExponents:
         :func:`~tribodyn.nonlinear.lyapunov.exponent_verdict`; empty where it was not asked.
     """
 
-    exponents: Array
-    standard_error: Array
-    divergence: float
+    exponents: Array = quantity("exponent", unit="1/s", name="lyapunov_exponent")
+    standard_error: Array = quantity("exponent", unit="1/s")
+    divergence: float = fact()
     free: int
-    mesh_frequency: float
-    cycles: int
+    mesh_frequency: float = fact()
+    cycles: int = fact()
     repeats: int
-    growth: Array = field(repr=False)
-    verdict: str = ""
+    growth: Array
+    verdict: str = fact(default="")
 
     @property
     def largest(self) -> float:
@@ -127,38 +128,10 @@ class LyapunovExponents:
             f"{', ' + self.verdict if self.verdict else ''})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the spectrum as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimension ``exponent``.
-        """
-        import xarray
-
-        data: dict[str, Any] = {
-            "lyapunov_exponent": ("exponent", self.exponents, {"units": "1/s"}),
-            "standard_error": ("exponent", self.standard_error, {"units": "1/s"}),
-        }
-        attributes = {
-            "divergence": self.divergence,
-            "mesh_frequency": self.mesh_frequency,
-            "cycles": self.cycles,
-            "verdict": self.verdict,
-        }
-        return xarray.Dataset(data, {"exponent": np.arange(self.exponents.size)}, attributes)
-
-    def plot(self) -> Any:
-        """Draw the running means of the largest exponents.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["lyapunov"](self)
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["exponent"] = np.arange(self.exponents.size)
+        return parts
 
 
 def lyapunov_exponents(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,10 +25,11 @@ from tribodyn.nonlinear.survey import (
     step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 #: Factors of the system that a lane can have of its own.
 SCALES = (
@@ -274,8 +275,8 @@ def _unit(name: str) -> str:
     return "Hz" if name == "mesh_frequency" else "-"
 
 
-@dataclass(frozen=True)
-class ParameterMap:
+@record
+class ParameterMap(Record):
     """Motions over two parameters; every array is (nx, ny) unless said otherwise.
 
     Parameters
@@ -304,16 +305,16 @@ class ParameterMap:
 
     names: tuple[str, str]
     units: tuple[str, str]
-    first: Array = field(repr=False)
-    second: Array = field(repr=False)
-    period: Index = field(repr=False)
-    rms: Array = field(repr=False)
-    contact_loss_share: Array = field(repr=False)
-    steps: Index = field(repr=False)
-    step_number: Array = field(repr=False)
-    verdict: NDArray[np.str_] = field(repr=False)
-    signal: str
-    finished: Mask = field(repr=False)
+    first: Array = quantity("first", axis=True)
+    second: Array = quantity("second", axis=True)
+    period: Index = quantity("first", "second", unit="1")
+    rms: Array = quantity("first", "second", unit="m or rad")
+    contact_loss_share: Array = quantity("first", "second", unit="1")
+    steps: Index = quantity("first", "second", unit="1")
+    step_number: Array = quantity("first", "second", unit="1")
+    verdict: NDArray[np.str_] = quantity("first", "second")
+    signal: str = fact()
+    finished: Mask = quantity("first", "second")
 
     @property
     def complete(self) -> bool:
@@ -347,38 +348,5 @@ class ParameterMap:
             f"{'' if self.complete else ', interrupted'})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the map as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions are the two parameters.
-        """
-        import xarray
-
-        units = {"rms": "m or rad"}
-        data: dict[str, Any] = {
-            name: (self.names, getattr(self, name), {"units": units.get(name, "1")})
-            for name in ("period", "rms", "contact_loss_share", "steps", "step_number")
-        }
-        data["verdict"] = (self.names, self.verdict)
-        data["finished"] = (self.names, self.finished)
-        axes = {
-            name: (name, values, {"units": unit})
-            for name, values, unit in zip(
-                self.names, (self.first, self.second), self.units, strict=True
-            )
-        }
-        return xarray.Dataset(data, axes, {"signal": self.signal})
-
-    def plot(self) -> Any:
-        """Draw period, rms and contact loss.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["parameter_map"](self)
+    def _parts(self) -> Parts:
+        return super()._parts().over(self.names, self.units)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,14 +10,15 @@ from tribodyn.dynamics.response import Response
 from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.nonlinear.poincare import poincare
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
-@dataclass(frozen=True)
-class PhasePortrait:
+@record
+class PhasePortrait(Record):
     """One coordinate, or the compression of a contact, in its phase plane.
 
     Parameters
@@ -39,52 +39,22 @@ class PhasePortrait:
         What half the step says of it; empty where it was not asked.
     """
 
-    name: str
-    position: Array = field(repr=False)
-    velocity: Array = field(repr=False)
-    section_position: Array = field(repr=False)
-    section_velocity: Array = field(repr=False)
-    period: int
-    gap: float = field(repr=False)
-    mesh_frequency: float
-    verdict: str = ""
+    name: str = fact()
+    position: Array = quantity("point", unit="m or rad")
+    velocity: Array = quantity("point", unit="m/s or rad/s")
+    section_position: Array = quantity("mesh_cycle", unit="m or rad")
+    section_velocity: Array = quantity("mesh_cycle", unit="m/s or rad/s")
+    period: int = fact()
+    gap: float
+    mesh_frequency: float = fact()
+    verdict: str = fact(default="")
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the motion as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``point`` and ``mesh_cycle``.
-        """
-        import xarray
-
-        units = {"position": "m or rad", "velocity": "m/s or rad/s"}
-        data: dict[str, Any] = {
-            name: ("point", getattr(self, name), {"units": unit}) for name, unit in units.items()
-        }
-        for name, unit in units.items():
-            data[f"section_{name}"] = (
-                "mesh_cycle", getattr(self, f"section_{name}"), {"units": unit},
-            )  # fmt: skip
-        facts = {
-            "name": self.name,
-            "period": self.period,
-            "mesh_frequency": self.mesh_frequency,
-            "verdict": self.verdict,
-        }
-        return xarray.Dataset(data, attrs=facts)
-
-    def plot(self) -> Any:
-        """Draw the phase plane.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["phase_portrait"](self)
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"PhasePortrait(name={self.name!r}, period={self.period!r}, "
+            f"mesh_frequency={self.mesh_frequency!r}, verdict={self.verdict!r})"
+        )
 
 
 def phase_portrait(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.drawing import draw
 from tribodyn.dynamics.march import Compiled, compile_for
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.periods import closed_period, open_period
@@ -18,10 +19,11 @@ from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.survey import Path, Verdict, follow, step_verdict
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
 #: An rms below this share of the largest compression is that of a motion at rest: means of squares
@@ -31,8 +33,8 @@ _REST = 1e-7
 _ORBIT = 100
 
 
-@dataclass(frozen=True)
-class PoincareSection:
+@record
+class PoincareSection(Record):
     """States of a motion once per mesh cycle, at the mesh phase 0.
 
     Parameters
@@ -53,13 +55,13 @@ class PoincareSection:
         where it was not asked.
     """
 
-    position: Array = field(repr=False)
-    velocity: Array = field(repr=False)
-    deflection: Array = field(repr=False)
+    position: Array = quantity("mesh_cycle", "coordinate", unit="m or rad")
+    velocity: Array = quantity("mesh_cycle", "coordinate", unit="m/s or rad/s")
+    deflection: Array = quantity("mesh_cycle", "contact", unit="m")
     names: tuple[str, ...]
-    mesh_frequency: float
-    period: int
-    verdict: str = ""
+    mesh_frequency: float = fact()
+    period: int = fact()
+    verdict: str = fact(default="")
 
     def __repr__(self) -> str:
         """One line."""
@@ -69,45 +71,26 @@ class PoincareSection:
             f"{', ' + self.verdict if self.verdict else ''})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the points as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``mesh_cycle``, ``coordinate`` and ``contact``.
-        """
-        import xarray
-
-        coordinate, contact = ("mesh_cycle", "coordinate"), ("mesh_cycle", "contact")
-        data: dict[str, Any] = {
-            "position": (coordinate, self.position, {"units": "m or rad"}),
-            "velocity": (coordinate, self.velocity, {"units": "m/s or rad/s"}),
-            "deflection": (contact, self.deflection, {"units": "m"}),
-        }
-        attributes = {
-            "mesh_frequency": self.mesh_frequency,
-            "period": self.period,
-            "verdict": self.verdict,
-        }
-        return xarray.Dataset(data, {"coordinate": list(self.names)}, attributes)
-
-    def plot(self, coordinate: int | str = 0) -> Any:
+    def plot(self, coordinate: int | str = 0, **options: Any) -> Any:
         """Draw the points of one coordinate in its phase plane.
 
         Parameters
         ----------
         coordinate : int or str
             Number or name of the coordinate.
+        **options
+            None are known.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        from tribodyn.plot import FIGURES
+        return draw(self, coordinate=coordinate, **options)
 
-        draw: Any = FIGURES["poincare"]
-        return draw(self, coordinate=coordinate)
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        parts.coordinates["coordinate"] = list(self.names)
+        return parts
 
 
 def poincare(

@@ -6,51 +6,31 @@ Figures are looked up by name in :data:`FIGURES`. Plotly is loaded when the firs
 from __future__ import annotations
 
 from tribodyn.drawing import FIGURES, Drawing, drawing
-from tribodyn.plot.acceleration import acceleration
-from tribodyn.plot.basins import basins
-from tribodyn.plot.bearing_force import bearing_force
-from tribodyn.plot.bearing_spectrum import bearing_spectrum
-from tribodyn.plot.bifurcation import bifurcation
-from tribodyn.plot.campbell import campbell
-from tribodyn.plot.comprehensive_stiffness import comprehensive_stiffness
-from tribodyn.plot.continuation import continuation
-from tribodyn.plot.film import film
-from tribodyn.plot.film_along_path import film_along_path, film_over_time
-from tribodyn.plot.film_comparison import compare_line_contacts
-from tribodyn.plot.film_dynamics import film_response, film_transient
-from tribodyn.plot.film_pressure import film_pressure
-from tribodyn.plot.film_stiffness import film_stiffness
-from tribodyn.plot.flank_modification import flank_modification
-from tribodyn.plot.force_law import force_law
-from tribodyn.plot.forced_response import forced_response
-from tribodyn.plot.friction import friction
-from tribodyn.plot.gear_pair import gear_pair
-from tribodyn.plot.harris_map import harris_map
-from tribodyn.plot.line_contact import line_contact
-from tribodyn.plot.load_sharing import load_sharing
-from tribodyn.plot.loaded_contact import loaded_contact
-from tribodyn.plot.loaded_sharing import loaded_sharing
-from tribodyn.plot.lyapunov import lyapunov
-from tribodyn.plot.mesh_deformation import mesh_deformation
-from tribodyn.plot.mesh_force import mesh_force
-from tribodyn.plot.mesh_stiffness import mesh_stiffness
-from tribodyn.plot.mode_shapes import mode_shapes
-from tribodyn.plot.order_map import order_map
-from tribodyn.plot.parameter_map import parameter_map
-from tribodyn.plot.path_of_contact import path_of_contact
-from tribodyn.plot.phase_portrait import phase_portrait
-from tribodyn.plot.poincare import poincare
-from tribodyn.plot.run_up import run_up
-from tribodyn.plot.run_up_map import run_up_map
-from tribodyn.plot.spectrogram import spectrogram
-from tribodyn.plot.spectrum import spectrum
-from tribodyn.plot.speed_sweep import speed_sweep
-from tribodyn.plot.static_stiffness import static_stiffness
-from tribodyn.plot.static_transmission_error import static_transmission_error
-from tribodyn.plot.sweep import sweep
-from tribodyn.plot.tip_relief_map import tip_relief_map
-from tribodyn.plot.transmission_error import transmission_error
-from tribodyn.plot.waterfall import waterfall
+from tribodyn.plot.film.animation import film_along_path, film_over_time
+from tribodyn.plot.film.dynamics import film_response, film_transient
+from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
+from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
+from tribodyn.plot.gear.flank_modification import flank_modification
+from tribodyn.plot.gear.gear_pair import gear_pair
+from tribodyn.plot.gear.mesh_deformation import mesh_deformation
+from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
+from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
+from tribodyn.plot.mesh.table import (
+    force_law,
+    load_sharing,
+    mesh_stiffness,
+    static_stiffness,
+    static_transmission_error,
+)
+from tribodyn.plot.motion.courses import acceleration, bearing_force, mesh_force, transmission_error
+from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
+from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
+from tribodyn.plot.motion.sweeps import speed_sweep, sweep
+from tribodyn.plot.nonlinear.branches import bifurcation, continuation
+from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
+from tribodyn.plot.nonlinear.planes import basins, parameter_map
+from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
+from tribodyn.plot.signals.run_up import run_up, run_up_map
 
 __all__ = [
     "FIGURES",

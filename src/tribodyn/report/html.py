@@ -11,6 +11,7 @@ from tribodyn.report.blocks import Block, figure_blocks
 from tribodyn.report.friction_loop import compared_friction
 from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
+from tribodyn.reporting import report_of
 from tribodyn.study.save import write_file
 
 _HERE = Path(__file__).parent
@@ -94,6 +95,7 @@ def _lines(citations: Any) -> list[str]:
     return citations.splitlines() if isinstance(citations, str) else [str(c) for c in citations]
 
 
+@report_of("Result")
 def write_report(result: Any, path: str | os.PathLike[str]) -> Path:
     """Write the report of a result to a file.
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.plot.labels import readable
+from tribodyn.plot.look.labels import readable
 from tribodyn.study.summary_names import SUMMARY
 from tribodyn.units import convert
 

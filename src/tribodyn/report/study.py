@@ -12,6 +12,7 @@ from tribodyn.report.blocks import Block, script_json
 from tribodyn.report.html import plotly_script, template, text_of
 from tribodyn.report.numbers import in_words
 from tribodyn.report.origin import operating_point, provenance, version
+from tribodyn.reporting import report_of
 from tribodyn.study.provenance import assumptions
 from tribodyn.study.save import write_file
 from tribodyn.study.summary_names import SUMMARY
@@ -29,6 +30,7 @@ SWEEP_FIGURES = (
 _ROWS = 400
 
 
+@report_of("Sweep")
 def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
     """Write the figures and the table of a sweep to a file.
 

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from tribodyn.dynamics.response import FineSamples, Response
 from tribodyn.errors import InputError, Problem
+from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, ComplexArray
-
-if TYPE_CHECKING:
-    import xarray
 
 
 def mesh_harmonics(
@@ -68,8 +63,8 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
     return np.asarray(2.0 * np.tensordot(turns, signal, axes=(1, 0)))
 
 
-@dataclass(frozen=True)
-class Spectrum:
+@record
+class Spectrum(Record):
     """Single-sided amplitude spectrum.
 
     Parameters
@@ -84,9 +79,11 @@ class Spectrum:
         Unit of the signal.
     """
 
-    frequency: Array
-    order: Array
-    amplitude: Array
+    ARRAY = "amplitude"
+
+    frequency: Array = quantity("frequency", unit="Hz", axis=True)
+    order: Array = quantity("frequency", unit="1", axis=True)
+    amplitude: Array = quantity("frequency", unit="@unit")
     unit: str = ""
 
     def __repr__(self) -> str:
@@ -97,25 +94,8 @@ class Spectrum:
             f"{self.amplitude[top]:.4g} {self.unit} at {self.frequency[top]:.6g} Hz)"
         )
 
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over frequency.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.amplitude,
-            coords={
-                "frequency": ("frequency", self.frequency, {"units": "Hz"}),
-                "order": ("frequency", self.order, {"units": "1"}),
-            },
-            dims="frequency",
-            name="amplitude",
-            attrs={"units": self.unit},
-        )
+    def _units(self, unit: str | None) -> dict[str, str]:
+        return {"units": self.unit} if unit == "@unit" else super()._units(unit)
 
 
 def amplitude_spectrum(

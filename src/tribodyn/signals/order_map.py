@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import angular_resampling, shaft_rotation
 from tribodyn.signals.recorded_signal import checked_rising, checked_signal, window_values
 from tribodyn.signals.spectrum import window_gain
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
 def order_map(
@@ -124,8 +125,8 @@ def order_map(
     )
 
 
-@dataclass(frozen=True)
-class OrderCut:
+@record
+class OrderCut(Record):
     """Amplitude of one order over the speed.
 
     Parameters
@@ -140,9 +141,11 @@ class OrderCut:
         Unit of the signal.
     """
 
-    order: float
-    speed: Array
-    amplitude: Array
+    ARRAY = "amplitude"
+
+    order: float = fact()
+    speed: Array = quantity("block", unit="rad/s", axis=True)
+    amplitude: Array = quantity("block", unit="@unit")
     unit: str = ""
 
     def __repr__(self) -> str:
@@ -153,26 +156,9 @@ class OrderCut:
             f"{self.speed[top]:.5g} rad/s)"
         ).replace("  ", " ")
 
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over the blocks, with their speed.
 
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.amplitude,
-            coords={"speed": ("block", self.speed, {"units": "rad/s"})},
-            dims="block",
-            name="amplitude",
-            attrs={"units": self.unit or "1", "order": self.order},
-        )
-
-
-@dataclass(frozen=True)
-class OrderMap:
+@record
+class OrderMap(Record):
     """Amplitude over order and speed.
 
     Parameters
@@ -193,11 +179,13 @@ class OrderMap:
         Unit of the signal.
     """
 
-    order: Array
-    speed: Array
-    time: Array
-    amplitude: Array
-    revolutions: float
+    ARRAY = "amplitude"
+
+    order: Array = quantity("order", unit="1", axis=True)
+    speed: Array = quantity("block", unit="rad/s", axis=True)
+    time: Array = quantity("block", unit="s", axis=True)
+    amplitude: Array = quantity("order", "block", unit="@unit")
+    revolutions: float = fact()
     window: str = "hann"
     unit: str = ""
 
@@ -257,38 +245,6 @@ class OrderMap:
         loss = 1.0 if abs(away) < 1e-9 else float(np.interp(-away, offset, np.abs(gain)))
         return OrderCut(float(order), self.speed, self.amplitude[line] / loss, self.unit)
 
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over order and block.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.amplitude,
-            coords={
-                "order": ("order", self.order, {"units": "1"}),
-                "speed": ("block", self.speed, {"units": "rad/s"}),
-                "time": ("block", self.time, {"units": "s"}),
-            },
-            dims=("order", "block"),
-            name="amplitude",
-            attrs={"units": self.unit or "1", "revolutions": self.revolutions},
-        )
-
-    def plot(self) -> Any:
-        """Draw amplitude over order and speed.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["order_map"](self)
-
     def plot_waterfall(self) -> Any:
         """Draw the order spectra one behind the other.
 
@@ -296,6 +252,4 @@ class OrderMap:
         -------
         plotly.graph_objects.Figure
         """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["waterfall"](self)
+        return draw(self, "waterfall")

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.record import Record, quantity, record
 from tribodyn.signals.order_map import OrderCut, OrderMap
 from tribodyn.signals.recorded_signal import window_values
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
 Part = Literal["all", "up", "down"]
@@ -23,8 +23,8 @@ Part = Literal["all", "up", "down"]
 _SHORT, _LONG = 4, 64
 
 
-@dataclass(frozen=True)
-class OverallLevel:
+@record
+class OverallLevel(Record):
     """Alternating rms of a signal over the speed.
 
     Parameters
@@ -39,9 +39,11 @@ class OverallLevel:
         Unit of the signal.
     """
 
-    time: Array
-    speed: Array
-    rms: Array
+    ARRAY = "rms"
+
+    time: Array = quantity("block", unit="s", axis=True)
+    speed: Array = quantity("block", unit="rad/s", axis=True)
+    rms: Array = quantity("block", unit="@unit")
     unit: str = ""
 
     def __repr__(self) -> str:
@@ -51,26 +53,6 @@ class OverallLevel:
             f"OverallLevel({self.speed.size} blocks, largest {self.rms[top]:.4g} {self.unit} at "
             f"{self.speed[top]:.5g} rad/s)"
         ).replace("  ", " ")
-
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over the blocks.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.rms,
-            coords={
-                "time": ("block", self.time, {"units": "s"}),
-                "speed": ("block", self.speed, {"units": "rad/s"}),
-            },
-            dims="block",
-            name="rms",
-            attrs={"units": self.unit or "1"},
-        )
 
 
 def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, InputError, Problem, require_positive
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
 #: Points over one period of the modulation.
 _POINTS = 1024
 
 
-@dataclass(frozen=True)
-class Sidebands:
+@record
+class Sidebands(Record):
     """Lines around a carrier, and what modulates it.
 
     Parameters
@@ -46,14 +46,16 @@ class Sidebands:
         Unit of the signal.
     """
 
+    ARRAY = "amplitude"
+
     carrier: float
     modulation: float
-    number: NDArray[np.int_]
-    frequency: Array
-    amplitude: Array
+    number: NDArray[np.int_] = quantity("number", axis=True)
+    frequency: Array = quantity("number", unit="Hz", axis=True)
+    amplitude: Array = quantity("number", unit="@unit")
     phase: Array
-    amplitude_modulation: float
-    phase_modulation: float
+    amplitude_modulation: float = fact()
+    phase_modulation: float = fact()
     unit: str = ""
 
     def __repr__(self) -> str:
@@ -74,30 +76,6 @@ class Sidebands:
         """Sum of the amplitudes of all sidebands over that of the carrier [-]."""
         carrier = self.amplitude[self.number == 0]
         return float(self.amplitude[self.number != 0].sum() / carrier[0])
-
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over the number of the line.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.amplitude,
-            coords={
-                "number": ("number", self.number),
-                "frequency": ("number", self.frequency, {"units": "Hz"}),
-            },
-            dims="number",
-            name="amplitude",
-            attrs={
-                "units": self.unit or "1",
-                "amplitude_modulation": self.amplitude_modulation,
-                "phase_modulation": self.phase_modulation,
-            },
-        )
 
 
 def sidebands(

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.errors import require_between, require_positive
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.recorded_signal import checked_signal, window_values
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
-@dataclass(frozen=True)
-class Spectrogram:
+@record
+class Spectrogram(Record):
     """Amplitude over frequency and time.
 
     Parameters
@@ -37,10 +37,12 @@ class Spectrogram:
         Unit of the signal.
     """
 
-    frequency: Array
-    time: Array
-    amplitude: Array
-    block_duration: float
+    ARRAY = "amplitude"
+
+    frequency: Array = quantity("frequency", unit="Hz", axis=True)
+    time: Array = quantity("time", unit="s", axis=True)
+    amplitude: Array = quantity("frequency", "time", unit="@unit")
+    block_duration: float = fact()
     sampling_rate: float
     noise_bandwidth: float
     unit: str = ""
@@ -79,37 +81,6 @@ class Spectrogram:
         if np.isclose(self.frequency[-1], 0.5 * self.sampling_rate, rtol=1e-9):
             square[-1] *= 2.0
         return np.asarray(np.sqrt(square.sum(axis=0) * self.frequency[1] / self.noise_bandwidth))
-
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over frequency and time.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.amplitude,
-            coords={
-                "frequency": ("frequency", self.frequency, {"units": "Hz"}),
-                "time": ("time", self.time, {"units": "s"}),
-            },
-            dims=("frequency", "time"),
-            name="amplitude",
-            attrs={"units": self.unit or "1", "block_duration": self.block_duration},
-        )
-
-    def plot(self) -> Any:
-        """Draw amplitude over frequency and time.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["spectrogram"](self)
 
 
 def spectrogram(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.recorded_signal import (
     checked_signal,
     refuse_above_half,
@@ -17,7 +18,7 @@ from tribodyn.signals.recorded_signal import (
 from tribodyn.types import Array, ComplexArray, Mask
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 _SCALINGS = ("amplitude", "power", "density")
 #: Long windows have the transform of this one, as a function of the distance in bins.
@@ -207,8 +208,8 @@ def interpolated_peaks(
     return peaks
 
 
-@dataclass(frozen=True)
-class SignalSpectrum:
+@record
+class SignalSpectrum(Record):
     """Single-sided spectrum of a recorded signal.
 
     Parameters
@@ -233,13 +234,15 @@ class SignalSpectrum:
         Unit of the signal.
     """
 
-    frequency: Array
-    amplitude: Array
+    ARRAY = "amplitude"
+
+    frequency: Array = quantity("frequency", unit="Hz", axis=True)
+    amplitude: Array = quantity("frequency", unit="@value_unit")
     phase: Array | None = None
     scaling: str = "amplitude"
-    window: str = "boxcar"
-    noise_bandwidth: float = 0.0
-    averages: int = 1
+    window: str = fact(default="boxcar")
+    noise_bandwidth: float = fact(default=0.0)
+    averages: int = fact(default=1)
     window_length: int = 0
     unit: str = ""
 
@@ -296,27 +299,8 @@ class SignalSpectrum:
             self.frequency, self.amplitude, self.phase, self.window, self.window_length, count
         )
 
-    def to_xarray(self) -> xarray.DataArray:
-        """Return as :class:`xarray.DataArray` over frequency.
-
-        Returns
-        -------
-        xarray.DataArray
-        """
-        import xarray
-
-        return xarray.DataArray(
-            self.amplitude,
-            coords={"frequency": ("frequency", self.frequency, {"units": "Hz"})},
-            dims="frequency",
-            name=self.scaling,
-            attrs={
-                "units": self.value_unit or "1",
-                "window": self.window,
-                "noise_bandwidth": self.noise_bandwidth,
-                "averages": self.averages,
-            },
-        )
+    def _array_name(self) -> str:
+        return self.scaling
 
 
 def zoom_spectrum(

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import ComputationError, InputError, Problem, require_positive
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import angular_resampling, shaft_rotation
 from tribodyn.signals.recorded_signal import checked_rising, checked_signal
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 
-@dataclass(frozen=True)
-class SynchronousAverage:
+@record
+class SynchronousAverage(Record):
     """Mean revolution of a shaft.
 
     Parameters
@@ -37,11 +38,11 @@ class SynchronousAverage:
         Unit of the signal.
     """
 
-    angle: Array
-    signal: Array
-    scatter: Array
-    revolutions: int
-    teeth: int
+    angle: Array = quantity("angle", unit="rad", axis=True)
+    signal: Array = quantity("angle", unit="@unit")
+    scatter: Array = quantity("angle", unit="@unit")
+    revolutions: int = fact()
+    teeth: int = fact()
     unit: str = ""
 
     def __repr__(self) -> str:
@@ -112,26 +113,11 @@ class SynchronousAverage:
             lines[max(mesh - beside, 0) : mesh + beside + 1] = 0.0
         return np.asarray(np.fft.irfft(lines, self.signal.size))
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return as :class:`xarray.Dataset` over the angle.
-
-        Returns
-        -------
-        xarray.Dataset
-        """
-        import xarray
-
-        units = {"units": self.unit or "1"}
-        return xarray.Dataset(
-            {
-                "signal": ("angle", self.signal, units),
-                "scatter": ("angle", self.scatter, units),
-                "residual": ("angle", self.residual(), units),
-                "difference": ("angle", self.difference(), units),
-            },
-            coords={"angle": ("angle", self.angle, {"units": "rad"})},
-            attrs={"revolutions": self.revolutions, "teeth": self.teeth},
-        )
+    def _parts(self) -> Parts:
+        parts, units = super()._parts(), self._units("@unit")
+        parts.variables["residual"] = ("angle", self.residual(), units)
+        parts.variables["difference"] = ("angle", self.difference(), units)
+        return parts
 
 
 def time_synchronous_average(

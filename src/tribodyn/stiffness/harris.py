@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.drawing import draw
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded import loaded_contact
@@ -121,10 +122,7 @@ class HarrisMap:
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["harris_map"](self)
+        return draw(self)
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.gear import SpurPair
 from tribodyn.types import Array
 
@@ -123,10 +124,7 @@ class TipReliefOptimum:
         -------
         plotly.graph_objects.Figure
         """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["tip_relief_map"](self)
+        return draw(self)
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

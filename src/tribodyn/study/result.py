@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from tribodyn.drawing import FIGURES, draw, figures_of
+from tribodyn.record import Parts, Record, record
+from tribodyn.reporting import write_report_of
 from tribodyn.study.assembly import static_error
 from tribodyn.study.provenance import Assumption, assumptions
 from tribodyn.study.save import new_directory
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
-
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
     from tribodyn.mesh import MeshFriction, MeshTable
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 _PLOT = "plot_"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Result:
+@record
+class Result(Record):
     """What :func:`tribodyn.run` returns.
 
-    Every figure of :data:`tribodyn.plot.FIGURES` is a method: ``result.plot_mesh_force()``.
+    Every figure that draws a run is a method: ``result.plot_mesh_force()``.
 
     Parameters
     ----------
@@ -114,18 +114,12 @@ class Result:
 
         return loaded_contact(self.case)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the motion as a labelled data set.
-
-        Returns
-        -------
-        xarray.Dataset
-            Series over time with units, among them ``mesh_force``, the force of all ramps of a
-            force law together; the summary as attributes.
-        """
-        force = self.response.contact_force.sum(axis=1)
-        motion = self.response.to_xarray().assign(mesh_force=("time", force, {"units": "N"}))
-        return motion.assign_attrs({"title": self.case.title, **self._summary})
+    def _parts(self) -> Parts:
+        """Parts of the motion with the force of all ramps of a force law, and the summary."""
+        motion: Any = self.response.to_xarray()
+        force = ("time", self.response.contact_force.sum(axis=1), {"units": "N"})
+        facts = {**motion.attrs, "title": self.case.title, **self._summary}
+        return Parts({**motion.data_vars, "mesh_force": force}, dict(motion.coords), facts)
 
     def cite(self, style: str = "text") -> str:
         """Name the papers behind this result.
@@ -172,15 +166,13 @@ class Result:
         InputError
             If the place cannot be written to.
         """
-        from tribodyn.report import write_report
-
         target = Path(directory)
         with new_directory(target, force=force) as place:
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
             (place / "summary.json").write_text(_json(self._summary), encoding="utf-8")
             self.mesh.save(place / "mesh.nc")
             self.to_xarray().to_netcdf(place / "response.nc", engine="h5netcdf")
-            write_report(self, place / "report.html")
+            write_report_of(self, place / "report.html")
         return target
 
     def __reduce__(self) -> NoReturn:
@@ -188,22 +180,21 @@ class Result:
         raise TypeError("a Result cannot be pickled; keep it with save(), or pass its case")
 
     def __getattr__(self, name: str) -> Any:
-        """Find ``plot_<name>`` among the figures."""
+        """Find ``plot_<name>`` among the figures that draw a run."""
         if not name.startswith(_PLOT):
             raise AttributeError(f"Result has no attribute {name!r}")
-        from tribodyn.plot import FIGURES
-
-        figure = name.removeprefix(_PLOT)
-        if figure not in FIGURES:
-            known = ", ".join(f"{_PLOT}{each}" for each in FIGURES)
-            raise AttributeError(f"Result has no figure {name!r}; it has {known}")
-        return lambda: FIGURES[figure](self)
+        figure, known = name.removeprefix(_PLOT), figures_of(self)
+        if figure in known:
+            return partial(draw, self, figure)
+        if figure in FIGURES:
+            other: Any = FIGURES[figure]
+            raise AttributeError(f"Result has no {name}. {other.missing(self)}")
+        listed = ", ".join(f"{_PLOT}{each}" for each in known)
+        raise AttributeError(f"Result has no figure {name!r}; it has {listed}")
 
     def __dir__(self) -> list[str]:
         """Attributes and figures."""
-        from tribodyn.plot import FIGURES
-
-        return sorted({*super().__dir__(), *(f"{_PLOT}{name}" for name in FIGURES)})
+        return sorted({*super().__dir__(), *(f"{_PLOT}{name}" for name in figures_of(self))})
 
     def __repr__(self) -> str:
         """One line."""

@@ -13,15 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.drawing import draw
 from tribodyn.errors import InputError, Problem
+from tribodyn.record import Parts, Record, record
+from tribodyn.reporting import write_report_of
 from tribodyn.study.axes import Axis
 from tribodyn.study.save import new_directory
 from tribodyn.study.summary_names import SUMMARY
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
-
     from tribodyn.study.case import Case
 
 
@@ -39,8 +40,8 @@ class SweepPoint:
     warned: tuple[str, ...] = ()  #: codes of the warnings of the models
 
 
-@dataclass(frozen=True, repr=False)
-class Sweep:
+@record
+class Sweep(Record):
     """What :func:`tribodyn.sweep` returns; ``sweep["rms_mesh_force"]`` is one figure as an array.
 
     Parameters
@@ -116,19 +117,9 @@ class Sweep:
             yield {**dict(keys), **figures, "failed": point.failed,
                    "warnings": " ".join(dict.fromkeys(point.warned))}  # fmt: skip
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the figures as a labelled data set.
-
-        Returns
-        -------
-        xarray.Dataset
-            One dimension for each key, called like its last part; ``failed`` says why a value has
-            no figures.
-        """
-        import xarray
-
+    def _parts(self) -> Parts:
         names = self._dimensions()
-        coords = {
+        axes: dict[str, Any] = {
             name: (name, np.array(axis.values), {"units": axis.unit or "1", "key": axis.key})
             for name, axis in zip(names, self.axes, strict=True)
         }
@@ -142,7 +133,7 @@ class Sweep:
         warned += [""] * (prod(self.shape) - len(warned))
         data["failed"] = (names, self.failed.astype(object))
         data["warnings"] = (names, np.array(warned, dtype=object).reshape(self.shape))
-        return xarray.Dataset(data, coords, {"title": self.case.title})
+        return Parts(data, axes, {"title": self.case.title})
 
     def _dimensions(self) -> list[str]:
         short = [axis.name for axis in self.axes]
@@ -150,21 +141,21 @@ class Sweep:
         alone = len(taken) == len(short) + len(self.figures)
         return short if alone else [axis.key.replace(".", "_") for axis in self.axes]
 
-    def plot(self, figure: str = "rms_mesh_force") -> Any:
+    def plot(self, figure: str = "rms_mesh_force", **options: Any) -> Any:
         """Draw one figure of the summary over the keys.
 
         Parameters
         ----------
         figure : str
             Name in the summary.
+        **options
+            None are known.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["sweep"](self, figure=figure)  # type: ignore[call-arg]
+        return draw(self, figure=figure, **options)
 
     def to_csv(self) -> str:
         """Write what is done as comma-separated values in SI.
@@ -211,12 +202,10 @@ class Sweep:
         InputError
             If the place cannot be written to.
         """
-        from tribodyn.report import write_sweep_report
-
         target = Path(directory)
         with new_directory(target, force=force) as place:
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
             (place / "sweep.csv").write_text(self.to_csv(), encoding="utf-8")
             self.to_xarray().to_netcdf(place / "sweep.nc", engine="h5netcdf")
-            write_sweep_report(self, place / "report.html")
+            write_report_of(self, place / "report.html")
         return target

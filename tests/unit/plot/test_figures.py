@@ -48,9 +48,11 @@ OTHERS = {
     "comprehensive_stiffness",
     "continuation",
     "film_pressure",
+    "film_transient",
     "flank_modification",
     "forced_response",
     "harris_map",
+    "line_contact",
     "loaded_contact",
     "loaded_sharing",
     "lyapunov",
@@ -320,8 +322,12 @@ def test_negative_force_is_explained(drawable: Any) -> None:
     assert FIGURES["mesh_force"](result).layout.yaxis.rangemode == "tozero"
 
 
+class MeshTable(SimpleNamespace):
+    """Stand-in of that name."""
+
+
 def test_captions_follow_the_contact_ratio(drawable: Any) -> None:
-    shared = SimpleNamespace(mesh=SimpleNamespace(transverse_contact_ratio=2.2))
+    shared = MeshTable(transverse_contact_ratio=2.2)
     for name in ("friction", "path_of_contact"):
         assert "one carries it alone" in caption(name, drawable())
         assert "Two or three pairs" in caption(name, shared)

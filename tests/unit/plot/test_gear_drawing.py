@@ -9,7 +9,12 @@ import pytest
 from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
-from tribodyn.plot.gear_drawing import circle, on_line_of_action, placed_outline, tooth_angles
+from tribodyn.plot.gear.outlines import (
+    circle,
+    on_line_of_action,
+    placed_outline,
+    tooth_angles,
+)
 
 Points = NDArray[np.float64]
 

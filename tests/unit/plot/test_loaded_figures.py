@@ -13,9 +13,8 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, spur_pair
 from tribodyn.plot import FIGURES, Drawing
-from tribodyn.plot.deformed_mesh import bent_mesh, loads_at
-from tribodyn.plot.gear_drawing import on_line_of_action
-from tribodyn.plot.loaded_life import Life, roll_angle_of, span
+from tribodyn.plot.gear.outlines import bent_mesh, loads_at, on_line_of_action
+from tribodyn.plot.mesh.loaded_contact import Life, roll_angle_of, span
 from tribodyn.stiffness import loaded_contact
 
 STUDIES = ("loaded_contact", "loaded_sharing", "mesh_deformation", "harris_map", "tip_relief_map")
@@ -184,9 +183,21 @@ def test_a_run_has_no_such_figure_and_says_which_call_has(drawable: Any, name: s
         FIGURES[name](drawable())
 
 
-def study(**more: Any) -> Any:
+class HarrisMap(SimpleNamespace):
+    """Stand-in of that name."""
+
+
+class TipReliefOptimum(SimpleNamespace):
+    """Stand-in of that name."""
+
+
+class ComprehensiveStiffness(SimpleNamespace):
+    """Stand-in of that name."""
+
+
+def study(kind: type[Any], **more: Any) -> Any:
     contact = loaded([50.0, 100.0, 150.0])
-    return SimpleNamespace(gear_pair=contact.gear_pair, torque=contact.torque, **more)
+    return kind(gear_pair=contact.gear_pair, torque=contact.torque, **more)
 
 
 def test_harris_map_shows_each_torque_and_the_quietest() -> None:
@@ -195,6 +206,7 @@ def test_harris_map_shows_each_torque_and_the_quietest() -> None:
     error = 10e-6 + swing[:, None] * np.array([0.0, 1.0, 0.0, 0.0])
     figure = FIGURES["harris_map"](
         study(
+            HarrisMap,
             phase=phase,
             mesh_cycles=1,
             transmission_error=error,
@@ -235,7 +247,7 @@ def relief(**more: Any) -> Any:
         "transmission_error_before": flat,
         "transmission_error_after": 2.0 * flat,
     }
-    return study(**{**given, **more})
+    return study(TipReliefOptimum, **{**given, **more})
 
 
 def test_tip_relief_map_has_amount_across_and_length_upwards() -> None:
@@ -280,7 +292,7 @@ def test_film_and_teeth_have_a_curve_for_each_point(
     shape = (len(torques), len(speeds), 3)
     size = np.arange(np.prod(shape), dtype=float).reshape(shape)
     figure = FIGURES["comprehensive_stiffness"](
-        SimpleNamespace(
+        ComprehensiveStiffness(
             gear_pair=loaded(90.0).gear_pair,
             kind="tangent",
             pinion_torque=np.array(torques),

@@ -78,5 +78,5 @@ def test_exponents_end_at_their_result():
     "name", ["basins", "parameter_map", "poincare", "phase_portrait", "lyapunov"]
 )
 def test_other_results_are_refused(name):
-    with pytest.raises(InputError, match="This figure shows"):
+    with pytest.raises(InputError, match="This figure draws"):
         FIGURES[name](object())

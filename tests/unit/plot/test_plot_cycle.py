@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tribodyn.contact import path_of_contact
-from tribodyn.plot.cycle import (
+from tribodyn.plot.mesh.cycle import (
     CYCLES,
     cycles,
     driving_roll_angle,

@@ -21,10 +21,18 @@ from tribodyn.plot import (
     film_transient,
     line_contact,
 )
-from tribodyn.plot.contact_scales import thinned
+from tribodyn.plot.film.line_contact import thinned
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)
 LOADS = (49267.5, 147802.0, 295604.0)  # N/m
+
+
+class LineContactSolution(SimpleNamespace):
+    """Stand-in of that name."""
+
+
+class TransientLineContact(SimpleNamespace):
+    """Stand-in of that name."""
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +113,7 @@ def test_dimensionless_form(contacts: list[Any], bare: Any) -> None:
 
 
 def test_a_pressure_without_spike_has_no_mark(bare: Any) -> None:
-    smooth = SimpleNamespace(
+    smooth = LineContactSolution(
         **{name: getattr(bare, name) for name in ("position", "pressure", "film", "central_film")},
         **{name: getattr(bare, name) for name in ("minimum_film", "hertz_pressure", "half_width")},
         **{name: getattr(bare, name) for name in ("film_unit", "outlet", "lubricant")},
@@ -252,7 +260,7 @@ def transient(impose: str = "load") -> Any:
     position = np.linspace(-4e-4, 2e-4, 61)
     pressure = 1e9 * np.sqrt(np.maximum(1.0 - (position / 1e-4) ** 2, 0.0))
     film = 1e-6 + np.maximum(np.abs(position) - 1e-4, 0.0) ** 2 / 16e-3
-    return SimpleNamespace(
+    return TransientLineContact(
         time=time,
         central_film=1e-6 - 1e-4 * time,
         minimum_film=0.9e-6 - 1e-4 * time,

@@ -6,8 +6,8 @@ import itertools
 
 import pytest
 
-from tribodyn.plot.events import event_lines
-from tribodyn.plot.style import INK, Panel, line, stack
+from tribodyn.plot.look.panels import Panel, event_lines, stack
+from tribodyn.plot.look.style import INK, line
 
 
 def curves(count: int) -> list[dict[str, object]]:

@@ -6,11 +6,9 @@ import pytest
 from tribodyn.analysis import Spectrogram, order_map, spectrogram
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES
-from tribodyn.plot.order_map import order_map as draw_order_map
-from tribodyn.plot.order_map import strongest_orders
-from tribodyn.plot.spectrogram import amplitude_heatmap
-from tribodyn.plot.spectrogram import spectrogram as draw_spectrogram
-from tribodyn.plot.waterfall import waterfall
+from tribodyn.plot.signals.maps import amplitude_heatmap, strongest_orders, waterfall
+from tribodyn.plot.signals.maps import order_map as draw_order_map
+from tribodyn.plot.signals.maps import spectrogram as draw_spectrogram
 
 RATE = 2000.0
 TIME = np.arange(8001) / RATE

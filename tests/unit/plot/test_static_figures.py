@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,8 +13,8 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, SpurPair, spur_pair
 from tribodyn.plot import FIGURES, Drawing, flank_modification
-from tribodyn.plot.load_sharing import whole_life
-from tribodyn.plot.loaded_life import pair_letters, roll_angle_of
+from tribodyn.plot.mesh.loaded_contact import pair_letters, roll_angle_of
+from tribodyn.plot.mesh.table import whole_life
 
 
 @pytest.fixture(scope="module")
@@ -83,8 +82,8 @@ def test_tip_corners_extend_the_life_of_a_pair(result: Any) -> None:
     ratio = mesh.transverse_contact_ratio
     corner[mesh.phase > 0.95, 0] = 0.1
     corner[(mesh.phase > ratio - 1.0) & (mesh.phase < ratio - 0.9), 1] = 0.2
-    changed = SimpleNamespace(mesh=replace(mesh, corner_share=corner), case=result.case)
-    age, share = whole_life(changed.mesh)
+    changed = replace(mesh, corner_share=corner)
+    age, share = whole_life(changed)
     assert np.all(np.diff(age) >= 0.0)
     assert -0.05 < age[0] < -0.03
     assert ratio + 0.08 < age[-1] < ratio + 0.1
@@ -143,7 +142,7 @@ def test_perfect_flanks_are_told_instead_of_drawn(result: Any) -> None:
 @pytest.mark.parametrize(("driver", "end"), [("pinion", -1), ("wheel", 0)])
 def test_tip_relief_of_the_pinion_lies_where_its_tip_touches(driver: str, end: int) -> None:
     pair = pair_with(driver, pinion_modification=FlankModification(tip_relief=12e-6))
-    figure = flank_modification(SimpleNamespace(gear_pair=pair))
+    figure = flank_modification(pair)
     pinion, wheel, both = (curve(figure, name) for name in ("pinion", "wheel", "both"))
     assert pinion.y[end] == pytest.approx(12.0)
     assert pinion.y[-1 - end] == pytest.approx(0.0)
@@ -160,7 +159,7 @@ def test_lead_pitch_and_run_out_have_panels_of_their_own() -> None:
         wheel_modification=FlankModification(crowning=6e-6, tip_relief=10e-6),
         misalignment=4e-6,
     )
-    figure = flank_modification(SimpleNamespace(gear_pair=pair))
+    figure = flank_modification(pair)
     assert curve(figure, "wheel", "y2").y[[0, 100, 200]] == pytest.approx([6.0, 0.0, 6.0])
     # half of the misalignment at each end of the face
     assert curve(figure, "both", "y2").y[[0, 100, 200]] == pytest.approx([4.0, 0.0, 8.0])
@@ -174,8 +173,8 @@ def test_lead_pitch_and_run_out_have_panels_of_their_own() -> None:
 
 def test_titles_without_a_gap_tell_what_there_is() -> None:
     pitch = FlankModification(cumulative_pitch_deviation=(5e-6,) + (0.0,) * 19)
-    figure = flank_modification(SimpleNamespace(gear_pair=pair_with(pinion_modification=pitch)))
+    figure = flank_modification(pair_with(pinion_modification=pitch))
     assert "5.00 µm" in figure.layout.title.text
     run_out = FlankModification(run_out=8e-6)
-    figure = flank_modification(SimpleNamespace(gear_pair=pair_with(wheel_modification=run_out)))
+    figure = flank_modification(pair_with(wheel_modification=run_out))
     assert figure.layout.title.text == "The toothing runs out by 8.00 µm"

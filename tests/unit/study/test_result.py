@@ -182,6 +182,30 @@ def test_figures_are_methods(result: Any) -> None:
         _ = result.sumary
 
 
+def test_only_figures_of_a_run_are_methods(result: Any) -> None:
+    offered = [name for name in dir(result) if name.startswith("plot_")]
+    assert "plot_film" in offered
+    assert "plot_campbell" not in offered
+    with pytest.raises(
+        AttributeError, match=r"draws a Campbell. Call tribodyn\.dynamics\.campbell"
+    ):
+        _ = result.plot_campbell
+
+
+def test_a_figure_of_somebody_else_is_a_method_too(result: Any) -> None:
+    from tribodyn.drawing import FIGURES, drawing
+
+    @drawing("torque-of-test", heading="Torque", caption="Look.", of="Result")
+    def torque(run: Any, scale: float = 1.0) -> float:
+        return scale * float(run.case.operation.torque)
+
+    try:
+        assert getattr(result, "plot_torque-of-test")(scale=2.0) == torque(result, scale=2.0)
+        assert "plot_torque-of-test" in dir(result)
+    finally:
+        FIGURES._items.pop("torque-of-test")
+
+
 def test_citations_name_the_models(result: Any) -> None:
     assert "Kahraman" in result.cite()
     assert result.cite("bibtex").count("@") == len(result.cite().splitlines())

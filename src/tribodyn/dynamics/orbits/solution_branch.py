@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
 
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray, Mask
-
-if TYPE_CHECKING:
-    import xarray
 
 
 @dataclass(frozen=True)
@@ -48,8 +45,8 @@ class SpecialPoint:
     index: int = 0
 
 
-@dataclass(frozen=True)
-class Branch:
+@record
+class Branch(Record):
     """Periodic orbits joined over a parameter, stable and unstable, in their order.
 
     Parameters
@@ -92,25 +89,25 @@ class Branch:
         Mesh cycles that were marched.
     """
 
-    name: str
-    parameter: Array
-    mesh_frequency: Array
-    period: int
-    position: Array = field(repr=False)
-    velocity: Array = field(repr=False)
+    name: str = fact(name="parameter")
+    parameter: Array = quantity("point", axis=True)
+    mesh_frequency: Array = quantity("point", unit="Hz", axis=True)
+    period: int = fact()
+    position: Array = quantity("point", "coordinate", unit="m or rad")
+    velocity: Array = quantity("point", "coordinate", unit="m/s or rad/s")
     names: tuple[str, ...]
     signals: tuple[str, ...]
-    mean: Array = field(repr=False)
-    rms: Array = field(repr=False)
-    peak_to_peak: Array = field(repr=False)
-    peak_force: Array = field(repr=False)
-    contact_loss: Array = field(repr=False)
-    clearance: Array = field(repr=False)
-    floquet_multipliers: ComplexArray = field(repr=False)
-    stable: Mask = field(repr=False)
-    error: Array = field(repr=False)
+    mean: Array = quantity("point", "signal", unit="m or rad")
+    rms: Array = quantity("point", "signal", unit="m or rad")
+    peak_to_peak: Array = quantity("point", "signal", unit="m or rad")
+    peak_force: Array = quantity("point", "contact", unit="N")
+    contact_loss: Array = quantity("point", "contact", unit="1")
+    clearance: Array = quantity("point", "contact", unit="m")
+    floquet_multipliers: ComplexArray
+    stable: Mask = quantity("point")
+    error: Array = quantity("point", unit="1")
     special_points: tuple[SpecialPoint, ...]
-    ending: str
+    ending: str = fact()
     complete: bool
     cycles_used: int
 
@@ -156,53 +153,13 @@ class Branch:
             + ")"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the branch as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``point``, ``coordinate``, ``signal``, ``contact``, ``multiplier`` and
-            ``special_point``.
-        """
-        import xarray
-
-        state, signal = ("point", "coordinate"), ("point", "signal")
-        contact, multiplier = ("point", "contact"), ("point", "multiplier")
-        special = self.special_points
-        data: dict[str, Any] = {
-            "position": (state, self.position, {"units": "m or rad"}),
-            "velocity": (state, self.velocity, {"units": "m/s or rad/s"}),
-            "mean": (signal, self.mean, {"units": "m or rad"}),
-            "rms": (signal, self.rms, {"units": "m or rad"}),
-            "peak_to_peak": (signal, self.peak_to_peak, {"units": "m or rad"}),
-            "peak_force": (contact, self.peak_force, {"units": "N"}),
-            "contact_loss": (contact, self.contact_loss, {"units": "1"}),
-            "clearance": (contact, self.clearance, {"units": "m"}),
-            "multiplier_real": (multiplier, self.floquet_multipliers.real, {"units": "1"}),
-            "multiplier_imaginary": (multiplier, self.floquet_multipliers.imag, {"units": "1"}),
-            "stable": ("point", self.stable),
-            "error": ("point", self.error, {"units": "1"}),
-            "special_parameter": ("special_point", [point.parameter for point in special]),
-        }
-        coords: dict[str, Any] = {
-            "parameter": ("point", self.parameter),
-            "mesh_frequency": ("point", self.mesh_frequency, {"units": "Hz"}),
-            "coordinate": list(self.names),
-            "signal": list(self.signals),
-            "special_kind": ("special_point", [point.kind for point in special]),
-        }
-        attributes = {"parameter": self.name, "period": self.period, "ending": self.ending}
-        return xarray.Dataset(data, coords, attributes)
-
-    def plot(self) -> Any:
-        """Draw rms and largest multiplier over the parameter.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES["continuation"](self)
+    def _parts(self) -> Parts:
+        variables, coordinates, _ = parts = super()._parts()
+        for kind, values in (("real", self.floquet_multipliers.real),
+                             ("imaginary", self.floquet_multipliers.imag)):  # fmt: skip
+            variables[f"multiplier_{kind}"] = (("point", "multiplier"), values, {"units": "1"})
+        special = "special_point", self.special_points
+        variables["special_parameter"] = (special[0], [point.parameter for point in special[1]])
+        coordinates["special_kind"] = (special[0], [point.kind for point in special[1]])
+        coordinates["coordinate"], coordinates["signal"] = list(self.names), list(self.signals)
+        return parts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
@@ -18,10 +18,11 @@ from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 #: Mesh cycles of the figures of a motion that does not repeat.
 _IRREGULAR = 64
@@ -276,8 +277,8 @@ class Jump:
     period: int
 
 
-@dataclass(frozen=True)
-class SpeedSweep:
+@record
+class SpeedSweep(Record):
     """Steady motions over the speed in both directions.
 
     Parameters
@@ -318,23 +319,23 @@ class SpeedSweep:
         Largest ``omega_max * dt`` [-].
     """
 
-    mesh_frequency: Array
-    teeth: int
+    mesh_frequency: Array = quantity("mesh_frequency", unit="Hz", axis=True)
+    teeth: int = fact()
     directions: tuple[str, ...]
     signals: tuple[str, ...]
     units: tuple[str, ...]
-    mean: Array = field(repr=False)
-    rms: Array = field(repr=False)
-    peak_to_peak: Array = field(repr=False)
-    maximum: Array = field(repr=False)
-    contact_loss: Array = field(repr=False)
-    period: Index = field(repr=False)
-    stable: Mask = field(repr=False)
-    floquet_multipliers: ComplexArray = field(repr=False)
-    error: Array = field(repr=False)
-    position: Array = field(repr=False)
-    velocity: Array = field(repr=False)
-    extra_force: Array = field(repr=False)
+    mean: Array = quantity("direction", "mesh_frequency", "signal")
+    rms: Array = quantity("direction", "mesh_frequency", "signal")
+    peak_to_peak: Array = quantity("direction", "mesh_frequency", "signal")
+    maximum: Array = quantity("direction", "mesh_frequency", "signal")
+    contact_loss: Array = quantity("direction", "mesh_frequency", "contact", unit="1")
+    period: Index = quantity("direction", "mesh_frequency", unit="1")
+    stable: Mask = quantity("direction", "mesh_frequency")
+    floquet_multipliers: ComplexArray
+    error: Array = quantity("direction", "mesh_frequency", unit="1")
+    position: Array = quantity("direction", "mesh_frequency", "coordinate", unit="m or rad")
+    velocity: Array = quantity("direction", "mesh_frequency", "coordinate", unit="m/s or rad/s")
+    extra_force: Array = quantity("direction", "mesh_frequency", "coordinate", unit="N or N*m")
     jumps: tuple[Jump, ...]
     names: tuple[str, ...]
     step_number: float
@@ -395,58 +396,13 @@ class SpeedSweep:
             f"{' and '.join(self.directions)}{': ' if told else ''}{told})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the sweep as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``direction``, ``mesh_frequency``, ``signal``, ``contact``, ``coordinate``
-            and ``multiplier``.
-        """
-        import xarray
-
-        both = ("direction", "mesh_frequency")
-        multipliers = self.floquet_multipliers
-        data: dict[str, Any] = {
-            **{
-                name: ((*both, "signal"), getattr(self, name))
-                for name in ("mean", "rms", "peak_to_peak", "maximum")
-            },
-            "contact_loss": ((*both, "contact"), self.contact_loss, {"units": "1"}),
-            "period": (both, self.period, {"units": "1"}),
-            "stable": (both, self.stable),
-            "error": (both, self.error, {"units": "1"}),
-            "multiplier_real": ((*both, "multiplier"), multipliers.real, {"units": "1"}),
-            "multiplier_imaginary": ((*both, "multiplier"), multipliers.imag, {"units": "1"}),
-            "position": ((*both, "coordinate"), self.position, {"units": "m or rad"}),
-            "velocity": ((*both, "coordinate"), self.velocity, {"units": "m/s or rad/s"}),
-            "extra_force": ((*both, "coordinate"), self.extra_force, {"units": "N or N*m"}),
-        }
-        coords: dict[str, Any] = {
-            "direction": list(self.directions),
-            "mesh_frequency": ("mesh_frequency", self.mesh_frequency, {"units": "Hz"}),
-            "speed": ("mesh_frequency", self.speed, {"units": "rad/s"}),
-            "signal": list(self.signals),
-            "unit": ("signal", list(self.units)),
-            "coordinate": list(self.names),
-        }
-        return xarray.Dataset(data, coords, {"teeth": self.teeth})
-
-    def plot(self, **options: Any) -> Any:
-        """Draw rms and range over the speed.
-
-        Parameters
-        ----------
-        **options : object
-            ``signal``: name of the signal.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        draw: Any = FIGURES["speed_sweep"]
-        return draw(self, **options)
+    def _parts(self) -> Parts:
+        variables, coordinates, _ = parts = super()._parts()
+        both = ("direction", "mesh_frequency", "multiplier")
+        variables["multiplier_real"] = (both, self.floquet_multipliers.real, {"units": "1"})
+        variables["multiplier_imaginary"] = (both, self.floquet_multipliers.imag, {"units": "1"})
+        coordinates["direction"] = list(self.directions)
+        coordinates["speed"] = ("mesh_frequency", self.speed, {"units": "rad/s"})
+        coordinates["signal"], coordinates["coordinate"] = list(self.signals), list(self.names)
+        coordinates["unit"] = ("signal", list(self.units))
+        return parts

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.gear import SpurPair
 from tribodyn.stiffness.loaded.root_loads import RootLoads, root_loads
 from tribodyn.types import Array, Index
@@ -160,7 +161,7 @@ class LoadedContact:
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("loaded_contact")
+        return draw(self, "loaded_contact")
 
     def plot_load_sharing(self) -> Any:
         """Draw the force on a tooth pair over its way through the mesh.
@@ -169,7 +170,7 @@ class LoadedContact:
         -------
         plotly.graph_objects.Figure
         """
-        return self._figure("loaded_sharing")
+        return draw(self, "loaded_sharing")
 
     def plot_deformation(self) -> Any:
         """Draw the teeth in mesh with their deformation enlarged and the forces on them.
@@ -179,13 +180,7 @@ class LoadedContact:
         plotly.graph_objects.Figure
             With a slider over the mesh phase; bodies are those of ``fe2d`` whatever the provider.
         """
-        return self._figure("mesh_deformation")
-
-    def _figure(self, name: str) -> Any:
-        # The one step upward of the layers: a result draws itself.
-        from tribodyn.plot import FIGURES
-
-        return FIGURES[name](self)
+        return draw(self, "mesh_deformation")
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

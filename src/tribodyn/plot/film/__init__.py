@@ -1,0 +1,11 @@
+"""Oil films and friction.
+
+================  ================================================================
+module            what it draws
+================  ================================================================
+``path``          one tooth pair along the path of contact: speeds, friction, film
+``line_contact``  pressure and film of one line contact or several
+``dynamics``      films over time, and against vibrations of any frequency
+``animation``     a contact that moves or changes, with a slider and a play button
+================  ================================================================
+"""

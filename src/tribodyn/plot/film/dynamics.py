@@ -1,0 +1,195 @@
+"""Oil films in motion: over time, and against small vibrations of any frequency."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.drawing import drawing
+from tribodyn.errors import InputError, Problem
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.look.panels import Panel, event_lines, stack
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.ehl import LineContactSolution, TransientLineContact
+
+#: Default frequencies, in transit frequencies, and their number.
+_LOWEST, _HIGHEST, _POINTS = 0.01, 1.0, 81
+#: Change of the stiffness that counts.
+_CHANGE = 0.1
+
+
+def transit_frequency(solution: LineContactSolution) -> float:
+    """Frequency ``u_e/(2 b)`` at which the oil crosses the contact once in a period."""
+    return float(solution.entrainment_speed / (2.0 * solution.half_width))
+
+
+def _frequencies(solution: LineContactSolution, asked: ArrayLike | None) -> Array:
+    if solution.lubricant is None:
+        raise InputError(
+            Problem(
+                what="a contact without units has no frequencies",
+                where="argument solution",
+                why="The numbers of Moes leave speed and size open",
+                remedy="Solve the contact with solve_line_contact",
+            )
+        )
+    if asked is None:
+        spread = np.geomspace(_LOWEST, _HIGHEST, _POINTS)
+        return np.asarray(transit_frequency(solution) * spread)
+    return np.atleast_1d(np.asarray(asked, dtype=float))
+
+
+def _steadfast(frequencies: Array, stiffness: Array, rest: float) -> str:
+    """Say up to which frequency the stiffness is that at rest."""
+    gone = np.flatnonzero(np.abs(stiffness / rest - 1.0) > _CHANGE)
+    words = f"as stiff as at rest within {100 * _CHANGE:.0f} %"
+    if gone.size == 0:
+        return f"The film is {words} up to {_kilohertz(frequencies[-1])} at least"
+    if gone[0] == 0:
+        return f"The film is no more {words} at {_kilohertz(frequencies[0])}"
+    change = np.abs(stiffness[: gone[0] + 1] / rest - 1.0)
+    limit = np.interp(_CHANGE, change[-2:], frequencies[gone[0] - 1 : gone[0] + 1])
+    return f"The film is {words} up to {_kilohertz(limit)}"
+
+
+def _kilohertz(frequency: float) -> str:
+    return f"{significant(1e-3 * float(frequency), 2)} kHz"
+
+
+def film_response(
+    solution: LineContactSolution, frequencies: ArrayLike | None = None, *, length: float = 1.0
+) -> Any:
+    """Draw compliance, stiffness and damping of the film over the frequency of a vibration.
+
+    Parameters
+    ----------
+    solution : LineContactSolution
+        What :func:`tribodyn.ehl.solve_line_contact` returns.
+    frequencies : array, optional [Hz]
+        Frequencies; by default from a hundredth of the transit frequency up to it.
+    length : float [m]
+        Length of the contact line.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        A dotted line marks the transit frequency ``u_e/(2 b)``. Where the stiffness is negative
+        the film moves against the load: its compliance tells more there.
+
+    Raises
+    ------
+    InputError
+        If the contact has no units.
+    """
+    at = np.sort(_frequencies(solution, frequencies))
+    everywhere, damped = solution.frequency_response(np.concatenate(([0.0], at)), length)
+    rest, stiffness, damping = float(everywhere[0]), everywhere[1:], damped[1:]
+    compliance = 1.0 / np.abs(stiffness + 2j * np.pi * at * damping)
+    transit = transit_frequency(solution)
+    inside = int(at[0] <= transit <= at[-1])
+    # On a logarithmic axis annotations stand at the logarithm, shapes at the value.
+    marks = event_lines([("transit", float(displayed("frequency", transit)))] * inside)
+    for note in marks["annotations"]:
+        note["x"] = float(np.log10(note["x"]))
+    logarithmic = {"type": "log", "exponentformat": "power"}
+    crossing = {"zeroline": True, "zerolinecolor": MUTED, "exponentformat": "power"}
+    rows: tuple[tuple[str, str, Any, dict[str, Any]], ...] = (
+        ("compliance", "Compliance", compliance, logarithmic),
+        ("film_stiffness", "Stiffness", stiffness, crossing),
+        ("mesh_damping", "Damping", damping, crossing),
+    )
+    x = displayed("frequency", at)
+    return stack(
+        _steadfast(at, stiffness, rest),
+        axis_label("frequency"),
+        [
+            Panel(
+                axis_label(name, words),
+                [line(x, displayed(name, values), words.lower(), TOTAL, unit=display_unit(name))],
+                axis,
+                height=0.8,
+            )
+            for name, words, values, axis in rows
+        ],
+        {"xaxis": logarithmic, **marks},
+    )
+
+
+def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None) -> list[Trace]:
+    unit = display_unit("film_thickness")
+    rows = [
+        ("in the centre", transient.central_film, PAIR_COLORS[2], "solid"),
+        ("at its thinnest", transient.minimum_film, TOTAL, "solid"),
+    ]
+    if steady is not None:
+        films = np.asarray(steady, dtype=float)
+        if films.shape != transient.time.shape:
+            raise InputError(
+                Problem(
+                    what=f"{films.size} steady films and {transient.time.size} instants",
+                    where="argument steady",
+                    why="Each instant has one steady film to be compared with",
+                    remedy="Give the central films of solve_line_contacts at the same instants",
+                )
+            )
+        rows.append(("in the centre, steady", films, MUTED, "dash"))
+    return [
+        line(time, displayed("film_thickness", films), name, color, unit=unit, dash=dash)
+        for name, films, color, dash in rows
+    ]
+
+
+@drawing(
+    "film_transient",
+    heading="Film over time",
+    caption="Load, film and greatest pressure of a contact whose load, radius and speed change. "
+    "Squeezing keeps the film thick for a moment where the load rises.",
+    of="TransientLineContact",
+    made_by="Call tribodyn.ehl.solve_transient_line_contact and its plot method.",
+)
+def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None = None) -> Any:
+    """Draw load, central and minimum film and the greatest pressure over time.
+
+    Parameters
+    ----------
+    transient : TransientLineContact
+        What :func:`tribodyn.ehl.solve_transient_line_contact` returns.
+    steady : array, optional [m]
+        Central films of steady contacts under the load, radius and speed of every instant: what
+        the squeeze of the film changes is the distance to them.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    InputError
+        If the steady films are not as many as the instants.
+    """
+    time = displayed("time", transient.time)
+    films = _films(transient, time, steady)
+
+    def panel(name: str, words: str, values: Any) -> Panel:
+        curve = line(time, displayed(name, values), words, TOTAL, unit=display_unit(name))
+        return Panel(axis_label(name, words), [curve], {"rangemode": "tozero"}, height=0.6)
+
+    # The thick film of a contact that is hardly loaded is found by zooming out.
+    thick = displayed("film_thickness", transient.central_film)
+    view = {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
+    at = int(np.argmin(transient.minimum_film))
+    least = rounded("film_thickness", float(transient.minimum_film[at]))
+    return stack(
+        f"The film is thinnest, {least}, after {rounded('time', float(transient.time[at]))}",
+        axis_label("time"),
+        [
+            panel("load_per_width", "Load", transient.load_per_width),
+            Panel(axis_label("film_thickness", "Film"), films, view),
+            panel("hertz_pressure", "Greatest pressure", transient.maximum_pressure),
+        ],
+    )

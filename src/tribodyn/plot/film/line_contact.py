@@ -1,0 +1,400 @@
+"""Pressure and film of lubricated line contacts, against the dry pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.drawing import drawing
+from tribodyn.errors import InputError, Problem
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.look.panels import Panel, event_lines, stack
+from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.types import Array
+
+#: Films are drawn up to this many times the thickest central film: beyond lies the open gap.
+_FILMS = 3.0
+#: Pressure, relative to the greatest, from which on a contact is drawn.
+_NOTHING = 0.02
+#: Nodes beyond this number are not seen on a screen.
+_MOST = 2000
+_FEWER = 1000
+_COLORS = (*PAIR_COLORS, INK)
+#: Short gaps, so that none swallows a spike [px].
+_DASHES = ("solid", "9px,3px", "9px,3px,2px,3px", "16px,3px", "3px,2px", "16px,3px,3px,3px")
+
+
+@dataclass(frozen=True)
+class Scales:
+    """How the curves of one contact become numbers on the axes."""
+
+    position: float
+    pressure: float
+    film: float
+    position_label: str
+    pressure_label: str
+    film_label: str
+    pressure_unit: str
+    film_unit: str
+
+    def film_text(self, film: float, digits: int = 3) -> str:
+        """Write a film with its unit."""
+        return f"{significant(self.film * film, digits)} {self.film_unit}"
+
+    def pressure_text(self, pressure: float, digits: int = 3) -> str:
+        """Write a pressure with its unit."""
+        return f"{significant(self.pressure * pressure, digits)} {self.pressure_unit}"
+
+
+def _unitless(solution: Any) -> Scales:
+    return Scales(
+        1.0 / solution.half_width,
+        1.0 / solution.hertz_pressure,
+        1.0 / solution.film_unit,
+        "Position [b]",
+        "Pressure [p<sub>h</sub>]",
+        "Film [b²/R]",
+        "p<sub>h</sub>",
+        "b²/R",
+    )
+
+
+def _metric() -> Scales:
+    position, pressure, film = "half_width", "hertz_pressure", "film_thickness"
+    return Scales(
+        float(displayed(position, 1.0)),
+        float(displayed(pressure, 1.0)),
+        float(displayed(film, 1.0)),
+        axis_label(position, "Position"),
+        axis_label(pressure, "Pressure"),
+        axis_label(film, "Film"),
+        display_unit(pressure),
+        display_unit(film),
+    )
+
+
+def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales]:
+    """Choose the units for contacts that share their axes."""
+    if not solutions:
+        raise InputError(
+            Problem(
+                what="there is no contact to draw",
+                where="argument solutions",
+                why="The sequence is empty",
+                remedy="Give at least one solution of solve_line_contact",
+            )
+        )
+    bare = [solution.lubricant is None for solution in solutions]
+    if any(bare) and not all(bare) and not dimensionless:
+        raise InputError(
+            Problem(
+                what=f"{sum(bare)} of {len(bare)} contacts have no unit, the others have",
+                where="argument solutions",
+                why="solve_line_contact_moes gives numbers without unit, which fit no common axis",
+                remedy="Set dimensionless=True",
+            )
+        )
+    if dimensionless or all(bare):
+        return [_unitless(solution) for solution in solutions]
+    return [_metric()] * len(solutions)
+
+
+def dry_pressure(solution: Any, points: int = 101) -> tuple[Array, Array]:
+    """Pressure of Hertz in the dry contact.
+
+    Parameters
+    ----------
+    solution : LineContactSolution
+        A solved contact.
+    points : int
+        Number of points.
+
+    Returns
+    -------
+    tuple of array
+        Position and pressure in the units of the solution, closer together at the ends.
+
+    Source: Hertz (1881), ``p = p_h sqrt(1 - (x/b)^2)``.
+    """
+    angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, points)
+    pressure = np.maximum(np.cos(angle), 0.0)
+    return solution.half_width * np.sin(angle), solution.hertz_pressure * pressure
+
+
+def place_of_minimum(solution: Any) -> float:
+    """Position of the least film between inlet and outlet."""
+    filled = solution.position <= solution.outlet
+    return float(solution.position[filled][np.argmin(solution.film[filled])])
+
+
+def window(solution: Any) -> tuple[float, float]:
+    """Part of the axis in which something happens."""
+    position, pressure, half = solution.position, solution.pressure, solution.half_width
+    loaded = position[pressure > _NOTHING * pressure.max()]
+    left = max(float(loaded[0]) - 0.1 * half, float(position[0]))
+    right = min(float(solution.outlet) + 0.4 * half, float(position[-1]))
+    return min(left, -1.5 * half), max(right, 1.4 * half)
+
+
+def film_height(solutions: Sequence[Any], scales: Sequence[Scales]) -> float:
+    """Upper end of an axis for the films of some contacts, in its display unit."""
+    thickest = (s.film * one.central_film for one, s in zip(solutions, scales, strict=True))
+    return float(_FILMS * max(thickest))
+
+
+def thinned(solution: Any, points: int) -> NDArray[np.intp]:
+    """Choose nodes that keep the shape of both curves, among them every extremum."""
+    n = len(solution.position)
+    if n <= points:
+        return np.arange(n)
+    curves = np.stack((
+        solution.pressure / solution.pressure.max(),
+        # the open gap beside the film is not in the picture
+        np.minimum(solution.film / solution.central_film, _FILMS) / _FILMS,
+    ))  # fmt: skip
+    bend = np.zeros(n)
+    bend[1:-1] = np.max(np.abs(np.diff(curves, 2)), axis=0)
+    density = np.sqrt(bend)
+    density += 0.15 * np.mean(density) + 1e-300
+    reached = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))))
+    slopes = np.sign(np.diff(curves))
+    turns = 1 + np.flatnonzero(np.any(slopes[:, 1:] != slopes[:, :-1], axis=0))
+    turns = turns[np.argsort(bend[turns])[::-1][: points // 4]]
+    even = np.linspace(0.0, reached[-1], points - len(turns) - 2)
+    chosen = np.searchsorted(reached, even * (1.0 - 1e-15)).clip(0, n - 1)
+    return np.unique(np.concatenate((chosen, turns, [0, n - 1])))
+
+
+def curve(x: Any, y: Any, name: str, color: str, **more: Any) -> dict[str, Any]:
+    """Describe a curve that is drawn through all of its points, for a spike is few of them."""
+    described = line(x, y, name, color, **more)
+    described["line"]["simplify"] = False
+    return described
+
+
+def point(
+    x: float, y: float, name: str, color: str, *, unit: str = "", symbol: str = "circle"
+) -> dict[str, Any]:
+    """Describe one marked point with a name in the legend."""
+    described = line([x], [y], name, color, unit=unit)
+    del described["line"]
+    edge = {"color": color, "width": 2}
+    marker = {"size": 9, "symbol": symbol, "color": color, "line": edge}
+    return {**described, "mode": "markers", "marker": marker}
+
+
+def _pressure(solution: Any, kept: Any, scales: Scales) -> list[Trace]:
+    unit = scales.pressure_unit
+    x, y = dry_pressure(solution)
+    traces = [
+        curve(
+            scales.position * solution.position[kept],
+            scales.pressure * solution.pressure[kept],
+            "oil film",
+            TOTAL,
+            unit=unit,
+        ),
+        line(
+            scales.position * x, scales.pressure * y, "dry (Hertz)", MUTED, unit=unit, dash="dash"
+        ),
+    ]
+    if solution.spike_position is not None:
+        traces.append(
+            point(
+                scales.position * solution.spike_position,
+                scales.pressure * solution.spike_pressure,
+                f"spike {scales.pressure_text(solution.spike_pressure)}<br>(rises with the grid)",
+                PAIR_COLORS[1],
+                unit=unit,
+                symbol="diamond-open",
+            )
+        )
+    return traces
+
+
+def _film(solution: Any, kept: Any, scales: Scales) -> list[Trace]:
+    unit = scales.film_unit
+    marks = (
+        ("central", 0.0, solution.central_film, "circle-open"),
+        ("minimum", place_of_minimum(solution), solution.minimum_film, "circle"),
+    )
+    return [
+        curve(
+            scales.position * solution.position[kept],
+            scales.film * solution.film[kept],
+            "film",
+            TOTAL,
+            unit=unit,
+        ),
+        *(
+            point(
+                scales.position * x,
+                scales.film * film,
+                f"{name} {scales.film_text(film, 4)}",
+                PAIR_COLORS[0],
+                unit=unit,
+                symbol=symbol,
+            )
+            for name, x, film, symbol in marks
+        ),
+    ]
+
+
+@drawing(
+    "line_contact",
+    heading="Pressure and film of a line contact",
+    caption="Pressure and film over the place, the inlet on the left. The film narrows before its "
+    "outlet; the dashed curve is the pressure of the dry contact under the same load.",
+    of="LineContactSolution",
+    made_by="Call tribodyn.ehl.solve_line_contact and its plot method.",
+)
+def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
+    """Draw pressure and film of a line contact over the position, the inlet on the left.
+
+    Parameters
+    ----------
+    solution : LineContactSolution
+        What :func:`tribodyn.ehl.solve_line_contact` returns.
+    dimensionless : bool
+        Whether positions are drawn in half widths, pressures in Hertz pressures and films in
+        ``b^2/R`` instead of um, GPa and um.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        Both curves with the pressure of the dry contact, the central and the minimum film, and
+        the outlet, where the oil parts. The view is the loaded part; the wider domain is found
+        by zooming out.
+    """
+    (scales,) = contact_scales([solution], dimensionless)
+    kept = thinned(solution, _MOST)
+    center, least = (
+        scales.film_text(film) for film in (solution.central_film, solution.minimum_film)
+    )
+    view = {"range": [0.0, film_height([solution], [scales])]}
+    marks = event_lines([("centre", 0.0), ("outlet", scales.position * solution.outlet)])
+    return stack(
+        f"The film is {center} thick in the centre and {least} at its thinnest",
+        scales.position_label,
+        [
+            Panel(
+                scales.pressure_label, _pressure(solution, kept, scales), {"rangemode": "tozero"}
+            ),
+            Panel(scales.film_label, _film(solution, kept, scales), view),
+        ],
+        {"xaxis": {"range": list(scales.position * np.array(window(solution)))}, **marks},
+    )
+
+
+def _look(number: int) -> dict[str, Any]:
+    """Colour and dash of a contact: thirty contacts differ in at least one of them."""
+    return {"color": _COLORS[number % len(_COLORS)], "dash": _DASHES[number % len(_DASHES)]}
+
+
+def _checked(solutions: Iterable[Any], labels: Iterable[str]) -> tuple[list[Any], list[str]]:
+    contacts, names = list(solutions), [str(label) for label in labels]
+    if len(contacts) != len(names):
+        raise InputError(
+            Problem(
+                what=f"{len(contacts)} contacts and {len(names)} labels",
+                where="argument labels",
+                why="Each contact has one name in the legend",
+                remedy="Give as many labels as solutions",
+            )
+        )
+    return contacts, names
+
+
+def _pressures(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
+    traces = []
+    for number, (solution, scales, name) in enumerate(rows):
+        kept, look = thinned(solution, _FEWER), _look(number)
+        x, y = dry_pressure(solution)
+        dry = curve(scales.position * x, scales.pressure * y, "dry", MUTED, dash="dot", width=1.2)
+        first = {"name": "dry (Hertz)", "legendgroup": "dry", "showlegend": number == 0}
+        # Where all are drawn in their own half widths, the dry pressure is the same for all.
+        if number == 0 or scales.pressure == rows[0][1].pressure:
+            traces.append({**dry, **first, "hoverinfo": "skip", "hovertemplate": None})
+        traces.append(
+            curve(
+                scales.position * solution.position[kept],
+                scales.pressure * solution.pressure[kept],
+                name,
+                look["color"],
+                dash=look["dash"],
+                unit=scales.pressure_unit,
+            )
+        )
+    return traces
+
+
+def _films(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
+    traces, marks = [], []
+    for number, (solution, scales, name) in enumerate(rows):
+        kept, look = thinned(solution, _FEWER), _look(number)
+        least = f"{name}: at least {scales.film_text(solution.minimum_film)}"
+        traces.append(
+            curve(
+                scales.position * solution.position[kept],
+                scales.film * solution.film[kept],
+                least,
+                look["color"],
+                dash=look["dash"],
+                unit=scales.film_unit,
+            )
+        )
+        mark = point(
+            scales.position * place_of_minimum(solution),
+            scales.film * solution.minimum_film,
+            name,
+            look["color"],
+        )
+        marks.append({**mark, "showlegend": False, "hoverinfo": "skip", "hovertemplate": None})
+    return traces + marks
+
+
+def compare_line_contacts(
+    solutions: Iterable[Any], labels: Iterable[str], *, dimensionless: bool = False
+) -> Any:
+    """Draw pressure and film of several line contacts over each other.
+
+    Parameters
+    ----------
+    solutions : iterable of LineContactSolution
+        What :func:`tribodyn.ehl.solve_line_contact` returns, for example over the torque.
+    labels : iterable of str
+        Name of each contact in the legend.
+    dimensionless : bool
+        Whether every contact is drawn in its own half widths, Hertz pressures and ``b^2/R``: then
+        shapes are compared, and the place of a spike relative to the contact.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        Dots mark the minimum films, thin dotted curves the dry pressures.
+
+    Raises
+    ------
+    InputError
+        If there is no contact, their number is not that of the labels, or some have units and
+        others have not.
+    """
+    contacts, names = _checked(solutions, labels)
+    scales = contact_scales(contacts, dimensionless)
+    rows = list(zip(contacts, scales, names, strict=True))
+    thinnest, units, name = min(rows, key=lambda row: row[1].film * row[0].minimum_film)
+    ends = np.array([[used.position * end for end in window(one)] for one, used, _ in rows])
+    height = {"range": [0.0, film_height(contacts, scales)]}
+    return stack(
+        f"The thinnest film, {units.film_text(thinnest.minimum_film)}, is that of {name}",
+        scales[0].position_label,
+        [
+            Panel(scales[0].pressure_label, _pressures(rows), {"rangemode": "tozero"}),
+            Panel(scales[0].film_label, _films(rows), height),
+        ],
+        {"xaxis": {"range": [ends[:, 0].min(), ends[:, 1].max()]}},
+    )

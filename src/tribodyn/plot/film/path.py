@@ -1,0 +1,343 @@
+"""One tooth pair along the path of contact: speeds, friction, and its oil film."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import Need, drawing
+from tribodyn.plot.gear.path import sharing_words
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.look.panels import Panel, event_lines, stack
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.mesh.cycle import (
+    TABLE,
+    driving_roll_angle,
+    pair_life,
+    roll_angle_label,
+    roll_angle_positions,
+)
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
+#: Column of the mesh table, name in the legend, colour and dash.
+Rows = tuple[tuple[str, str, str, str], ...]
+_SPEEDS: Rows = (
+    ("sliding_speed", "sliding", WHEEL, "solid"),
+    ("entrainment_speed", "entrainment", PINION, "solid"),
+)
+_RADII: Rows = (
+    ("pinion_curvature_radius", "pinion", PINION, "dash"),
+    ("wheel_curvature_radius", "wheel", WHEEL, "dash"),
+    ("equivalent_radius", "equivalent", TOTAL, "solid"),
+)
+_FILMS: Rows = (
+    ("central_film", "in the centre", PAIR_COLORS[2], "solid"),
+    ("minimum_film", "at its thinnest", TOTAL, "solid"),
+)
+_PRESSURES: Rows = (
+    ("film_pressure", "in the oil film", TOTAL, "solid"),
+    ("hertz_pressure", "dry contact", PAIR_COLORS[3], "dash"),
+)
+_OIL: Rows = (("film_stiffness", "oil film", PAIR_COLORS[2], "solid"),)
+_TEETH: Rows = (("tooth_stiffness", "teeth", PAIR_COLORS[0], "dash"),)
+_BOTH: Rows = (("stiffness", "teeth and film", TOTAL, "solid"),)
+#: The quantity of a column that is called differently.
+_QUANTITIES = {"stiffness": "pair_stiffness"}
+#: Kinds of film stiffness that are in series with the teeth.
+_SPRINGS = ("tangent", "secant")
+#: Axes that begin at zero, and that mark their zero.
+_FROM_ZERO, _ZERO = {"rangemode": "tozero"}, {"zeroline": True}
+_LOGARITHMIC = {"type": "log", "dtick": 1}
+#: Film over the usual one above which both are not seen on one linear scale.
+_VERY_THICK = 10.0
+
+
+class Path:
+    """The way of one tooth pair over the roll angle of the driving gear."""
+
+    def __init__(self, mesh: MeshTable) -> None:
+        self.mesh = mesh
+        self.angle = driving_roll_angle(mesh)
+
+    def life(self, column: str) -> Array:
+        """Values of one tooth pair from its entry to its exit, in SI."""
+        return pair_life(self.mesh, column)[1]
+
+    def curves(self, rows: Rows, quantity: str = "") -> list[Trace]:
+        """Columns of the mesh table in their display units, or in that of one quantity."""
+        traces = []
+        for column, name, color, dash in rows:
+            known = quantity or _QUANTITIES.get(column, column)
+            shown, unit = displayed(known, self.life(column)), display_unit(known)
+            traces.append(line(self.angle, shown, name, color, unit=unit, dash=dash))
+        return traces
+
+    def figure(self, title: str, panels: list[Panel]) -> Any:
+        """Stack panels over the roll angle, with the positions A to E."""
+        marks = event_lines(roll_angle_positions(self.mesh).items())
+        return stack(title, roll_angle_label(self.mesh), panels, marks)
+
+    def level(self, value: float, name: str, unit: str = "") -> Trace:
+        """A dotted line at one value."""
+        return line(self.angle, np.full_like(self.angle, value), name, MUTED, unit=unit, dash="dot")
+
+
+def _path_caption(mesh: MeshTable) -> str:
+    return (
+        "What one tooth pair meets from A, where it enters, to E, where it leaves. At the pitch "
+        "point C the surfaces roll without sliding; the sliding speed changes its sign there, and "
+        f"so does the friction. {sharing_words(mesh.transverse_contact_ratio)}"
+    )
+
+
+@drawing(
+    "path_of_contact",
+    heading="Along the path of contact",
+    caption=_path_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def path_of_contact(mesh: MeshTable) -> Any:
+    """Draw speeds, radii and slide-to-roll ratio over the roll angle of the driving gear.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    path = Path(mesh)
+    fastest = np.max(np.abs(path.life("sliding_speed")))
+    ratio = line(path.angle, path.life("slide_to_roll_ratio"), "slide-to-roll", TOTAL)
+    radii = path.curves(_RADII, "curvature_radius")
+    speeds = path.curves(_SPEEDS, "sliding_speed")
+    panels = [
+        Panel(axis_label("sliding_speed", "Speed"), speeds, _ZERO),
+        Panel(axis_label("curvature_radius", "Radius of curvature"), radii),
+        Panel(axis_label("slide_to_roll_ratio"), [ratio], _ZERO, height=0.8),
+    ]
+    return path.figure(
+        f"The flanks slide on each other at up to {rounded('sliding_speed', float(fastest))}",
+        panels,
+    )
+
+
+def _friction_caption(mesh: MeshTable) -> str:
+    return (
+        "The friction coefficient of one tooth pair from its entry to its exit, and the friction "
+        "force that it causes under the static load. The force turns round where the sliding does, "
+        "at the pitch point C. Its other steps come from the load. "
+        + sharing_words(mesh.transverse_contact_ratio)
+    )
+
+
+def _frictionless(mesh: MeshTable) -> str:
+    if np.any(mesh.friction_coefficient):
+        return ""
+    return (
+        "No friction acts between the flanks: the friction coefficient is zero. Choose a law, for "
+        'example friction.law = "xu-2007".'
+    )
+
+
+@drawing(
+    "friction",
+    heading="Friction",
+    caption=_friction_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+    needs=_frictionless,
+)
+def friction(mesh: MeshTable) -> Any:
+    """Draw friction coefficient and friction force of a tooth pair over the roll angle.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    path = Path(mesh)
+    coefficient, load = path.life("friction_coefficient"), path.life("normal_force")
+    unit, force = display_unit("friction_force"), coefficient * load
+    force = displayed("friction_force", force * path.life("sliding_direction"))
+    curve = line(path.angle, coefficient, "friction coefficient", PAIR_COLORS[0])
+    pulled = line(path.angle, force, "friction force", WHEEL, unit=unit)
+    pressed = line(path.angle, displayed("normal_force", load), "normal force", TOTAL, unit=unit)
+    mean = rounded("friction_coefficient", mesh.mean_friction_coefficient)
+    title = (
+        f"The friction coefficient is {mean} as the mean over the mesh cycle, weighted with the "
+        "load shares"
+    )
+    panels = [
+        Panel(axis_label("friction_coefficient"), [curve], _FROM_ZERO),
+        Panel(axis_label("friction_force"), [pulled], _ZERO),
+        Panel(axis_label("normal_force"), [pressed], _FROM_ZERO, height=0.8),
+    ]
+    return path.figure(title, panels)
+
+
+_has_film = Need(
+    "central_film minimum_film",
+    'No film model was chosen, so no oil film was computed. Choose film.model = "newton".',
+)
+
+
+def _film_axis(films: list[Array]) -> dict[str, Any]:
+    """From zero, or logarithmic where a pair that hardly carries has a very thick film."""
+    thickest = max(float(np.nanmax(film)) for film in films)
+    return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else _FROM_ZERO
+
+
+@drawing(
+    "film",
+    heading="Oil film",
+    caption="Thickness of the oil film between the flanks, and its ratio to the composite "
+    "roughness. Where the ratio comes near one, the highest asperities touch.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+    needs=_has_film,
+)
+def film(mesh: MeshTable) -> Any:
+    """Draw the film thickness of one tooth pair over the roll angle of the driving gear.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle with an oil film.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    path = Path(mesh)
+    unit = display_unit("film_thickness")
+    known = tuple(row for row in _FILMS if getattr(mesh, row[0]) is not None)
+    column, place = known[-1][:2]
+    least = rounded("film_thickness", float(np.nanmin(path.life(column))))
+    roughness = float(displayed("film_thickness", mesh.composite_roughness))
+    curves = [*path.curves(known, "film_thickness"), path.level(roughness, "roughness", unit)]
+    axis = _film_axis([path.life(row[0]) for row in known])
+    panels = [Panel(axis_label("film_thickness"), curves, axis, height=1.3)]
+    if mesh.film_ratio is not None:  # there is none for ideal flanks
+        ratio = line(path.angle, path.life("film_ratio"), "film ratio", TOTAL)
+        curves = [ratio, path.level(1.0, "mixed below")]
+        axis = _film_axis([path.life("film_ratio")])
+        panels.append(Panel(axis_label("film_ratio"), curves, axis, height=0.8))
+    return path.figure(f"The oil film {place} is never below {least}", panels)
+
+
+def _pressure_caption(mesh: MeshTable) -> str:
+    return (
+        "The greatest pressure in the oil film of one tooth pair from its entry to its exit, and "
+        "the pressure of the dry contact under the same load. The film exceeds it where a spike "
+        "stands at its outlet, and stays below it where a thick film spreads the load. A spike is "
+        "narrower than the grid: its height is a lower bound, and uneven by some percent. "
+        + sharing_words(mesh.transverse_contact_ratio)
+    )
+
+
+def _no_pressure(mesh: MeshTable) -> str:
+    if mesh.film_pressure is not None:
+        return ""
+    return _has_film(mesh) or (
+        f'The film model "{mesh.film_model}" is a formula for the thickness: it knows no '
+        'pressure. Choose film.model = "newton".'
+    )
+
+
+@drawing(
+    "film_pressure",
+    heading="Pressure in the oil film",
+    caption=_pressure_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+    needs=_no_pressure,
+)
+def film_pressure(mesh: MeshTable) -> Any:
+    """Draw the greatest film pressure of one tooth pair over the roll angle.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle with a solved film.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    path = Path(mesh)
+    greatest = rounded("film_pressure", float(np.nanmax(path.life("film_pressure"))))
+    label, curves = axis_label("film_pressure"), path.curves(_PRESSURES)
+    return path.figure(
+        f"The pressure in the oil film reaches {greatest}",
+        [Panel(label, curves, _FROM_ZERO, height=1.3)],
+    )
+
+
+def _stiffness_caption(mesh: MeshTable) -> str:
+    kind = mesh.film_stiffness_kind
+    if kind not in _SPRINGS:
+        sum_of_source = "The film stiffness is the sum as one source prints it. "
+        return (
+            "Stiffness of the oil film of one tooth pair and of its teeth, on a logarithmic scale. "
+            + (sum_of_source if kind == "seed" else "")
+            + "In this case the film does not yield: the mesh has the stiffness of the teeth "
+            'alone. Choose film.stiffness = "tangent" to put both in series.'
+        )
+    return (
+        f"Stiffness of the oil film of one tooth pair ({kind}) and of its teeth, on a logarithmic "
+        "scale. Both are springs in series: the softer one decides. Below, the teeth alone and "
+        "the pair with its film."
+    )
+
+
+def _no_stiffness(mesh: MeshTable) -> str:
+    if mesh.film_stiffness is not None:
+        return ""
+    return _has_film(mesh) or (
+        f'The film model "{mesh.film_model}" gives no film stiffness. Choose film.model = "newton".'
+    )
+
+
+@drawing(
+    "film_stiffness",
+    heading="Stiffness of the oil film",
+    caption=_stiffness_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+    needs=_no_stiffness,
+)
+def film_stiffness(mesh: MeshTable) -> Any:
+    """Draw the stiffness of film, teeth and pair over the roll angle.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle with a film stiffness.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    path = Path(mesh)
+    label = axis_label("film_stiffness", "Stiffness")
+    panels = [Panel(label, path.curves((*_OIL, *_TEETH)), _LOGARITHMIC)]
+    if mesh.film_stiffness_kind in _SPRINGS:
+        panels.append(Panel(axis_label("pair_stiffness"), path.curves((*_TEETH, *_BOTH))))
+    oil, teeth = path.life("film_stiffness"), path.life("tooth_stiffness")
+    # Relieved flanks leave a pair without load where it comes in and where it leaves.
+    loaded = (teeth > 0.0) & np.isfinite(oil)
+    ratio = oil[loaded] / teeth[loaded]
+    least, greatest = (significant(float(at(ratio))) for at in (np.min, np.max))
+    return path.figure(f"The oil film is {least} to {greatest} times as stiff as the teeth", panels)

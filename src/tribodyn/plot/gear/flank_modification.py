@@ -1,0 +1,192 @@
+"""What the flanks of both gears have that involutes have not: profile, lead, pitch, run-out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.gear import (
+    default_relief_length,
+    flank_gap,
+    flank_ranges,
+    lead_gap,
+    profile_gap,
+    tooth_positions,
+)
+from tribodyn.plot.gear.path import pair_letters, roll_angle_of, roll_label
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.look.panels import Panel, Row, stack_rows
+from tribodyn.plot.look.style import PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.gear import SpurPair
+
+#: Places along the profile and along the face.
+_POINTS = 201
+#: Where a pair is found.
+_HOLDERS = (
+    "SpurPair",
+    "Result.case.gear_pair",
+    *(f"{name}.gear_pair" for name in ("Case", "MeshTable", "LoadedContact", "HarrisMap")),
+    *(f"{name}.gear_pair" for name in ("TipReliefOptimum", "ComprehensiveStiffness")),
+)
+
+
+def _perfect(pair: SpurPair) -> str:
+    if pair.has_modification:
+        return ""
+    return (
+        "The flanks are perfect involutes: neither gear has a modification or a deviation. "
+        'Give one in [gears.pinion.modification], for example tip_relief = "10 um".'
+    )
+
+
+def _own_gap(pair: SpurPair, name: str, radius: Array, face: Array) -> Array:
+    """Material missing on the flank of one gear, at radii of curvature and face positions."""
+    gear = getattr(pair, name)
+    flank = flank_ranges(pair)[0 if name == "pinion" else 1]
+    gap = profile_gap(gear, radius, flank, default_relief_length(pair)) + lead_gap(gear, face)
+    chart = gear.modification.profile_map
+    if chart is not None:
+        gap = gap - chart.at(np.clip(radius, *flank), face, base_radius=gear.base_radius)
+    return np.asarray(gap)
+
+
+def _curves(x: Array, parts: dict[str, Array]) -> list[Trace]:
+    looks = {"pinion": (PINION, "solid"), "wheel": (WHEEL, "solid"), "both": (TOTAL, "dot")}
+    unit = display_unit("flank_gap")
+    return [
+        line(x, displayed("flank_gap", gap), name, looks[name][0], unit=unit, dash=looks[name][1])
+        for name, gap in parts.items()
+    ]
+
+
+def _profile(pair: SpurPair) -> Row:
+    age = np.linspace(0.0, pair.transverse_contact_ratio, _POINTS)
+    angle = roll_angle_of(pair, age)
+    driving = angle * pair.driving.base_radius
+    driven = pair.line_of_action_length - driving
+    radii = (driving, driven) if pair.driver == "pinion" else (driven, driving)
+    face = np.zeros(1)
+    parts = {
+        name: _own_gap(pair, name, radius, face)
+        for name, radius in zip(("pinion", "wheel"), radii, strict=True)
+    }
+    parts["both"] = flank_gap(pair, *radii)
+    x = displayed("roll_angle", angle)
+    return Row(
+        roll_label(pair),
+        Panel(axis_label("flank_gap", "Gap over the profile"), _curves(x, parts)),
+        marks=pair_letters(pair),
+    )
+
+
+def _lead(pair: SpurPair) -> Row:
+    half = 0.5 * pair.common_face_width
+    face = np.linspace(-half, half, _POINTS)
+    middle = np.array([0.5 * (flank.lowest + flank.highest) for flank in flank_ranges(pair)])
+    parts = {
+        name: _own_gap(pair, name, middle[number : number + 1], face)
+        for number, name in enumerate(("pinion", "wheel"))
+    }
+    both = flank_gap(pair, middle[0], middle[1], face)
+    parts = {name: gap - gap[_POINTS // 2] for name, gap in {**parts, "both": both}.items()}
+    x = displayed("face_position", face)
+    return Row(
+        axis_label("face_position", "Place along the face from its middle"),
+        Panel(axis_label("flank_gap", "Gap over the face"), _curves(x, parts), height=0.8),
+    )
+
+
+def _pitch(pair: SpurPair) -> Row:
+    unit, bars = display_unit("cumulative_pitch_deviation"), []
+    for name, color in (("pinion", PINION), ("wheel", WHEEL)):
+        gear = getattr(pair, name)
+        if gear.modification.changes_pitch:
+            places = displayed("cumulative_pitch_deviation", tooth_positions(gear))
+            bars.append(
+                {
+                    "type": "bar",
+                    "x": np.arange(gear.teeth),
+                    "y": places,
+                    "name": name,
+                    "marker": {"color": color},
+                    "hovertemplate": f"%{{y:.4g}} {unit}<extra>{name}, tooth %{{x}}</extra>",
+                    "showlegend": True,
+                }
+            )
+    label = axis_label("cumulative_pitch_deviation", "Cumulative pitch")
+    return Row("Tooth", Panel(label, bars, height=0.8), {"showgrid": False})
+
+
+def _run_out(pair: SpurPair) -> Row:
+    turn, traces = np.linspace(0.0, 2.0 * np.pi, _POINTS), []
+    for name, color in (("pinion", PINION), ("wheel", WHEEL)):
+        given = getattr(pair, name).modification
+        if given.run_out:
+            gap = displayed("flank_gap", -0.5 * given.run_out * np.cos(turn - given.run_out_phase))
+            trace = line(displayed("angle", turn), gap, name, color, unit=display_unit("flank_gap"))
+            traces.append({**trace, "showlegend": True})
+    return Row(
+        axis_label("angle", "Rotation of each gear"),
+        Panel(axis_label("flank_gap", "Gap from run-out"), traces, height=0.8),
+        {"dtick": 90, "range": [0, 360]},
+    )
+
+
+@drawing(
+    "flank_modification",
+    heading="Flank modifications",
+    caption="How far the flanks stand apart where perfect involutes would touch: material is "
+    "missing where the curves are above zero. The profile is drawn at the middle of the face, the "
+    "face in the middle of the profile against its own middle.",
+    needs=_perfect,
+    of=_HOLDERS,
+    made_by=RUN,
+)
+def flank_modification(pair: SpurPair) -> Any:
+    """Draw the modifications and deviations of both flanks.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        A panel for each of profile, lead, pitch and run-out that is there.
+    """
+    rows = [
+        make(pair)
+        for there, make in (
+            (pair.has_profile_modification, _profile),
+            (pair.has_lead_modification, _lead),
+            (pair.has_pitch_deviation, _pitch),
+            (pair.has_run_out, _run_out),
+        )
+        if there
+    ]
+    return stack_rows(_title(pair), rows)
+
+
+def _title(pair: SpurPair) -> str:
+    """Answer: the largest gap over profile and face, or what there is besides."""
+    low, high = pair.path_limits
+    path = np.linspace(low, high, _POINTS)[:, None]
+    half = 0.5 * pair.common_face_width
+    gap = flank_gap(pair, path, pair.line_of_action_length - path, np.linspace(-half, half, 41))
+    if np.any(gap):
+        most = float(np.max(gap))
+        return f"The flanks stand apart by up to {rounded('flank_gap', most)} without load"
+    swing = max(float(np.ptp(tooth_positions(gear))) for gear in (pair.pinion, pair.wheel))
+    if swing:
+        return (
+            f"The teeth of one gear differ in their places by up to {rounded('flank_gap', swing)}"
+        )
+    run_out = max(gear.modification.run_out for gear in (pair.pinion, pair.wheel))
+    return f"The toothing runs out by {rounded('run_out', run_out)}"

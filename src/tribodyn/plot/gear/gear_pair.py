@@ -1,0 +1,252 @@
+"""Drawing of the gear pair: the whole pair, and the mesh zone enlarged beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.contact import path_of_contact
+from tribodyn.drawing import drawing
+from tribodyn.plot.gear.outlines import (
+    circle,
+    on_line_of_action,
+    placed_outline,
+    rotation_arc,
+    tooth_angles,
+)
+from tribodyn.plot.gear.path import further_changes, sharing_words
+from tribodyn.plot.look.labels import axis_label, displayed
+from tribodyn.plot.look.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
+from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.contact import PathOfContact
+    from tribodyn.gear import SpurPair
+
+#: Circles of each gear: name and dash.
+_CIRCLES = (("tip", "dot"), ("pitch", "dashdot"), ("base", "dash"))
+#: Distance of the letters from the line of action, and from one another [px].
+_ASIDE, _APART = 34, 17
+
+
+def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
+    x, y = displayed("center_distance", points)
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": x,
+        "y": y,
+        "name": name,
+        "line": {"color": color, "width": 1.2},
+        "hoverinfo": "skip",
+        **more,
+    }
+
+
+def _gears(pair: SpurPair, touching: float) -> list[Trace]:
+    angles = tooth_angles(pair, touching)
+    traces = []
+    for gear, center, angle, name, color in (
+        (pair.pinion, 0.0, angles[0], "pinion", PINION),
+        (pair.wheel, pair.center_distance, angles[1], "wheel", WHEEL),
+    ):
+        role = "drives" if pair.driver == name else "is driven"
+        label = f"{name}, {gear.teeth} teeth, {role}"
+        outline = placed_outline(gear, center, angle)
+        traces.append(_curve(outline, label, color, fill="toself", fillcolor=FILLS[color]))
+        if gear.bore_diameter > 0.0:
+            bore = circle(center, 0.5 * gear.bore_diameter)
+            more = {"fill": "toself", "fillcolor": "white", "showlegend": False}
+            traces.append(_curve(bore, "bore", color, **more))
+    return traces
+
+
+def _circles(pair: SpurPair) -> list[Trace]:
+    cosine = np.cos(pair.operating_pressure_angle)
+    traces = []
+    for gear, center, color in (
+        (pair.pinion, 0.0, PINION),
+        (pair.wheel, pair.center_distance, WHEEL),
+    ):
+        radii = (gear.tip_radius, gear.base_radius / cosine, gear.base_radius)
+        for (name, dash), radius in zip(_CIRCLES, radii, strict=True):
+            traces.append(
+                _curve(
+                    circle(center, radius),
+                    f"{name} circles",
+                    color if center else MUTED,
+                    line={"color": color, "width": 1, "dash": dash},
+                    legendgroup=name,
+                    showlegend=center == 0.0,
+                )
+            )
+    return traces
+
+
+def _arrows(pair: SpurPair) -> list[Trace]:
+    """Arcs with an arrow head in the sense in which each gear turns."""
+    pinion_turns = 1 if pair.driver == "pinion" else -1
+    traces = []
+    for gear, center, sense, color in (
+        (pair.pinion, 0.0, pinion_turns, PINION),
+        (pair.wheel, pair.center_distance, -pinion_turns, WHEEL),
+    ):
+        arc = rotation_arc(center, 0.8 * gear.root_radius, sense)
+        head = [0] * (arc.shape[1] - 1) + [15]
+        marker = {"symbol": "arrow", "angleref": "previous", "size": head, "opacity": 1}
+        more = {"mode": "lines+markers", "marker": {**marker, "color": color}}
+        line = {"color": color, "width": 3}
+        traces.append(_curve(arc, "sense of rotation", color, line=line, showlegend=False, **more))
+    return traces
+
+
+def _roles(pair: SpurPair) -> list[Trace]:
+    """Words below each gear."""
+    return [
+        {
+            "x": 1e3 * center,
+            "y": -1e3 * gear.tip_radius,
+            "yanchor": "top",
+            "text": "drives" if pair.driver == name else "driven",
+            "showarrow": False,
+            "font": {"size": 12, "color": color},
+        }
+        for gear, name, center, color in (
+            (pair.pinion, "pinion", 0.0, PINION),
+            (pair.wheel, "wheel", pair.center_distance, WHEEL),
+        )
+    ]
+
+
+def _letters(pair: SpurPair, path: PathOfContact) -> dict[str, float]:
+    """Positions to be marked on the line of action, in the order along it."""
+    letters = {name: getattr(path, name) for name in "ABCDE"}
+    for name, age in further_changes(path.contact_ratio).items():
+        letters[name] = path.A + path.direction * age * pair.base_pitch
+    return dict(sorted(letters.items(), key=lambda each: each[1]))
+
+
+def _names(pair: SpurPair, path: PathOfContact, axes: tuple[str, str]) -> list[Trace]:
+    """Letters in a column beside the line of action, each led to its position."""
+    letters = _letters(pair, path)
+    x, y = displayed("center_distance", on_line_of_action(pair, np.array(list(letters.values()))))
+    middle = 0.5 * (len(letters) - 1)
+    return [
+        {
+            "x": x[number],
+            "y": y[number],
+            "xref": axes[0],
+            "yref": axes[1],
+            "text": name,
+            "ax": _ASIDE,
+            # The points rise along the line as well, so neighbours are at least this far apart.
+            "ay": _APART * (middle - number),
+            "arrowhead": 0,
+            "arrowwidth": 1,
+            "arrowcolor": INK,
+            "font": {"size": 13, "color": INK},
+            "bgcolor": "rgba(255, 255, 255, 0.8)",
+            "borderpad": 0,
+        }
+        for number, name in enumerate(letters)
+    ]
+
+
+def _contact_line(pair: SpurPair, path: PathOfContact) -> list[Trace]:
+    tangent = on_line_of_action(pair, np.array([0.0, pair.line_of_action_length]))
+    active = on_line_of_action(pair, np.array([path.A, path.E]))
+    letters = _letters(pair, path)
+    marks = on_line_of_action(pair, np.array(list(letters.values())))
+    color = PAIR_COLORS[0]
+    return [
+        _curve(tangent, "line of action", INK, line={"color": INK, "width": 1}),
+        _curve(active, "path of contact", color, line={"color": color, "width": 5}),
+        _curve(
+            marks,
+            "positions A to E",
+            INK,
+            mode="markers",
+            marker={"color": "white", "size": 8, "line": {"color": INK, "width": 1.5}},
+            hoverinfo="text",
+            hovertext=[f"{name}: {1e3 * at:.3f} mm" for name, at in letters.items()],
+        ),
+    ]
+
+
+def _window(pair: SpurPair, path: PathOfContact) -> dict[str, Any]:
+    """Axes: the whole pair on the left, the surroundings of the path of contact on the right."""
+    ends = displayed("center_distance", on_line_of_action(pair, np.array([path.A, path.E])))
+    middle = ends.mean(axis=1)
+    half = 0.75 * float(np.hypot(*(ends[:, 1] - ends[:, 0])))
+    label = axis_label("center_distance", "x"), axis_label("center_distance", "y")
+    common = {"zeroline": False, "showgrid": False}
+    return {
+        "xaxis": {
+            "domain": [0.0, 0.62],
+            "constrain": "domain",
+            "title": {"text": label[0]},
+            **common,
+        },
+        "yaxis": {"scaleanchor": "x", "constrain": "domain", "title": {"text": label[1]}, **common},
+        "xaxis2": {
+            "domain": [0.7, 1.0],
+            "anchor": "y2",
+            "range": [middle[0] - half, middle[0] + half],
+            "title": {"text": label[0]},
+            **common,
+        },
+        "yaxis2": {
+            "anchor": "x2",
+            "scaleanchor": "x2",
+            "range": [middle[1] - half, middle[1] + half],
+            **common,
+        },
+    }
+
+
+def _caption(pair: SpurPair) -> str:
+    ratio = path_of_contact(pair).contact_ratio
+    return (
+        "Both gears to scale, with two flanks touching. On the right the mesh zone enlarged: a "
+        f"tooth pair enters at A and leaves at E. {sharing_words(ratio)} C is the pitch point, "
+        "where the flanks roll without sliding. The arrows show how the gears turn."
+    )
+
+
+@drawing(
+    "gear_pair",
+    heading="The gear pair",
+    caption=_caption,
+    of=("SpurPair", "Result.case.gear_pair", "MeshTable.gear_pair", "LoadedContact.gear_pair"),
+    made_by=RUN,
+)
+def gear_pair(pair: SpurPair) -> Any:
+    """Draw both gears in mesh with their circles and the path of contact.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    path = path_of_contact(pair)
+    traces = [*_gears(pair, 0.5 * (path.B + path.D)), *_circles(pair), *_contact_line(pair, path)]
+    enlarged = [{**trace, "xaxis": "x2", "yaxis": "y2", "showlegend": False} for trace in traces]
+    names = [*_names(pair, path, ("x", "y")), *_names(pair, path, ("x2", "y2"))]
+    layout = {
+        "annotations": [*_roles(pair), *names],
+        **_window(pair, path),
+        "height": 560,
+        "hovermode": "closest",
+        "legend": {"orientation": "h", "y": -0.16, "yanchor": "top", "x": 0.0},
+    }
+    title = (
+        f"{pair.pinion.teeth} teeth against {pair.wheel.teeth}: on average "
+        f"{path.contact_ratio:.2f} tooth pairs share the load"
+    )
+    return figure(title, [*traces, *_arrows(pair), *enlarged], layout)

@@ -1,0 +1,239 @@
+"""Teeth in mesh, bent by their loads: the deformation exaggerated, the loads as arrows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action
+from tribodyn.plot.look.labels import axis_label, displayed, rounded, significant
+from tribodyn.plot.look.style import FILLS, INK, MUTED, PINION, WHEEL, Trace, figure
+from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
+from tribodyn.types import ComplexArray
+
+if TYPE_CHECKING:
+    from tribodyn.gear import SpurPair
+    from tribodyn.stiffness import LoadedContact
+
+#: Mesh phases of the slider.
+_FRAMES = 8
+#: Largest displacement drawn, and length of the arrow of the greatest force [modules].
+_DRAWN, _ARROW = 0.25, 1.3
+#: Half width and half height of the window [modules], height [px], time of a phase [ms].
+_WINDOW, _HEIGHT, _FRAME = (3.6, 2.9), 760, 500
+_GEARS = (("pinion", PINION), ("wheel", WHEEL))
+
+
+def _exaggeration(meshes: Sequence[BentMesh], module: float) -> float:
+    """Factor with a first digit of 1, 2 or 5 that makes the displacements well seen."""
+    largest = max(
+        float(np.abs(mesh.displacement[name]).max()) for mesh in meshes for name, _ in _GEARS
+    )
+    wanted = _DRAWN * module / largest
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= wanted)
+
+
+def _trace(points: ComplexArray, name: str, **more: Any) -> dict[str, Any]:
+    x, y = displayed("center_distance", np.array([points.real, points.imag]))
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        # Half the bytes; a screen shows four digits.
+        "x": x.astype(np.float32),
+        "y": y.astype(np.float32),
+        "name": name,
+        "hoverinfo": "skip",
+        **more,
+    }
+
+
+def _gears(pair: SpurPair, mesh: BentMesh, factor: float) -> list[Trace]:
+    """Thin grey outlines without load, coloured and filled ones with it."""
+    traces = []
+    for name, color in _GEARS:
+        outline = mesh.outline[name]
+        bent = outline + factor * mesh.displacement[name]
+        center = 0.0 if name == "pinion" else pair.center_distance
+        # Close the section towards the axis, far below the teeth.
+        closed = np.concatenate(
+            (
+                bent,
+                [center + 0.2 * (bent[-1] - center)],
+                [center + 0.2 * (bent[0] - center)],
+                bent[:1],
+            )
+        )
+        fill = {"fill": "toself", "fillcolor": FILLS[color]}
+        traces.append(
+            _trace(closed, f"{name}, loaded", line={"color": color, "width": 1.8}, **fill)
+        )
+    for name, _ in _GEARS:
+        grey = {"line": {"color": MUTED, "width": 0.9}, "legendgroup": "rest"}
+        traces.append(
+            _trace(mesh.outline[name], "without load", showlegend=name == "pinion", **grey)
+        )
+    return traces
+
+
+def _arrows(pair: SpurPair, mesh: BentMesh, factor: float, greatest: float) -> list[Trace]:
+    """Force on the driven gear at each contact, along the line of action, and its value."""
+    along = np.diff(on_line_of_action(pair, np.array([0.0, 1.0])))[:, 0]
+    sense = 1.0 if pair.driver == "pinion" else -1.0
+    direction = sense * complex(*along)
+    heads = mesh.contact + factor * mesh.shift
+    points, sizes, tails, words = [], [], [], []
+    for head, load in zip(heads, mesh.loads, strict=True):
+        tail = head - direction * _ARROW * pair.pinion.normal_module * load.force / greatest
+        points += [tail, head, complex(math.nan, math.nan)]
+        sizes += [0, 13, 0]
+        tails.append(tail)
+        words.append(f"<b>{rounded('normal_force', load.force)}</b>")
+    marker = {"symbol": "arrow", "angleref": "previous", "size": sizes, "opacity": 1, "color": INK}
+    look = {"mode": "lines+markers", "marker": marker, "line": {"color": INK, "width": 2.5}}
+    side = "bottom center" if direction.imag > 0.0 else "top center"
+    label = {"mode": "text", "text": words, "textposition": side, "textfont": {"color": INK}}
+    return [
+        _trace(np.array(points), "force on the driven gear", **look),
+        _trace(np.array(tails), "values", showlegend=False, **label),
+    ]
+
+
+def _controls(words: Sequence[str]) -> dict[str, Any]:
+    """Slider over the phases, with buttons that run through them."""
+    at_once = {"mode": "immediate", "transition": {"duration": 0}}
+    still = {"frame": {"duration": 0, "redraw": True}, **at_once}
+    shown = {"frame": {"duration": _FRAME, "redraw": True}, "transition": {"duration": 0}}
+    slider = {
+        "x": 0.16,
+        "len": 0.84,
+        "y": -0.1,
+        "yanchor": "top",
+        "ticklen": 3,
+        "font": {"color": "rgba(0,0,0,0)", "size": 1},
+        "currentvalue": {"font": {"color": INK, "size": 13}, "xanchor": "left"},
+        "steps": [
+            {"label": label, "method": "animate", "args": [[str(number)], still]}
+            for number, label in enumerate(words)
+        ],
+    }
+    buttons = {
+        "type": "buttons",
+        "direction": "right",
+        "showactive": False,
+        "x": 0.0,
+        "xanchor": "left",
+        "y": -0.12,
+        "yanchor": "top",
+        "bgcolor": "white",
+        "font": {"size": 12},
+        "buttons": [
+            {"label": "play", "method": "animate", "args": [None, {**shown, "fromcurrent": True}]},
+            {"label": "pause", "method": "animate", "args": [[None], still]},
+        ],
+    }
+    return {"sliders": [slider], "updatemenus": [buttons]}
+
+
+def _window(pair: SpurPair) -> dict[str, Any]:
+    """Axes of equal scale around the middle of the path of contact."""
+    ends = on_line_of_action(pair, np.array(pair.path_limits))
+    # As high as the path of contact and the arrows need.
+    wanted = 0.5 * abs(ends[1, 1] - ends[1, 0]) + _ARROW * pair.pinion.normal_module
+    scale = max(1.0, wanted / (_WINDOW[1] * pair.pinion.normal_module))
+    middle = displayed("center_distance", ends.mean(axis=1))
+    half = displayed("center_distance", scale * np.array(_WINDOW) * pair.pinion.normal_module)
+    common = {"zeroline": False, "showgrid": False}
+    ranges = [
+        [float(at - reach), float(at + reach)] for at, reach in zip(middle, half, strict=True)
+    ]
+    return {
+        "xaxis": {
+            "title": {"text": axis_label("center_distance", "x")},
+            "range": ranges[0],
+            **common,
+        },
+        "yaxis": {
+            "title": {"text": axis_label("center_distance", "y")},
+            "range": ranges[1],
+            "scaleanchor": "x",
+            **common,
+        },
+    }
+
+
+def _chosen(contact: LoadedContact, phase: float | None) -> list[int]:
+    """Indices of the phases that are drawn."""
+    if phase is not None:
+        period = contact.mesh_cycles if several_cycles(contact) else 1
+        apart = np.abs((contact.phase - phase + 0.5 * period) % period - 0.5 * period)
+        return [int(np.argmin(apart))]
+    first = np.flatnonzero(contact.phase < 1.0)
+    places = np.linspace(0, first.size, min(_FRAMES, first.size), endpoint=False)
+    return [int(place) for place in places]
+
+
+@drawing(
+    "mesh_deformation",
+    heading="Deformation of the teeth",
+    caption="Teeth in mesh, bent by their loads: grey without load, coloured with the deformation "
+    "exaggerated. The arrows are the forces on the driven gear. The bores keep their places, and "
+    "the driving gear turns until the flanks touch.",
+    of="LoadedContact",
+    made_by="Call tribodyn.loaded_contact(case) and its plot method.",
+)
+def mesh_deformation(
+    contact: LoadedContact, *, phase: float | None = None, torque: int = -1
+) -> Any:
+    """Draw the teeth in mesh with their deformation exaggerated, and their loads.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        What :func:`tribodyn.stiffness.loaded_contact` returns. Gears are bent by finite elements,
+        whatever provider the loads come from.
+    phase : float, optional
+        Mesh phase; a slider over a mesh cycle where absent.
+    torque : int
+        Which of several torques.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    import plotly.graph_objects as go
+
+    pair, chosen = contact.gear_pair, _chosen(contact, phase)
+    torque %= int(np.size(contact.torque))
+    meshes = [bent_mesh(contact, at, torque) for at in chosen]
+    factor = _exaggeration(meshes, pair.pinion.normal_module)
+    greatest = max(load.force for mesh in meshes for load in mesh.loads)
+    frames = [
+        [*_gears(pair, mesh, factor), *_arrows(pair, mesh, factor, greatest)] for mesh in meshes
+    ]
+    errors = np.reshape(contact.transmission_error, (-1, contact.phase.size))[torque]
+    words = [
+        f"Mesh phase {significant(float(contact.phase[at]), 2)}: transmission error "
+        f"{rounded('static_transmission_error', float(errors[at]))}"
+        for at in chosen
+    ]
+    several, load = len(frames) > 1, torque_names(contact.torque)[torque]
+    made = figure(
+        f"Under {load} the teeth bend as drawn, {factor:g} times enlarged",
+        frames[0],
+        {
+            **_window(pair),
+            **(_controls(words) if several else {}),
+            "height": _HEIGHT,
+            "hovermode": False,
+            "margin": {"l": 70, "r": 24, "t": 74, "b": 150 if several else 58},
+            "legend": {"orientation": "h", "x": 0.0, "y": 1.0, "yanchor": "bottom"},
+        },
+    )
+    if several:
+        made.frames = [go.Frame(name=str(k), data=data) for k, data in enumerate(frames)]
+    return made

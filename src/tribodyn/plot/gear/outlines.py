@@ -1,0 +1,169 @@
+"""Outlines of both gears near the contact, bent by their loads, in the common frame of the pair.
+
+The frame is that of :mod:`tribodyn.plot.gear_drawing`: the pinion's axis is the origin, the
+wheel's axis lies on the horizontal axis, and points are complex numbers.
+
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.contact import path_of_contact
+from tribodyn.gear import Material, gear_outline
+from tribodyn.types import Array, ComplexArray
+
+if TYPE_CHECKING:
+    from tribodyn.gear import SpurGear, SpurPair
+    from tribodyn.stiffness import LoadedContact
+
+#: Array of each tooth: enough for a smooth trochoid on the screen.
+_TOOTH_POINTS = 60
+#: Part of the total force from which a load is drawn, and teeth drawn on each side of the middle.
+_LOADED, _TEETH = 1e-3, 2
+
+
+def on_line_of_action(pair: SpurPair, path: Any) -> Array:
+    """Place positions on the line of action in the plane."""
+    angle, radius = pair.operating_pressure_angle, pair.pinion.base_radius
+    along = np.asarray(path, dtype=float)
+    x = radius * math.cos(angle) + along * math.sin(angle)
+    y = -radius * math.sin(angle) + along * math.cos(angle)
+    return np.array([x, y])
+
+
+def tooth_angles(pair: SpurPair, path: float) -> tuple[float, float]:
+    """Directions of the two teeth that touch at a position."""
+    x, y = on_line_of_action(pair, path)
+    places = ((pair.pinion, x, y), (pair.wheel, x - pair.center_distance, y))
+    first, second = (
+        math.atan2(v, u) - float(gear.half_tooth_angle(math.hypot(u, v))) for gear, u, v in places
+    )
+    return first, second
+
+
+def placed_outline(
+    gear: SpurGear, center: float, angle: float, points: int = _TOOTH_POINTS
+) -> Array:
+    """Outline of a whole gear at its place."""
+    x, y = gear_outline(gear, points)
+    turned = (x + 1j * y) * cmath.exp(1j * (angle - math.pi / 2.0))
+    return np.array([center + turned.real, turned.imag])
+
+
+def circle(center: float, radius: float, points: int = 181) -> Array:
+    """Array of a circle around a point of the horizontal axis."""
+    angle = np.linspace(0.0, 2.0 * np.pi, points)
+    return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])
+
+
+def rotation_arc(center: float, radius: float, sense: int, points: int = 25) -> Array:
+    """Array of an arc above a gear's axis, in the order in which the gear turns."""
+    angle = 0.5 * np.pi + sense * np.linspace(-0.25 * np.pi, 0.25 * np.pi, points)
+    return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])
+
+
+@dataclass(frozen=True)
+class Load:
+    """Load on one tooth pair."""
+
+    path: float  #: place on the line of action where involutes would touch [m]
+    pinion_curvature_radius: float  #: [m]
+    wheel_curvature_radius: float  #: [m]
+    force: float  #: normal force [N]
+
+
+@dataclass(frozen=True, eq=False)
+class BentMesh:
+    """Both gears near the contact at one phase."""
+
+    outline: dict[str, ComplexArray]  #: of ``"pinion"`` and ``"wheel"`` without load [m]
+    displacement: dict[str, ComplexArray]  #: [m]
+    contact: ComplexArray  #: where the loaded pairs touch without load [m]
+    shift: ComplexArray  #: displacement of these places [m]
+    loads: list[Load]  #: on these pairs
+
+
+def loads_at(contact: LoadedContact, phase: int, torque: int = 0) -> list[Load]:
+    """Pairs that carry load at one phase."""
+    shape = contact.normal_force.shape
+    force = contact.normal_force.reshape(-1, *shape[-2:])[torque, phase]
+    return [
+        Load(
+            float(contact.path[phase, k]),
+            float(contact.pinion_curvature_radius[phase, k]),
+            float(contact.wheel_curvature_radius[phase, k]),
+            float(force[k]),
+        )
+        for k in np.flatnonzero(force > _LOADED * force.sum())
+    ]
+
+
+def _bent(
+    pair: SpurPair, name: str, angle: float, given: list[tuple[int, float, float]], reference: str
+) -> tuple[ComplexArray, ComplexArray]:
+    """Outline and displacement of one gear, whose tooth 0 points into a direction."""
+    from tribodyn.stiffness.fe2d import deformed_gear
+
+    gear = getattr(pair, name)
+    # Models of the literature that know no reference are drawn as held at the bore.
+    held = "rim" if reference == "rim" or gear.bore_diameter == 0.0 else "bore"
+    middle = gear.base_radius * gear.roll_angle(0.5 * (gear.form_radius + gear.tip_radius))
+    # Unloaded teeth are named as well, so that the same ones are drawn at every phase.
+    loaded = {tooth for tooth, _, _ in given}
+    rest = [(k, middle, 0.0) for k in range(1 - _TEETH, _TEETH) if k not in loaded]
+    outline, moved = deformed_gear(gear, Material(), [*given, *rest], reference=held)
+    # There the right flank is loaded, here the left one.
+    turn = cmath.exp(1j * (angle - 0.5 * math.pi))
+    center = 0.0 if name == "pinion" else pair.center_distance
+    return center + turn * (-outline[0] + 1j * outline[1]), turn * (-moved[0] + 1j * moved[1])
+
+
+def _touched(pair: SpurPair, name: str, angle: float, tooth: int, radius: float) -> complex:
+    """Place on the loaded flank of one gear with a radius of curvature."""
+    gear = getattr(pair, name)
+    distance = min(math.hypot(gear.base_radius, radius), gear.tip_radius)
+    center = 0.0 if name == "pinion" else pair.center_distance
+    direction = angle + 2.0 * math.pi * tooth / gear.teeth
+    return center + cmath.rect(distance, direction + float(gear.half_tooth_angle(distance)))
+
+
+def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
+    """Bend both gears by the loads of one phase."""
+    pair, loads = contact.gear_pair, loads_at(contact, phase, torque)
+    path = path_of_contact(pair)
+    middle = 0.5 * (path.A + path.E)
+    anchor = float(contact.path[phase, np.argmin(np.abs(contact.path[phase] - middle))])
+    steps = [round((load.path - anchor) / pair.base_pitch) for load in loads]
+    width = pair.common_face_width
+    outline, moved, angles = (
+        {},
+        {},
+        dict(zip(("pinion", "wheel"), tooth_angles(pair, anchor), strict=True)),
+    )
+    places: dict[str, list[complex]] = {}
+    shifts: dict[str, list[complex]] = {}
+    for name, sense in (("pinion", 1), ("wheel", -1)):
+        radii = [float(getattr(load, f"{name}_curvature_radius")) for load in loads]
+        # Teeth count to the side of larger radii of curvature of this gear.
+        given = [
+            (sense * step, radius, load.force / width)
+            for step, radius, load in zip(steps, radii, loads, strict=True)
+        ]
+        outline[name], moved[name] = _bent(pair, name, angles[name], given, contact.reference)
+        places[name] = [_touched(pair, name, angles[name], *each[:2]) for each in given]
+        nearest = [int(np.argmin(np.abs(outline[name] - place))) for place in places[name]]
+        shifts[name] = [complex(moved[name][at]) for at in nearest]
+    normal = cmath.rect(1.0, 0.5 * math.pi - pair.operating_pressure_angle)
+    forces = np.array([load.force for load in loads])
+    apart = (np.array(shifts["wheel"]) - np.array(shifts["pinion"])) * normal.conjugate()
+    turn = float(np.average(apart.real, weights=forces)) / pair.driving.base_radius
+    driver, center = pair.driver, 0.0 if pair.driver == "pinion" else pair.center_distance
+    moved[driver] = moved[driver] + 1j * turn * (outline[driver] - center)
+    driven = "wheel" if driver == "pinion" else "pinion"
+    return BentMesh(outline, moved, np.array(places[driven]), np.array(shifts[driven]), loads)

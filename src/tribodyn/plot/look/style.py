@@ -1,0 +1,114 @@
+"""One look for every figure: colours with fixed roles, fonts, grids, curves, buttons.
+
+The colours are those of Okabe and Ito, which stay apart under the common forms of colour
+blindness; curves that share a panel differ in dash as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+#: One curve as plotly describes it.
+Trace = dict[str, Any]
+
+FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+INK = "#1f2933"
+MUTED = "#6b7785"
+GRID = "#e4e8ec"
+#: Fixed roles, so that a colour means the same thing in every figure.
+PINION = "#0072B2"
+WHEEL = "#D55E00"
+TOTAL = INK
+PAIR_COLORS = ("#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+#: Light fill that goes with a line colour.
+FILLS = {PINION: "rgba(0, 114, 178, 0.14)", WHEEL: "rgba(213, 94, 0, 0.14)"}
+#: Pixels above and below the panels of a figure.
+TOP, BOTTOM = 74, 58
+#: The line that follows the pointer, and the number that it points at.
+_SPIKE = {"spikecolor": MUTED, "spikethickness": 1, "spikedash": "solid", "hoverformat": ".4g"}
+
+
+def _axis(**more: Any) -> dict[str, Any]:
+    return {
+        "gridcolor": GRID,
+        "linecolor": MUTED,
+        "showline": True,
+        "ticks": "outside",
+        "ticklen": 4,
+        "tickcolor": MUTED,
+        "zeroline": False,
+        "automargin": True,
+        "exponentformat": "none",
+        "title": {"standoff": 10, "font": {"size": 13, "color": MUTED}},
+        **more,
+    }
+
+
+def figure(
+    title: str, traces: Sequence[dict[str, Any]], layout: dict[str, Any] | None = None
+) -> Any:
+    """Make a plotly figure in the look of the package."""
+    import plotly.graph_objects as go
+
+    common: dict[str, Any] = {
+        "template": {"layout": {"xaxis": _axis(**_SPIKE), "yaxis": _axis()}},
+        "title": {
+            "text": title,
+            "x": 0.0,
+            "xref": "container",
+            "y": 1.0,
+            "yref": "container",
+            "yanchor": "top",
+            "pad": {"t": 12},
+            "font": {"size": 17, "color": INK},
+        },
+        "font": {"family": FONT, "size": 13, "color": INK},
+        "paper_bgcolor": "white",
+        "plot_bgcolor": "white",
+        "hovermode": "x unified",
+        "hoverlabel": {"bgcolor": "white", "bordercolor": GRID, "font": {"family": FONT}},
+        "margin": {"l": 70, "r": 24, "t": TOP, "b": BOTTOM},
+    }
+    return go.Figure({"data": list(traces), "layout": {**common, **(layout or {})}})
+
+
+def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
+    """Describe buttons above the left end of the panels, clear of the menu of the figure."""
+    return {
+        "type": "buttons",
+        "direction": "right",
+        "buttons": [
+            {"label": words, "method": "relayout", "args": [change]} for words, change in choices
+        ],
+        "x": 0.0,
+        "xanchor": "left",
+        "y": 1.0,
+        "yanchor": "bottom",
+        "pad": {"b": 6},
+        "showactive": True,
+        "bgcolor": "white",
+        "font": {"size": 12},
+    }
+
+
+def line(
+    x: Any,
+    y: Any,
+    name: str,
+    color: str,
+    *,
+    unit: str = "",
+    dash: str = "solid",
+    width: float = 2.0,
+) -> dict[str, Any]:
+    """Describe one curve whose hover text carries its unit."""
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": x,
+        "y": y,
+        "name": name,
+        "line": {"color": color, "dash": dash, "width": width},
+        "hovertemplate": f"%{{y:.4g}} {unit}".rstrip() + f"<extra>{name}</extra>",
+    }

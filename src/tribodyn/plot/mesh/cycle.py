@@ -1,0 +1,100 @@
+"""The mesh table as curves: two mesh cycles, the life of one tooth pair, and the events.
+
+Everything here reads the mesh table alone, so that a table draws itself without its case.
+
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribodyn.plot.gear.path import further_changes
+from tribodyn.plot.look.labels import axis_label
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
+#: Mesh cycles drawn, so that the transition from one cycle to the next is seen.
+CYCLES = 2
+#: How to come by what these figures draw.
+RUN = "Call tribodyn.run(case) and draw what it returns."
+TABLE = "Call tribodyn.run(case), whose result has one, or tribodyn.mesh.build."
+Curve = tuple[Array, Array]
+
+
+def cycles(phase: Array, values: Array, repeats: int = CYCLES) -> Curve:
+    """Repeat one mesh cycle side by side."""
+    shifted = [phase + cycle for cycle in range(repeats)]
+    return np.concatenate(shifted), np.tile(values, repeats)
+
+
+def pair_life(mesh: MeshTable, column: str) -> Curve:
+    """Follow one tooth pair from where it enters to where it leaves."""
+    values = getattr(mesh, column)
+    ages = mesh.phase[:, None] + np.arange(values.shape[1])
+    touching = mesh.in_contact.T
+    return ages.T[touching], values.T[touching]
+
+
+def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
+    """Follow every tooth pair that touches within the cycles drawn, from zero and back to zero."""
+    age, values = pair_life(mesh, column)
+    age = np.concatenate((age[:1], age, age[-1:]))
+    values = np.concatenate(([0.0], values, [0.0]))
+    lives = []
+    for start in range(1 - mesh.in_contact.shape[1], CYCLES):
+        seen = (age + start >= 0.0) & (age + start <= CYCLES)
+        lives.append((age[seen] + start, values[seen]))
+    return lives
+
+
+def _driving(mesh: MeshTable) -> tuple[Array, float]:
+    """Radius of curvature of the driving flank along a pair's life, and its base radius [m]."""
+    radius = pair_life(mesh, f"{mesh.driver}_curvature_radius")[1]
+    return radius, getattr(mesh, f"base_radius_{mesh.driver}")
+
+
+def driving_roll_angle(mesh: MeshTable) -> Array:
+    """Roll angle of the driving gear along the life of one tooth pair."""
+    radius, base_radius = _driving(mesh)
+    return radius / base_radius
+
+
+def roll_angle_label(mesh: MeshTable) -> str:
+    """Label of an axis of roll angles."""
+    return axis_label("roll_angle", f"Roll angle of the driving gear ({mesh.driver})")
+
+
+def positions(mesh: MeshTable) -> dict[str, float]:
+    """Ages at which a tooth pair passes the positions A to E and further changes of sharing."""
+    radius, base_radius = _driving(mesh)
+    line_of_action = mesh.pinion_curvature_radius[0, 0] + mesh.wheel_curvature_radius[0, 0]
+    share = base_radius / (mesh.base_radius_pinion + mesh.base_radius_wheel)
+    base_pitch = abs(mesh.path[-1, 0] - mesh.path[0, 0])
+    pitch_point = (share * line_of_action - radius[0]) / base_pitch
+    ratio = mesh.transverse_contact_ratio
+    letters = {"A": 0.0, "B": ratio - 1.0, "C": float(pitch_point), "D": 1.0, "E": ratio}
+    return letters | further_changes(ratio)
+
+
+def roll_angle_positions(mesh: MeshTable) -> dict[str, float]:
+    """Roll angles of the driving gear at the positions A to E and further changes of sharing."""
+    radius, base_radius = _driving(mesh)
+    base_pitch = abs(mesh.path[-1, 0] - mesh.path[0, 0])
+    return {
+        name: float((radius[0] + age * base_pitch) / base_radius)
+        for name, age in positions(mesh).items()
+    }
+
+
+def mesh_events(mesh: MeshTable, repeats: int = CYCLES) -> list[tuple[str, float]]:
+    """Name the phases at which a tooth pair enters, leaves or rolls without sliding."""
+    age = positions(mesh)
+    marks = [("enters", 0.0), ("leaves", age["E"] % 1.0)]
+    if 0.0 <= age["C"] < age["E"]:
+        marks.append(("C", age["C"] % 1.0))
+    marked = [(name, phase + cycle) for cycle in range(repeats) for name, phase in marks]
+    return [*marked, ("enters", float(repeats))]

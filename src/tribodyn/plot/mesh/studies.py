@@ -1,0 +1,327 @@
+"""Studies of the mesh at rest: Harris map, search for a tip relief, stiffness with oil film."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.gear.path import mesh_marks, pair_letters, roll_label
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.look.panels import Panel, Row, event_lines, stack, stack_rows
+from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, WHEEL, line
+from tribodyn.plot.mesh.loaded_contact import named, torque_colors, torque_names, whole_cycles
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import ComprehensiveStiffness
+    from tribodyn.stiffness import HarrisMap, TipReliefOptimum
+
+_QUANTITY = "static_transmission_error"
+#: Mesh harmonics drawn, each with a dash of its own; curves of the transmission error.
+_HARMONICS = ("dash", "dot", "dashdot")
+_MOST_CURVES = 25
+_CYCLES = 2
+#: From little to much transmission error.
+_SCALE = [[0.0, "#f7fbff"], [0.5, "#c6dbef"], [1.0, "#6baed6"]]
+#: Part of the height of the figure that the colour bar takes, and its middle.
+_BAR = {"len": 0.34, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
+#: Panels: column, quantity and words.
+_PANELS = (
+    ("film_stiffness", "film_stiffness", "Oil film K<sub>o</sub>"),
+    ("tooth_stiffness", "tooth_stiffness", "Teeth K<sub>m</sub>"),
+    ("pair_stiffness", "pair_stiffness", "Both in series K"),
+)
+#: Values that differ by more than this factor are drawn over a logarithmic axis.
+_WIDE = 20.0
+_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
+
+
+def _curves(study: HarrisMap) -> Row:
+    """Transmission error over the mesh cycles, one curve for each torque."""
+    unit, cycles = display_unit(_QUANTITY), 2 if study.mesh_cycles == 1 else 1
+    rigid = study.unloaded_transmission_error
+
+    def over(values: Array) -> tuple[Array, Array]:
+        return whole_cycles(study.phase, displayed(_QUANTITY, values), study.mesh_cycles, cycles)
+
+    traces = []
+    if np.any(rigid):
+        phase, shown = over(rigid)
+        traces.append(line(phase, shown, "no load", MUTED, unit=unit, dash="dash", width=1.2))
+    count = study.torque.size
+    chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_CURVES)).round().astype(int))
+    labels, looks = torque_names(study.torque), torque_colors(count)
+    for number, known in zip(chosen[::-1], named(chosen.size)[::-1], strict=True):
+        trace = line(
+            *over(study.transmission_error[number]),
+            labels[number],
+            looks[number],
+            unit=unit,
+            width=1.6,
+        )
+        traces.append({**trace, "showlegend": known})
+    return Row(
+        axis_label("mesh_phase", "Mesh cycles"),
+        Panel(axis_label(_QUANTITY, "Transmission error"), traces, height=1.5),
+        {"range": [0, cycles * study.mesh_cycles]},
+        mesh_marks(study.gear_pair, cycles) if study.mesh_cycles == 1 else (),
+    )
+
+
+def _harris_swings(study: HarrisMap) -> Row:
+    """Peak-to-peak value and mesh harmonics over the torque."""
+    unit, torque = display_unit(_QUANTITY), displayed("torque", study.torque)
+    mode = {"mode": "lines+markers", "marker": {"size": 5}}
+    swing = displayed(_QUANTITY, study.peak_to_peak_transmission_error)
+    traces = [{**line(torque, swing, "peak to peak", TOTAL, unit=unit), **mode}]
+    for number, dash in enumerate(_HARMONICS[: study.harmonics.shape[1]]):
+        amplitude = displayed(_QUANTITY, study.harmonics[:, number])
+        name, color = f"harmonic {number + 1}", PAIR_COLORS[number]
+        traces.append({**line(torque, amplitude, name, color, unit=unit, dash=dash), **mode})
+    quietest = float(displayed("torque", study.quietest_torque))
+    inside = study.torque.min() < study.quietest_torque < study.torque.max()
+    return Row(
+        axis_label("torque", "Torque on the pinion"),
+        Panel(axis_label(_QUANTITY, "Swing, amplitude"), traces, {"rangemode": "tozero"}, 1.2),
+        {"rangemode": "tozero"},
+        [("least", quietest)] if inside else (),
+    )
+
+
+@drawing(
+    "harris_map",
+    heading="Transmission error over torque",
+    caption="Above, the transmission error of the mesh at rest under rising torque; below, how far "
+    "it swings and how much of that falls on each mesh harmonic. Modified flanks are quietest at "
+    "the torque for which they were made.",
+    of="HarrisMap",
+    made_by="Call tribodyn.harris_map(case) and its plot method.",
+)
+def harris_map(study: HarrisMap) -> Any:
+    """Draw the transmission error for each torque, and its swing and harmonics over the torque.
+
+    Parameters
+    ----------
+    study : HarrisMap
+        What :func:`tribodyn.harris_map` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    swings = study.peak_to_peak_transmission_error
+    least = rounded(_QUANTITY, float(np.min(swings)))
+    quietest = torque_names(study.torque)[int(np.argmin(swings))]
+    return stack_rows(
+        f"Quietest at {quietest}: there the transmission error swings by {least}",
+        [_curves(study), _harris_swings(study)],
+    )
+
+
+def _map(study: TipReliefOptimum) -> Row:
+    """Objective over amount and length, with a mark at the optimum."""
+    unit = display_unit(_QUANTITY)
+    micro, milli = display_unit("tip_relief"), display_unit("tip_relief_length")
+    hover = f"%{{x:.4g}} {micro} over %{{y:.4g}} {milli}: %{{z:.4g}} {unit}<extra></extra>"
+    surface = {
+        "type": "contour",
+        "x": displayed("tip_relief", study.map_amount),
+        "y": displayed("tip_relief_length", study.map_length),
+        "z": displayed(_QUANTITY, study.map_objective.T),
+        "colorscale": _SCALE,
+        "ncontours": 16,
+        "contours": {"showlabels": True, "labelfont": {"size": 10, "color": INK}},
+        "line": {"width": 0.6, "color": MUTED},
+        "colorbar": {**_BAR, "title": {"text": f"[{unit}]"}},
+        "name": "peak to peak",
+        "hovertemplate": hover,
+        "showlegend": False,
+    }
+    optimum = {
+        "type": "scatter",
+        "mode": "markers+text",
+        "x": [float(displayed("tip_relief", study.amount))],
+        "y": [float(displayed("tip_relief_length", study.length))],
+        "marker": {
+            "symbol": "star",
+            "size": 15,
+            "color": WHEEL,
+            "line": {"color": "white", "width": 1},
+        },
+        "text": ["optimum"],
+        "textposition": "top center",
+        "textfont": {"color": TOTAL},
+        "name": "optimum",
+        "hovertemplate": f"%{{x:.4g}} {micro} over %{{y:.4g}} {milli}<extra>optimum</extra>",
+        "showlegend": False,
+    }
+    return Row(
+        axis_label("tip_relief", "Amount of the tip relief"),
+        Panel(axis_label("tip_relief_length", "Its length"), [surface, optimum], height=1.6),
+        {"range": displayed("tip_relief", study.map_amount[[0, -1]]).tolist()},
+    )
+
+
+def _relief_swings(study: TipReliefOptimum) -> Row:
+    """Peak-to-peak value over the torque, without and with the relief."""
+    unit, torque = display_unit(_QUANTITY), displayed("torque", study.torque)
+    mode = {"mode": "lines+markers", "marker": {"size": 6}}
+    traces = [
+        {**line(torque, displayed(_QUANTITY, swing), name, color, unit=unit, dash=dash), **mode}
+        for name, color, dash, swing in (
+            ("without", MUTED, "dash", study.peak_to_peak_before),
+            ("with relief", WHEEL, "solid", study.peak_to_peak_after),
+        )
+    ]
+    return Row(
+        axis_label("torque", "Torque on the pinion"),
+        Panel(axis_label(_QUANTITY, "Peak to peak"), traces, {"rangemode": "tozero"}, 0.8),
+    )
+
+
+def _courses(study: TipReliefOptimum) -> Row:
+    """Transmission error over two mesh cycles, without and with the relief, at both ends."""
+    unit, names = display_unit(_QUANTITY), torque_names(study.torque)
+    ends = sorted({0, study.torque.size - 1})
+    traces = []
+    for number, color in zip(ends, torque_colors(len(ends)), strict=True):
+        for words, dash, course in (
+            ("without", "dash", study.transmission_error_before),
+            ("with", "solid", study.transmission_error_after),
+        ):
+            shown = displayed(_QUANTITY, course[number])
+            curve = whole_cycles(study.phase, shown, 1, _CYCLES)
+            traces.append(line(*curve, f"{names[number]}, {words}", color, unit=unit, dash=dash))
+    return Row(
+        axis_label("mesh_phase", "Mesh cycles"),
+        Panel(axis_label(_QUANTITY, "Transmission error"), traces),
+        {"range": [0, _CYCLES]},
+        mesh_marks(study.gear_pair, _CYCLES),
+    )
+
+
+def _relief_caption(study: TipReliefOptimum) -> str:
+    kind = "largest" if study.objective_kind == "largest" else "mean"
+    words = (
+        f"The map shows the {kind} peak-to-peak transmission error over the torques for each "
+        f"{study.shape} tip relief, and the star the best one. Below, what it brings at each "
+        "torque and over the mesh cycle."
+    )
+    if study.on_edge:
+        return f"{words} The best lies at the edge of the range that was searched: widen it."
+    return words
+
+
+@drawing(
+    "tip_relief_map",
+    heading="Search for a tip relief",
+    caption=_relief_caption,
+    of="TipReliefOptimum",
+    made_by="Call tribodyn.optimize_tip_relief(case) and its plot method.",
+)
+def tip_relief_map(study: TipReliefOptimum) -> Any:
+    """Draw the objective over amount and length, and the transmission error before and after.
+
+    Parameters
+    ----------
+    study : TipReliefOptimum
+        What :func:`tribodyn.optimize_tip_relief` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    amount = rounded("tip_relief", study.amount)
+    length = rounded("tip_relief_length", study.length)
+    before, after = (
+        rounded(_QUANTITY, value) for value in (study.objective_before, study.objective)
+    )
+    made = stack_rows(
+        f"A tip relief of {amount} over {length} lowers the swing from {before} to {after}",
+        [_map(study), _relief_swings(study), _courses(study)],
+    )
+    return made.update_layout(hovermode="closest")
+
+
+def _looks(study: ComprehensiveStiffness) -> list[tuple[int, int, str, str, str]]:
+    """Indices of torque and speed with name, colour and dash of each curve."""
+    torques = torque_names(study.pinion_torque)
+    speeds = [rounded("speed", float(value)) for value in study.pinion_speed]
+    by_speed = len(torques) == 1
+    colors = torque_colors(len(speeds) if by_speed else len(torques))
+    found = []
+    for t, torque in enumerate(torques):
+        for s, speed in enumerate(speeds):
+            names = [torque] * (len(torques) > 1) + [speed] * (len(speeds) > 1)
+            dash = "solid" if by_speed else _DASHES[s % len(_DASHES)]
+            found.append((t, s, ", ".join(names) or torque, colors[s if by_speed else t], dash))
+    return found
+
+
+def _panel(
+    study: ComprehensiveStiffness, number: int, looks: list[tuple[int, int, str, str, str]]
+) -> Panel:
+    column, quantity, words = _PANELS[number]
+    unit, angle = display_unit(quantity), displayed("roll_angle", study.roll_angle)
+    values, traces = getattr(study, column), []
+    for t, s, name, color, dash in looks:
+        shown = displayed(quantity, values[t, s])
+        trace = line(angle, shown, name, color, unit=unit, dash=dash)
+        # One legend for all panels, beside the first.
+        more = {"legendgroup": name, "showlegend": number == 0 and len(looks) > 1}
+        traces.append({**trace, **more})
+    sizes = displayed(quantity, getattr(study, column))
+    sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
+    wide = sizes.size > 0 and float(sizes.max()) > _WIDE * float(sizes.min())
+    return Panel(axis_label(quantity, words), traces, {"type": "log"} if wide else {})
+
+
+def _series_caption(study: ComprehensiveStiffness) -> str:
+    words = (
+        "Stiffness of one tooth pair from A to E: of its oil film, of its teeth, and of both in "
+        "series. The softer of the two rules the pair."
+    )
+    if study.kind == "seed":
+        return f"{words} Film and teeth are put together as totals, as the source prints them."
+    return words
+
+
+@drawing(
+    "comprehensive_stiffness",
+    heading="Stiffness of teeth and film",
+    caption=_series_caption,
+    of="ComprehensiveStiffness",
+    made_by="Call tribodyn.comprehensive_stiffness(case) and its plot method.",
+)
+def comprehensive_stiffness(study: ComprehensiveStiffness) -> Any:
+    """Draw the stiffness of film, teeth and both in series over the roll angle.
+
+    Parameters
+    ----------
+    study : ComprehensiveStiffness
+        What :func:`tribodyn.comprehensive_stiffness` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        A curve for each torque and speed: colours for torques and dashes for speeds, or colours
+        for the speeds of a single torque.
+    """
+    pair, looks = study.gear_pair, _looks(study)
+    with_film = float(np.mean(study.mean_mesh_stiffness))
+    teeth = float(np.mean(study.mean_tooth_stiffness))
+    layout = event_lines(pair_letters(pair))
+    layout["xaxis"] = {"range": displayed("roll_angle", study.roll_angle[[0, -1]]).tolist()}
+    figure = stack(
+        f"The film lowers the mean mesh stiffness from {rounded('mesh_stiffness', teeth)} to "
+        f"{rounded('mesh_stiffness', with_film)}",
+        roll_label(pair),
+        [_panel(study, number, looks) for number in range(len(_PANELS))],
+        layout,
+    )
+    words = "Pinion torque" if len(study.pinion_torque) > 1 else "Pinion speed"
+    both = len(study.pinion_torque) > 1 and len(study.pinion_speed) > 1
+    title = {"text": f"{words}, speed" if both else words, "font": {"size": 13}}
+    return figure.update_layout(legend={"title": title})

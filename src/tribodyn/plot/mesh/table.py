@@ -1,0 +1,363 @@
+"""The mesh at rest: its stiffness, load sharing, transmission error and force law."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.look.panels import Panel, Row, event_lines, stack, stack_rows
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, line
+from tribodyn.plot.mesh.cycle import (
+    CYCLES,
+    TABLE,
+    cycles,
+    mesh_events,
+    pair_life,
+    pair_lives,
+    positions,
+)
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
+_PAIR = "one tooth pair"
+#: Mesh cycles shown before A and after E.
+_MARGIN = 0.12
+#: Part of the total force that counts as load on a tip corner.
+_LOADED = 1e-6
+_QUANTITY = "static_transmission_error"
+#: Mesh harmonics drawn.
+_ORDERS = 8
+_COLORS = (TOTAL, *PAIR_COLORS)
+#: Deflections of a curve, and how far it goes beyond the working load.
+_POINTS, _BEYOND = 241, 1.3
+
+
+@drawing(
+    "mesh_stiffness",
+    heading="Mesh stiffness",
+    caption="The stiffness jumps whenever a tooth pair enters or leaves the contact. These jumps "
+    "excite the vibration: the higher they are, the louder the gears. The coloured curves are "
+    "the single tooth pairs that add up to the total.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def mesh_stiffness(mesh: MeshTable) -> Any:
+    """Draw the stiffness of the tooth pairs and their sum.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    unit = display_unit("mesh_stiffness")
+    phase, total = cycles(mesh.phase, displayed("mesh_stiffness", mesh.mesh_stiffness))
+    traces = [line(phase, total, "all pairs", TOTAL, unit=unit)]
+    for number, (at, pair) in enumerate(pair_lives(mesh, "stiffness"), start=1):
+        color = PAIR_COLORS[(number - 1) % len(PAIR_COLORS)]
+        shown = displayed("pair_stiffness", pair)
+        traces.append(line(at, shown, f"tooth pair {number}", color, unit=unit, dash="dash"))
+    least, greatest = (rounded("mesh_stiffness", f(mesh.mesh_stiffness)) for f in (np.min, np.max))
+    return stack(
+        f"The mesh stiffness swings between {least} and {greatest}",
+        axis_label("mesh_phase", "Mesh cycles"),
+        [Panel(axis_label("mesh_stiffness"), traces, {"rangemode": "tozero"}, height=1.3)],
+        {**event_lines(mesh_events(mesh)), "xaxis": {"range": [0, CYCLES]}},
+    )
+
+
+def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array, Array]]:
+    """Stiffness of the pair between A and E, and of those before and after it."""
+    age, stiffness = pair_life(mesh, "stiffness")
+    age = np.concatenate((age[:1], age, age[-1:]))
+    stiffness = np.concatenate(([0.0], stiffness, [0.0]))
+    found = []
+    for shift in range(-len(mesh.path[0]), len(mesh.path[0]) + 1):
+        seen = (age + shift >= ends[0]) & (age + shift <= ends[1])
+        if np.count_nonzero(seen) > 1:
+            name = _PAIR if shift == 0 else "its neighbours"
+            found.append((name, age[seen] + shift, stiffness[seen]))
+    return sorted(found, key=lambda each: each[0] != _PAIR)
+
+
+def _total(mesh: MeshTable, values: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
+    """Repeat a column of the whole mesh over the ages that are shown."""
+    cycles = range(int(np.floor(ends[0])), int(np.ceil(ends[1])))
+    age = np.concatenate([mesh.phase + cycle for cycle in cycles])
+    seen = (age >= ends[0]) & (age <= ends[1])
+    return age[seen], np.tile(values, len(cycles))[seen]
+
+
+@drawing(
+    "static_stiffness",
+    heading="Stiffness over the roll angle",
+    caption="The secant is the load over the whole deflection, the tangent what counts for small "
+    "vibration about the load. The part of each tooth pair is its share of the secant.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def static_stiffness(mesh: MeshTable) -> Any:
+    """Draw secant and tangent stiffness of the mesh and the part of each tooth pair.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    pair, unit = mesh.gear_pair, display_unit("mesh_stiffness")
+    ends = (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
+
+    def curve(age: Array, values: Array, name: str, color: str, dash: str) -> dict[str, Any]:
+        x = displayed("roll_angle", roll_angle_of(pair, age))
+        return line(x, displayed("mesh_stiffness", values), name, color, unit=unit, dash=dash)
+
+    traces = [
+        curve(*_total(mesh, mesh.mesh_stiffness, ends), "all pairs, secant", TOTAL, "solid"),
+        curve(*_total(mesh, mesh.mesh_stiffness_tangent, ends), "all pairs, tangent", TOTAL, "dot"),
+    ]
+    named: set[str] = set()
+    for name, age, stiffness in _pairs(mesh, ends):
+        color = PAIR_COLORS[0] if name == _PAIR else MUTED
+        trace = curve(age, stiffness, name, color, "dash")
+        traces.append({**trace, "showlegend": name not in named})
+        named.add(name)
+    means = (mesh.mean_mesh_stiffness, mesh.mean_mesh_stiffness_tangent)
+    secant, tangent = (rounded("mesh_stiffness", mean) for mean in means)
+    x = displayed("roll_angle", roll_angle_of(pair, np.array(ends)))
+    return stack(
+        f"The mean stiffness is {secant} as a secant and {tangent} as a tangent",
+        roll_label(pair),
+        [Panel(axis_label("mesh_stiffness"), traces, {"rangemode": "tozero"}, 1.5)],
+        {**event_lines(pair_letters(pair)), "xaxis": {"range": x.tolist()}},
+    )
+
+
+def whole_life(mesh: MeshTable) -> tuple[Array, Array]:
+    """Follow the load share of one tooth pair, tip corners before A and after E included."""
+    age, share = pair_life(mesh, "load_share")
+    ratio = positions(mesh)["E"]
+    before, after = mesh.corner_share.T
+    coming = before > _LOADED
+    gone = mesh.phase + np.ceil(ratio - mesh.phase - 1e-9)
+    # At the knot where the pair is at E itself there are both sides of the event.
+    order = np.argsort(gone, kind="stable")
+    order = order[after[order] > _LOADED]
+    return (
+        np.concatenate((mesh.phase[coming] - 1.0, age, gone[order])),
+        np.concatenate((before[coming], share, after[order])),
+    )
+
+
+def _closed(age: Array, share: Array) -> tuple[Array, Array]:
+    """From zero and back to zero, so that the ends are drawn."""
+    ends = np.concatenate((age[:1], age, age[-1:]))
+    return ends, np.concatenate(([0.0], share, [0.0]))
+
+
+def _caption(mesh: MeshTable) -> str:
+    words = "How much of the load one tooth pair carries from where it comes in to where it leaves."
+    if np.any(mesh.corner_share > _LOADED):
+        return (
+            f"{words} The loaded teeth bend: where the background is grey, before A or after E, a "
+            "tip corner bears."
+        )
+    return words
+
+
+@drawing(
+    "load_sharing",
+    heading="Load sharing",
+    caption=_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def load_sharing(mesh: MeshTable) -> Any:
+    """Draw the load on one tooth pair over the roll angle of the driving gear.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    pair = mesh.gear_pair
+    age, share = _closed(*whole_life(mesh))
+    x = displayed("roll_angle", roll_angle_of(pair, age))
+    newton = display_unit("normal_force")
+    hover = f"%{{y:.4g}} (%{{customdata:.4g}} {newton})<extra>load share</extra>"
+    trace = {
+        **line(x, share, "load share", TOTAL),
+        "customdata": displayed("normal_force", share * mesh.total_normal_force),
+        "hovertemplate": hover,
+    }
+    layout = event_lines(pair_letters(pair))
+    for kind, found in corner_shades(pair, float(age[0]), float(age[-1])).items():
+        layout[kind] = [*found, *layout[kind]]
+    most = float(np.max(share)) * mesh.total_normal_force
+    return stack(
+        f"A tooth pair carries up to {rounded('normal_force', most)}, "
+        f"{100.0 * float(np.max(share)):.3g} % of the load",
+        roll_label(pair),
+        [Panel("Load share of a pair", [trace], {"range": [0.0, 1.05]}, 1.3)],
+        layout,
+    )
+
+
+def _course(mesh: MeshTable, mean: float) -> Row:
+    """Transmission error over the mesh cycles, and its mean."""
+    unit = display_unit(_QUANTITY)
+    phase, shown = cycles(mesh.phase, displayed(_QUANTITY, mesh.static_transmission_error))
+    level = np.full(2, displayed(_QUANTITY, mean))
+    curves = [
+        line(phase, shown, "under load", TOTAL, unit=unit),
+        line(np.array([0.0, CYCLES]), level, "mean", MUTED, unit=unit, dash="dash", width=1.2),
+    ]
+    return Row(
+        axis_label("mesh_phase", "Mesh cycles"),
+        Panel(axis_label(_QUANTITY, "Transmission error"), curves),
+        {"range": [0, CYCLES]},
+        mesh_events(mesh),
+    )
+
+
+def _bars(mesh: MeshTable) -> Row:
+    """Amplitudes of the mesh harmonics."""
+    unit = display_unit(_QUANTITY)
+    bars = {
+        "type": "bar",
+        "x": np.arange(1, _ORDERS + 1),
+        "y": displayed(_QUANTITY, mesh.harmonics(_QUANTITY, _ORDERS)),
+        "name": "amplitude",
+        "marker": {"color": TOTAL},
+        "width": 0.35,
+        "hovertemplate": f"%{{y:.4g}} {unit}<extra>harmonic %{{x}}</extra>",
+    }
+    return Row(
+        "Mesh harmonic",
+        Panel(axis_label(_QUANTITY, "Amplitude"), [bars], {"rangemode": "tozero"}, 0.7),
+        {"dtick": 1, "range": [0.4, _ORDERS + 0.6], "showgrid": False},
+    )
+
+
+@drawing(
+    "static_transmission_error",
+    heading="Static transmission error",
+    caption="How far the gears approach along the line of action when they turn very slowly under "
+    "load. What varies is the excitation of the vibration; the bars show how much of it falls on "
+    "each harmonic of the mesh frequency.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def static_transmission_error(mesh: MeshTable) -> Any:
+    """Draw the static transmission error over two mesh cycles, and its mesh harmonics.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    mean = float(mesh.grid.mean(mesh.static_transmission_error))
+    swing = float(np.ptp(mesh.static_transmission_error))
+    return stack_rows(
+        f"At rest the transmission error is {rounded(_QUANTITY, mean)} on average and varies by "
+        f"{rounded(_QUANTITY, swing)}",
+        [_course(mesh, mean), _bars(mesh)],
+    )
+
+
+def _phases(mesh: MeshTable) -> list[tuple[str, float]]:
+    """Phases in the middle between two events, and how many pairs are on the path there."""
+    events = sorted({0.0, positions(mesh)["E"] % 1.0, 1.0})
+    found = []
+    for start, stop in pairwise(events):
+        if stop - start > 1e-6:
+            middle = 0.5 * (start + stop)
+            pairs = int(np.count_nonzero(mesh.at("in_contact", middle)))
+            words = "1 pair" if pairs == 1 else f"{pairs} pairs"
+            # Shortly before the event a tip corner may carry.
+            for phase in (middle, stop - 0.05 * (stop - start)):
+                found.append((f"phase {significant(phase, 2)}: {words}", phase))
+    return found
+
+
+@drawing(
+    "force_law",
+    heading="Force law of the mesh",
+    caption="Force over the approach of the gears at places of the mesh cycle. The curve bends "
+    "upwards where the flanks flatten and where a further pair comes to bear; the marks are the "
+    "working load. To the left of a curve's foot the flanks are apart.",
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+)
+def force_law(mesh: MeshTable) -> Any:
+    """Draw the force on the mesh over its deflection for several mesh phases.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    law, load = mesh.force_law, mesh.total_normal_force
+    chosen = _phases(mesh)
+    working = np.array([float(law.deflection(phase, load)) for _, phase in chosen])
+    touch = np.array([float(law.first_touch(phase)) for _, phase in chosen])
+    first, last = float(touch.min()), float(working.max())
+    reach = last - first
+    deflection = np.linspace(first - 0.08 * reach, first + _BEYOND * reach, _POINTS)
+    newton, x = display_unit("normal_force"), displayed("deflection", deflection)
+    traces = [
+        line(
+            x,
+            displayed("normal_force", law.force(phase, deflection)),
+            words,
+            _COLORS[number % len(_COLORS)],
+            unit=newton,
+            dash="solid" if number % 2 == 0 else "dash",
+        )
+        for number, (words, phase) in enumerate(chosen)
+    ]
+    level = np.full(2, displayed("normal_force", load))
+    traces.append(line(x[[0, -1]], level, "working load", MUTED, unit=newton, dash="dot", width=1))
+    micro = display_unit("deflection")
+    marks = {
+        "type": "scatter",
+        "mode": "markers",
+        "x": displayed("deflection", working),
+        "y": np.full(working.size, level[0]),
+        "marker": {"color": [_COLORS[k % len(_COLORS)] for k in range(len(chosen))], "size": 9},
+        "name": "deflection under it",
+        "showlegend": False,
+        "hovertemplate": f"%{{y:.4g}} {newton} at %{{x:.4g}} {micro}<extra>working load</extra>",
+    }
+    low, high = (rounded("deflection", float(at(working))) for at in (np.min, np.max))
+    return stack(
+        f"The working load of {rounded('normal_force', load)} deflects the mesh by {low} to {high}",
+        axis_label("deflection", "Approach along the line of action"),
+        [Panel(axis_label("normal_force"), [*traces, marks], {"rangemode": "tozero"}, 1.6)],
+        {"hovermode": "closest"},
+    )

@@ -1,0 +1,244 @@
+"""The motion of a run: mesh force, transmission error, accelerations and bearing forces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.look.labels import axis_label, axis_words, display_unit, displayed, rounded
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, line
+from tribodyn.plot.mesh.cycle import RUN, cycles
+from tribodyn.plot.motion.motion import Motion, no_translation
+from tribodyn.study import record
+
+if TYPE_CHECKING:
+    from tribodyn.study import Result
+
+#: Name and colour of each gear's curve.
+GEARS = (("pinion", PINION), ("wheel", WHEEL))
+#: Axis of the coordinate and the words for it.
+DIRECTIONS = (("y", "along the line of action"), ("x", "across the line of action"))
+
+
+def words_of(quantity: str, direction: str) -> str:
+    """Quantity and direction on two lines, which fit beside one panel."""
+    return f"{axis_words(quantity)}<br>{direction}"
+
+
+def _motion_panels(motion: Motion, quantity: str) -> list[Panel]:
+    """Show a signal of both gears over the mesh cycle or over time."""
+    unit = display_unit(quantity)
+
+    def curve(gear: str, axis: str, color: str) -> dict[str, Any]:
+        x, y = motion.curve(quantity, motion.of_gear(quantity, gear, axis))
+        return line(x, y, gear, color, unit=unit, width=1.5)
+
+    return [
+        Panel(
+            axis_label(quantity, words_of(quantity, words)),
+            [curve(gear, axis, color) for gear, color in GEARS],
+        )
+        for axis, words in DIRECTIONS
+    ]
+
+
+def _below_zero(result: Result) -> str:
+    """Explain a negative force, which the driving flanks alone could not bear."""
+    fine = result.response.fine
+    if np.min(record.mesh_force(fine)) >= 0.0:
+        return ""
+    if result.half_backlash == 0.0:
+        return "Where it is negative, a mesh with play would part: this case has no backlash."
+    if np.any(record.compression(fine) < -record.first_touch(result.system, fine)):
+        return "Where it is negative, the play is used up and the back flanks touch."
+    return "Where it is negative, the damping of the contact pulls just before the flanks part."
+
+
+def _force_caption(result: Result) -> str:
+    motion = Motion(result)
+    friction = (
+        "Friction carries a part of the torque, so the mean of the dynamic force differs from the "
+        "static one."
+    )
+    sentences = (
+        "The force between the gears while they run, against the force that the torque alone "
+        "would cause. Where the curve stays at zero, the flanks have lost contact.",
+        friction if np.any(result.mesh.friction_coefficient) else "",
+        _below_zero(result),
+        motion.settling(motion.mesh_force),
+    )
+    return " ".join(filter(None, sentences))
+
+
+@drawing("mesh_force", heading="Mesh force", caption=_force_caption, of="Result", made_by=RUN)
+def mesh_force(result: Result) -> Any:
+    """Draw the dynamic and the static mesh force.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    motion, unit = Motion(result), display_unit("mesh_force")
+    force = motion.mesh_force
+    static = np.full_like(force, result.mesh.total_normal_force)
+    traces = [
+        line(*motion.curve("mesh_force", force), "dynamic", TOTAL, unit=unit),
+        line(*motion.curve("mesh_force", static), "static", MUTED, unit=unit, dash="dash"),
+    ]
+    low, high = (rounded("mesh_force", float(f(motion.measured(force)))) for f in (np.min, np.max))
+    return stack(
+        f"The mesh force swings between {low} and {high}{motion.window}",
+        motion.label,
+        [Panel(axis_label("mesh_force"), traces, {"rangemode": "tozero"}, height=1.3)],
+        motion.layout(),
+    )
+
+
+def _error_caption(result: Result) -> str:
+    motion = Motion(result)
+    sentences = [
+        "How far the driven gear lags behind its ideal place, measured on the line of action."
+    ]
+    if not motion.periodic:
+        sentences.append(motion.settling(motion.transmission_error))
+    elif np.any(result.mesh.friction_coefficient):
+        sentences.append(
+            "The dashed curve is the lag at a very slow speed without friction. What varies about "
+            "it is vibration; an offset of the mean comes from the friction, which carries a part "
+            "of the torque."
+        )
+    else:
+        sentences.append(
+            "The dashed curve is the lag at a very slow speed; what the running gears add to it "
+            "is vibration."
+        )
+    return " ".join(sentences)
+
+
+@drawing(
+    "transmission_error",
+    heading="Transmission error",
+    caption=_error_caption,
+    of="Result",
+    made_by=RUN,
+)
+def transmission_error(result: Result) -> Any:
+    """Draw the dynamic transmission error and, for a steady state, the quasi-static one.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    motion, unit = Motion(result), display_unit("dynamic_transmission_error")
+    moving = motion.transmission_error
+    traces = [
+        line(*motion.curve("dynamic_transmission_error", moving), "dynamic", TOTAL, unit=unit)
+    ]
+    if motion.periodic:
+        mesh = result.mesh
+        static = mesh.static_transmission_error + result.static_error(mesh.phase)
+        phase, shown = cycles(mesh.phase, displayed("transmission_error", static), motion.shown)
+        traces.append(line(phase, shown, "quasi-static", MUTED, unit=unit, dash="dash"))
+    swing = rounded("dynamic_transmission_error", float(np.ptp(motion.measured(moving))))
+    return stack(
+        f"The transmission error varies by {swing} peak to peak{motion.window}",
+        motion.label,
+        [Panel(axis_label("dynamic_transmission_error"), traces, height=1.3)],
+        motion.layout(),
+    )
+
+
+def _settling(result: Result, quantity: str) -> str:
+    motion = Motion(result)
+    return motion.settling(motion.of_gear(quantity, "pinion", "y"))
+
+
+def _shake_caption(result: Result) -> str:
+    return (
+        "How the two gear centres shake. Along the line of action the jumps of the stiffness act, "
+        "across it only friction does: without friction the lower panel is flat. "
+        + _settling(result, "acceleration")
+    ).rstrip()
+
+
+@drawing(
+    "acceleration",
+    heading="Accelerations",
+    caption=_shake_caption,
+    needs=no_translation,
+    of="Result",
+    made_by=RUN,
+)
+def acceleration(result: Result) -> Any:
+    """Draw the accelerations of the gear centres.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    motion = Motion(result)
+    strongest = np.max(np.abs(motion.measured(motion.of_gear("acceleration", "pinion", "y"))))
+    return stack(
+        f"The pinion shakes with up to {rounded('acceleration', strongest)} along the line of "
+        f"action{motion.window}",
+        motion.label,
+        _motion_panels(motion, "acceleration"),
+        motion.layout(),
+    )
+
+
+def _bearing_caption(result: Result) -> str:
+    return (
+        "The mean force loads the bearings; what varies around it shakes the housing and is heard. "
+        "Along the line of action the bearings carry the mesh force, across it the friction. "
+        + _settling(result, "bearing_force")
+    ).rstrip()
+
+
+@drawing(
+    "bearing_force",
+    heading="Bearing forces",
+    caption=_bearing_caption,
+    needs=no_translation,
+    of="Result",
+    made_by=RUN,
+)
+def bearing_force(result: Result) -> Any:
+    """Draw the forces of both gears on their bearings.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    motion = Motion(result)
+    swing = np.ptp(motion.measured(motion.of_gear("bearing_force", "pinion", "y")))
+    return stack(
+        f"The force on the pinion's bearing varies by {rounded('bearing_force', swing)} peak to "
+        f"peak along the line of action{motion.window}",
+        motion.label,
+        _motion_panels(motion, "bearing_force"),
+        motion.layout(),
+    )

@@ -1,0 +1,200 @@
+"""Amplitudes of the mesh harmonics as bars, on a linear or a logarithmic scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.analysis import Spectrum, amplitude_spectrum
+from tribodyn.drawing import drawing
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import TOTAL, button_row
+from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.plot.motion.courses import DIRECTIONS, GEARS, words_of
+from tribodyn.plot.motion.motion import Motion, no_translation
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.study import Result
+
+#: Highest mesh harmonic drawn.
+_HIGHEST = 80
+#: Decades below the largest line that count: those that the logarithmic scale shows.
+_DECADES = 4.0
+
+
+def _no_harmonics(result: Result) -> str:
+    """Tell why a result has no mesh harmonics."""
+    if Motion(result).periodic:
+        return ""
+    return (
+        "Mesh harmonics belong to a steady state; this run is a transient. Choose "
+        'solver.method = "steady".'
+    )
+
+
+def _spectrum(result: Result, signal: Array) -> Spectrum:
+    """Spectrum as far as the steps resolve it, eight to a wave, and no further than is readable."""
+    steps = result.response.time.size // result.response.periods
+    return amplitude_spectrum(result.response, signal, highest=min(_HIGHEST, steps // 8))
+
+
+def _panel(
+    result: Result, quantity: str, label: str, signals: Sequence[tuple[str, str, Array]]
+) -> Panel:
+    """Show the harmonics of one or two signals side by side."""
+    hertz, unit = display_unit("frequency"), display_unit(quantity)
+    traces = []
+    for name, color, signal in signals:
+        spectrum = _spectrum(result, signal)
+        hover = f"%{{y:.4g}} {unit} at %{{customdata:.5g}} {hertz}<extra>{name}</extra>"
+        traces.append(
+            {
+                "type": "bar",
+                "x": spectrum.order,
+                "y": displayed(quantity, spectrum.amplitude),
+                "name": name,
+                "marker": {"color": color},
+                "customdata": displayed("frequency", spectrum.frequency),
+                "hovertemplate": hover,
+            }
+        )
+    return Panel(axis_label(quantity, label), traces)
+
+
+def _gear_panels(result: Result, quantity: str) -> list[Panel]:
+    """Show the mesh harmonics of a signal of both gears."""
+    if no_translation(result):
+        return []
+    motion = Motion(result)
+    return [
+        _panel(
+            result,
+            quantity,
+            words_of(quantity, words),
+            [(gear, color, motion.of_gear(quantity, gear, axis)) for gear, color in GEARS],
+        )
+        for axis, words in DIRECTIONS
+    ]
+
+
+def _strongest(panel: Panel) -> str:
+    """Name the mesh harmonic with the largest amplitude in the first curve of a panel."""
+    bars = panel.traces[0]
+    top = int(np.argmax(bars["y"]))
+    frequency = significant(float(bars["customdata"][top]))
+    return f"{bars['x'][top]:g} ({frequency} {display_unit('frequency')})"
+
+
+def _harmonic_layout(panels: Sequence[Panel]) -> dict[str, Any]:
+    """Layout of a figure of harmonics, with buttons for a linear and a logarithmic scale."""
+    linear: dict[str, Any] = {}
+    logarithmic: dict[str, Any] = {}
+    for number, panel in enumerate(panels, start=1):
+        axis = f"yaxis{'' if number == 1 else number}"
+        linear |= {f"{axis}.type": "linear", f"{axis}.autorange": True}
+        logarithmic |= {f"{axis}.type": "log", f"{axis}.range": _decades(panel)}
+    orders = {"range": [0.4, _last_order(panels) + 0.6], "showgrid": False}
+    menu = button_row([("linear", linear), ("logarithmic", logarithmic)])
+    return {"xaxis": orders, "updatemenus": [menu]}
+
+
+def _last_order(panels: Sequence[Panel]) -> float:
+    """Highest order whose line counts beside the largest of its unit in the figure."""
+    largest: dict[str, float] = {}
+    for panel in panels:
+        unit = panel.label.rpartition("[")[2]
+        top = max(float(np.max(trace["y"])) for trace in panel.traces)
+        largest[unit] = max(top, largest.get(unit, 0.0))
+    last = 1.0
+    for panel in panels:
+        least = 10.0**-_DECADES * largest[panel.label.rpartition("[")[2]]
+        for trace in panel.traces:
+            seen = np.asarray(trace["x"])[np.asarray(trace["y"]) > least]
+            last = max(last, float(np.max(seen, initial=1.0)))
+    return last
+
+
+def _decades(panel: Panel) -> list[float]:
+    """Range of a logarithmic axis: below it there is only rounding."""
+    top = max(float(np.max(trace["y"])) for trace in panel.traces)
+    exponent = math.log10(top) if top > 0.0 else 0.0
+    return [exponent - _DECADES, exponent + 0.3]
+
+
+@drawing(
+    "spectrum",
+    heading="Spectra",
+    caption="How strong each mesh harmonic is. Harmonic 1 is the mesh frequency, the teeth that "
+    "pass in a second. A high bar at a higher harmonic tells of a natural frequency near it. The "
+    "buttons switch to a logarithmic scale, on which small harmonics show.",
+    needs=_no_harmonics,
+    of="Result",
+    made_by=RUN,
+)
+def spectrum(result: Result) -> Any:
+    """Draw the mesh harmonics of the transmission error and of the accelerations.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns; its response is a steady state.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    error = Motion(result).transmission_error
+    panels = [
+        _panel(
+            result,
+            "dynamic_transmission_error",
+            "Transmission error",
+            [("transmission error", TOTAL, error)],
+        ),
+        *_gear_panels(result, "acceleration"),
+    ]
+    return stack(
+        f"Mesh harmonic {_strongest(panels[0])} is the strongest in the transmission error",
+        "Mesh harmonic",
+        panels,
+        _harmonic_layout(panels),
+    )
+
+
+def _no_bearing_harmonics(result: Result) -> str:
+    return no_translation(result) or _no_harmonics(result)
+
+
+@drawing(
+    "bearing_spectrum",
+    heading="Spectra of the bearing forces",
+    caption="What the bearings pass on to the housing, by mesh harmonic. A harmonic that meets a "
+    "natural frequency of the housing is the one that is heard.",
+    needs=_no_bearing_harmonics,
+    of="Result",
+    made_by=RUN,
+)
+def bearing_spectrum(result: Result) -> Any:
+    """Draw the mesh harmonics of the bearing forces.
+
+    Parameters
+    ----------
+    result : Result
+        What :func:`tribodyn.run` returns; its response is a steady state.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    panels = _gear_panels(result, "bearing_force")
+    return stack(
+        f"Mesh harmonic {_strongest(panels[0])} is the strongest on the pinion's bearing",
+        "Mesh harmonic",
+        panels,
+        _harmonic_layout(panels),
+    )

@@ -1,0 +1,251 @@
+"""One motion: phase portrait, Poincare section, convergence of its Lyapunov exponents."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.errors import InputError, Problem
+from tribodyn.plot.look.labels import scaled, unit_of
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import (
+    FILLS,
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    TOTAL,
+    WHEEL,
+    Trace,
+    figure,
+    line,
+)
+
+if TYPE_CHECKING:
+    from tribodyn.analysis import LyapunovExponents, PhasePortrait, PoincareSection
+
+#: Exponents that are drawn at most; the largest decides.
+_DRAWN = 3
+_COLORS = (PINION, WHEEL, PAIR_COLORS[0])
+#: Points of a curve at most.
+_KEPT = 1500
+
+
+@drawing(
+    "phase_portrait",
+    heading="Phase portrait",
+    caption="Velocity over position of one coordinate, or of the compression of a contact. A "
+    "motion that repeats is a closed curve; the dots are its states at the mesh phase 0. Dashed "
+    "lines are the ends of the backlash.",
+    of="PhasePortrait",
+    made_by="Call tribodyn.analysis.phase_portrait(response) and its plot method.",
+)
+def phase_portrait(portrait: PhasePortrait) -> Any:
+    """Draw the curve and its points at the mesh phase 0.
+
+    Parameters
+    ----------
+    portrait : PhasePortrait
+        What :func:`tribodyn.analysis.phase_portrait` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    unit = unit_of(portrait.name)
+    x_factor, x_unit = scaled(portrait.position, unit)
+    y_factor, y_unit = scaled(portrait.velocity, f"{unit}/s")
+    hover = f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>"
+    traces = [
+        {
+            "type": "scatter", "mode": "lines", "name": "motion", "hovertemplate": hover,
+            "x": x_factor * portrait.position, "y": y_factor * portrait.velocity,
+            "line": {"color": PINION, "width": 1.6 if portrait.period else 0.6},
+        },
+        {
+            "type": "scatter", "mode": "markers", "name": "mesh phase 0", "hovertemplate": hover,
+            "x": x_factor * portrait.section_position, "y": y_factor * portrait.section_velocity,
+            "marker": {"color": WHEEL, "size": 9 if portrait.period else 5},
+        },
+    ]  # fmt: skip
+    ends = [side * portrait.gap for side in (-1.0, 1.0)]
+    dashed = {"color": MUTED, "dash": "dash", "width": 1}
+    lines = [
+        {
+            "type": "line", "x0": x_factor * end, "x1": x_factor * end, "y0": 0, "y1": 1,
+            "yref": "paper", "line": dashed, "name": "the flanks part", "showlegend": end > 0.0,
+        }
+        for end in ends
+        if portrait.gap > 0.0 and (end > 0.0 or portrait.position.min() < 0.0)
+    ]  # fmt: skip
+    words = "Compression of the contact" if portrait.gap >= 0.0 else portrait.name.replace("_", " ")
+    seen = np.append(portrait.position, [end for end in ends if lines and end > 0.0])
+    layout = {
+        "xaxis": {"title": {"text": f"{words} [{x_unit}]"}, "range": _around(x_factor * seen)},
+        "yaxis": {
+            "title": {"text": f"its velocity [{y_unit}]"},
+            "range": _around(y_factor * portrait.velocity),
+        },
+        "hovermode": "closest",
+        "height": 560,
+        "shapes": lines,
+    }
+    return figure(_portrait_title(portrait), traces, layout)
+
+
+def _around(values: Any) -> list[float]:
+    """Range with a margin, so that the curve does not touch the frame."""
+    low, high = float(np.min(values)), float(np.max(values))
+    margin = 0.06 * (high - low) or 1.0
+    return [low - margin, high + margin]
+
+
+def _portrait_title(portrait: PhasePortrait) -> str:
+    if portrait.verdict == "step-limited":
+        return "The motion is made by the step, not by physics"
+    if portrait.period == 1:
+        return "The motion closes after one mesh cycle"
+    if portrait.period:
+        return f"The motion closes after {portrait.period} mesh cycles"
+    return "The motion does not close"
+
+
+def _section_title(section: PoincareSection) -> str:
+    if section.verdict == "step-limited":
+        return "The motion is made by the step, not by physics"
+    if section.period == 1:
+        return "The motion repeats with the mesh: one point"
+    if section.period:
+        return f"The motion repeats after {section.period} mesh cycles: as many points"
+    return "The motion does not repeat within 16 mesh cycles"
+
+
+def _window(values: Any, motion: float) -> list[float]:
+    """Range of an axis that does not blow up the rounding of a motion that repeats."""
+    middle = 0.5 * float(values.max() + values.min())
+    half = max(0.6 * float(np.ptp(values)), 0.05 * motion, 1e-300)
+    return [middle - half, middle + half]
+
+
+@drawing(
+    "poincare",
+    heading="Poincare section",
+    caption="The state once per mesh cycle, at the mesh phase 0. A motion that repeats shows as "
+    "many points as it takes mesh cycles to do so, a quasi-periodic one a closed curve, a chaotic "
+    "one a cloud with inner structure.",
+    of="PoincareSection",
+    made_by="Call tribodyn.analysis.poincare(...) and its plot method.",
+)
+def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
+    """Draw the points of one coordinate in its phase plane.
+
+    Parameters
+    ----------
+    section : PoincareSection
+        What :func:`tribodyn.analysis.poincare` returns.
+    coordinate : int or str
+        Number or name of the coordinate.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    InputError
+        If no coordinate has this name.
+    """
+    names = tuple(section.names)
+    if isinstance(coordinate, str) and coordinate not in names:
+        what, remedy = f'no coordinate is called "{coordinate}"', f"Choose from: {', '.join(names)}"
+        raise InputError(Problem(what, "argument coordinate", "", remedy))
+    column = names.index(coordinate) if isinstance(coordinate, str) else coordinate
+    name, place, speed = names[column], section.position[:, column], section.velocity[:, column]
+    x_factor, x_unit = scaled(place, unit_of(name))
+    y_factor, y_unit = scaled(speed, f"{unit_of(name)}/s")
+    x, y = x_factor * place, y_factor * speed
+    last = section.period or 0
+    shown = slice(-last, None) if last else slice(None)
+    words = "last points" if last else "points"
+    trace = {
+        "type": "scatter", "mode": "markers", "x": x[shown], "y": y[shown], "name": words,
+        "marker": {"size": 9 if last else 3.5, "color": PINION if last else TOTAL},
+        "hovertemplate": f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>",
+    }  # fmt: skip
+    layout = {
+        "xaxis": {
+            "title": {"text": f"{name.replace('_', ' ')} [{x_unit}]"},
+            "range": _window(x[shown], float(np.abs(x).max())),
+        },
+        "yaxis": {
+            "title": {"text": f"its velocity [{y_unit}]"},
+            "range": _window(y[shown], float(np.abs(y).max())),
+        },
+        "hovermode": "closest",
+        "height": 560,
+    }
+    return figure(_section_title(section), [trace], layout)
+
+
+def _exponent_title(found: LyapunovExponents) -> str:
+    value, error = found.vibrating[0], found.standard_error[0]
+    words = f"{value:.4g} 1/s, standard error {error:.1g} 1/s"
+    if found.verdict == "step-limited":
+        return f"Made by the step, not by physics: the largest exponent is {words}"
+    if found.chaotic:
+        return f"Chaotic: the largest exponent is {words}"
+    return f"Not chaotic: the largest exponent is {words}"
+
+
+@drawing(
+    "lyapunov",
+    heading="Lyapunov exponents",
+    caption="Mean growth of a small disturbance up to each mesh cycle. The band is the standard "
+    "error of a mean over so many cycles, the dotted line the result. A largest exponent that "
+    "stays above zero means chaos.",
+    of="LyapunovExponents",
+    made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
+)
+def lyapunov(found: LyapunovExponents) -> Any:
+    """Draw the running means of the largest exponents.
+
+    Parameters
+    ----------
+    found : LyapunovExponents
+        What :func:`tribodyn.analysis.lyapunov_exponents` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    cycles = len(found.growth)
+    count = np.arange(1, cycles + 1)
+    kept = np.unique(np.linspace(0, cycles - 1, min(cycles, _KEPT)).astype(int))
+    means = np.cumsum(found.growth, axis=0) / count[:, None]
+    order = np.argsort(-means[-1])[:_DRAWN]
+    errors = np.delete(found.standard_error, np.flatnonzero(found.exponents == 0.0)[: found.free])
+    traces: list[Trace] = []
+    x = count[kept]
+    for number, column in enumerate(order):
+        color = _COLORS[number]
+        mean = means[kept, column]
+        band = errors[number] * np.sqrt(cycles / x)
+        fill = FILLS.get(color, "rgba(0, 158, 115, 0.14)")
+        traces.append({
+            "type": "scatter", "x": np.append(x, x[::-1]), "mode": "lines", "fill": "toself",
+            "y": np.append(mean + band, (mean - band)[::-1]), "fillcolor": fill,
+            "line": {"width": 0}, "hoverinfo": "skip", "showlegend": False,
+        })  # fmt: skip
+        traces.append(line(x, mean, f"exponent {number + 1}", color, unit="1/s"))
+        level = np.full(2, found.vibrating[number])
+        dotted = line(x[[0, -1]], level, "result", color, dash="dot", width=1.0)
+        traces.append({**dotted, "showlegend": False})
+    zero = line(x[[0, -1]], [0.0, 0.0], "zero", MUTED, width=1.0)
+    traces.append({**zero, "showlegend": False, "hoverinfo": "skip"})
+    late = means[kept][x >= max(1, cycles // 50)][:, order]
+    span = np.append(late.ravel(), 0.0)
+    margin = 0.1 * float(np.ptp(span)) or 1.0
+    limits = {"range": [float(span.min()) - margin, float(span.max()) + margin]}
+    panel = Panel("Exponent [1/s]", traces, limits, height=1.6)
+    return stack(_exponent_title(found), "Mesh cycles", [panel])

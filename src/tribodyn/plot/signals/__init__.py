@@ -1,0 +1,9 @@
+"""Recorded signals and run-ups.
+
+==========  ===============================================================
+module      what it draws
+==========  ===============================================================
+``maps``    spectrogram, order map, spectra one behind the other
+``run_up``  level and mesh orders over the speed, amplitudes over frequency
+==========  ===============================================================
+"""
