@@ -22,7 +22,7 @@ from race import Goal, arguments, machine, print_goals, print_table, race
 from reference_pair import WITH_BACKLASH, starting_state, system
 from tribodyn.analysis import bifurcation
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 
 __all__ = ["main"]
 

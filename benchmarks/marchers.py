@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from reference_pair import Pair, elastic, lanes, starting_state, system
 from tribodyn.dynamics import simulate_ensemble
-from tribodyn.dynamics.march import Compiled, compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 
 __all__ = ["call", "end_displacements", "kernel", "march_once"]
 

@@ -16,7 +16,7 @@ from marchers import march_once
 from race import arguments, machine, print_table, race
 from reference_pair import D2, Pair, elastic, starting_state, system
 from tribodyn.dynamics import Response, steady_state
-from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 
 __all__ = ["cycles_to_repeat", "main"]
 

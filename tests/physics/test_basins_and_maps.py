@@ -10,7 +10,7 @@ import pytest
 from known_systems import hysteresis_system, reference_system
 from tribodyn.analysis import basins, bifurcation, parameter_map, phase_portrait
 from tribodyn.dynamics import Contact, System, continuation, simulate, steady_state
-from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions, settle

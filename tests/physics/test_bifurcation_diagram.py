@@ -8,7 +8,7 @@ import pytest
 from known_systems import hysteresis_system, pairs_in_contact, reference_system
 from tribodyn.analysis import bifurcation, poincare
 from tribodyn.dynamics import Contact, System, steady_state
-from tribodyn.dynamics.step_limit import LIMIT
+from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.survey import step_verdict
 

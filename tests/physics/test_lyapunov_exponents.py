@@ -13,7 +13,8 @@ from scipy.linalg import expm
 from known_systems import MASS, SUPPORT, hysteresis_system, reference_system
 from tribodyn.analysis import lyapunov_exponents
 from tribodyn.dynamics import Contact, System, simulate
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov import _Carrier, grouped_products
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables

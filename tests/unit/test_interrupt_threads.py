@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics.dormand_prince import adaptive_engine
-from tribodyn.dynamics.march import compile_for, march
-from tribodyn.dynamics.newmark_engine import newmark_engine
+from tribodyn.dynamics._engine.adaptive_engine import adaptive_engine
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.time.newmark import march_newmark
 from tribodyn.interrupt import Threads, in_threads, stop_flag
 
 _SYSTEM = System([[1.0]], [[0.05]], [[0.0]], [0.3], [Contact([1.0], 1.0, damping=0.05, gap=1.0)])
@@ -27,7 +28,8 @@ _PROGRAM = """
 import sys
 import numpy as np
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import compile_for
 
 contact = Contact([1.0], 1.0, damping=0.05, gap=1.0)
 system = System([[1.0]], [[0.05]], [[0.0]], [0.3], [contact])
@@ -43,11 +45,10 @@ march(compiled, period, start, 2_000_000_000)
 def _engines():
     compiled = compile_for(_SYSTEM, 0.16, 64)
     period, start = np.array([1 / 0.16]), np.array([[1.0, 0.0]])
-    newmark = newmark_engine(compiled, np.array([0.5, 0.25, 1e-12]))
     adaptive = adaptive_engine(_SYSTEM, 0.16, _HOURS)
     return {
         "runge-kutta": lambda cycles: march(compiled, period, start, cycles),
-        "newmark": lambda cycles: newmark.march(period, start, cycles),
+        "newmark": lambda cycles: march_newmark(compiled, period, start, cycles),
         "adaptive": lambda cycles: adaptive.march(period, start, cycles),
     }
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
-from tribodyn.dynamics.entry import Entry
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import Contact
 from tribodyn.dynamics.gear_pair import gear_contact
-from tribodyn.dynamics.system import Contact
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.entry import Entry
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.force_law import MeshForce, carried
 from tribodyn.dynamics.fzg12_mesh import BASE_RADIUS, RectangularMesh
 from tribodyn.dynamics.gear_pair import Driver, TorqueBalance, balance_direction, torques
 from tribodyn.dynamics.shafts import Body, GearMesh, assemble, row_of, shaft_chain
-from tribodyn.dynamics.system import System
 from tribodyn.errors import require_between
 from tribodyn.types import Array
 

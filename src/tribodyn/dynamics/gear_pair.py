@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.entry import Entry
-from tribodyn.dynamics.system import Contact
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import Contact
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.types import Array
 

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.dynamics.entry import Entry, read_events
+from tribodyn.dynamics.equations.entry import Entry, read_events
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.grid import RowEvaluator
-    from tribodyn.dynamics.program import Nodes
-    from tribodyn.dynamics.system import System
+    from tribodyn.dynamics.equations.grid import RowEvaluator
+    from tribodyn.dynamics.equations.nodes import Nodes
+    from tribodyn.dynamics.equations.system import System
 
 
 #: Phases at which a function tells how many coefficients it returns; no likely number of these.

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

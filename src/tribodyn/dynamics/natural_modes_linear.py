@@ -11,15 +11,16 @@ from typing import Literal
 
 import numpy as np
 
-from tribodyn.dynamics.grid import system_events
+from tribodyn.dynamics.equations.grid import system_events
+from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.load_friction import (
     carried_load,
     friction_secant,
     friction_tangent,
     push_with_friction,
 )
-from tribodyn.dynamics.program import Nodes, compile_system
-from tribodyn.dynamics.system import System
 from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.types import Array, Index, Mask
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.ensemble import LaneStatistics
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.run_up_march import CycleMarcher, Pace
@@ -18,8 +18,8 @@ from tribodyn.dynamics.run_up_profile import SpeedProfile, read_profile
 from tribodyn.dynamics.run_up_result import CycleStatistics, RunUp
 from tribodyn.dynamics.run_up_samples import Samples
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.ensemble import LaneStatistics
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array

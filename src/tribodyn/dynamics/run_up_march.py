@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.dynamics.ensemble import _fresh_moments
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics._engine.method import RungeKutta4
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.divergence import unparted_step
+from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
-from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_profile import SpeedProfile
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
-from tribodyn.dynamics.unparted import unparted_step
+from tribodyn.dynamics.time.ensemble import fresh_moments
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array
@@ -75,7 +76,7 @@ class CycleMarcher:
         self._rows: Array = np.zeros(0)
         #: Steps, number of a system, and by how much the rows of the next one differ.
         self._between: tuple[int, int, Array] = (0, 0, self._rows)
-        self._fresh = _fresh_moments(self.contacts, self.size + len(outputs), 0, 1)[:, 0]
+        self._fresh = fresh_moments(self.contacts, self.size + len(outputs), 0, 1)[:, 0]
 
     def weights(self, frequency: float) -> tuple[int, float]:
         """Which two neighbouring systems there are at a speed, and the part of the second."""
@@ -127,7 +128,8 @@ class CycleMarcher:
         self, program: Program, period: float, change: float, state: Array, record: Array
     ) -> tuple[Array, Array, Array]:
         """March one cycle."""
-        from tribodyn.dynamics.marching import UNPARTED, march_block
+        from tribodyn.dynamics._engine.marching import UNPARTED, march_block
+        from tribodyn.dynamics._engine.moments import Gathered
 
         load = self.inertia * change
         extra = self.torque + load
@@ -135,13 +137,13 @@ class CycleMarcher:
             direction, force, _ = self.balance
             extra = extra - (self.up @ load) @ direction * force
         moments, lane = self._fresh.copy(), state[None, :].copy()
-        work = np.zeros(2 * program.slots.count + 6 * int(program.code[2]))
-        failed = march_block(
-            (0.0,), program.code, program.reads, program.rows, program.width, program.restart,
-            work, np.array([period]), (program.constant_load + extra @ self.inverse.T)[None, :],
-            lane, 1, record, self.outputs, np.zeros(0), 0, moments, stop_flag(),
+        load = (program.constant_load + extra @ self.inverse.T)[None, :]
+        failed = refuse_stopped(
+            march_block(
+                (0.0,), RungeKutta4(), program, program.rows, np.array([period]), load, lane, 1,
+                record, Gathered(self.outputs, np.zeros(0), 0, moments), stop_flag(),
+            )
         )  # fmt: skip
-        refuse_stopped(failed)
         if failed >= UNPARTED:
             contacts = len(self.systems[0].contacts)
             step, contact = divmod(failed - UNPARTED, contacts)

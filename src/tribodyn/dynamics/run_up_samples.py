@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribodyn.dynamics.load_friction import friction_force
+from tribodyn.dynamics.equations.motion import compression, forces, has_gap, sides
+from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.run_up_tables import Table
-from tribodyn.dynamics.system import System
 from tribodyn.types import Array
 
 
@@ -20,8 +21,6 @@ class Samples:
     ) -> None:
         system = systems[0]
         self.system, self.size, self.several = system, system.size, frequency.size > 1
-        self.inverse = np.linalg.inv(np.asarray(system.mass))
-        self.free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
         shape = (cycles, samples)
         self.time, self.beat = np.empty(shape), np.empty(shape)
         self.state = np.empty((*shape, 2 * system.size))
@@ -43,28 +42,14 @@ class Samples:
         part = slice(first, first + len(weights))
         q, v = states[..., : self.size], states[..., self.size :]
 
-        def rows(name: str) -> Array:
-            return self._rows(table, name, weights)
-
-        direction, gap = rows("direction"), rows("gap")
-        beat = frequency[..., None]
-        d = np.einsum("csji,csi->csj", direction, q) - rows("error")
-        rate = np.einsum("csji,csi->csj", direction, v)
-        rate += beat * np.einsum("csji,csi->csj", rows("direction_slope"), q)
-        rate -= beat * rows("error_slope")
-        dead = np.any([np.any(node.gap > 0.0, axis=(0, 1)) for node in table.nodes], axis=0)
-        side = np.where(dead, np.where(d > gap, 1.0, np.where(d < -gap, -1.0, 0.0)), 1.0)
-        force = np.abs(side) * rows("stiffness") * (d - side * gap)
-        force = force + ((side != 0.0) | self.free) * rows("damping") * rate
-        total = rows("force") + np.array(extra)[:, None] - q @ np.asarray(self.system.stiffness).T
-        total = total - v @ np.asarray(self.system.damping).T
-        total = total - np.einsum("csji,csj->csi", rows("force_direction"), force)
-        if self.system.frictions:
-            rub = friction_force(self.system, rows("friction_coefficients"), force)
-            total = total - np.einsum("csfi,csf->csi", rows("friction_direction"), rub)
+        rows = Nodes(*(self._rows(table, name, weights) for name in Nodes._fields))
+        dead = np.any([has_gap(node) for node in table.nodes], axis=0)
+        beat, pulled = frequency[..., None], np.array(extra)[:, None]
+        d = compression(rows, q)
+        moved = forces(self.system, rows, beat, q, v, side=sides(d, rows.gap, dead), extra=pulled)
         self.time[part], self.beat[part], self.state[part] = time, frequency, states
-        self.acceleration[part] = total @ self.inverse.T
-        self.deflection[part], self.force[part] = d, force
+        self.acceleration[part] = moved.acceleration
+        self.deflection[part], self.force[part] = d, moved.contact
 
     def _rows(self, table: Table, name: str, weights: Sequence[tuple[int, float]]) -> Array:
         """Values at the samples, (cycles or 1, samples, ...)."""

@@ -13,10 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.grid import Grid, system_events
-from tribodyn.dynamics.program import Nodes, Program, build_program, compile_on, compile_system
-from tribodyn.dynamics.step_limit import LIMIT, largest_rate
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.grid import Grid, system_events
+from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.program import (
+    Program,
+    build_program,
+    compile_on,
+    compile_system,
+)
+from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.types import Array, Index
 

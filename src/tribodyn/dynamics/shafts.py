@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.entry import Entry
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.gear_pair import Driver
-from tribodyn.dynamics.system import Contact, System
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.types import Array
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.entry import Entry
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.force_law import MeshForce, gear_contacts
 from tribodyn.dynamics.gear_pair import (
     Driver,
@@ -16,7 +17,6 @@ from tribodyn.dynamics.gear_pair import (
     pair_of,
     torques,
 )
-from tribodyn.dynamics.system import System
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions

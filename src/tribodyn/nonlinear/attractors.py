@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.lane_parameters import LaneParameters
-from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.errors import ComputationError
@@ -233,9 +234,11 @@ class _Block:
             if period[lane]:
                 m.rate[self.job[lane]] = rate[period[lane] - 1, lane]
             facts = (
-                int(period[lane]), float(change[:, lane].min()), self.force[lane],
+                int(period[lane]),
+                float(change[:, lane].min()),
+                self.force[lane],
                 states[1:, lane],
-            )  # fmt: skip
+            )
             self._begin(int(lane), m.store(int(self.job[lane]), self.state[lane], facts))
 
     def _drop_lost(self, index: Index) -> None:

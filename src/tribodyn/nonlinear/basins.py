@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.march import Compiled, compile_for
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.basins_attractors import Attractor, Basins, Catalogue, multiplier_of

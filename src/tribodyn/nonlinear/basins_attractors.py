@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.nonlinear.attractors import Motions, settle
@@ -142,9 +142,11 @@ class Catalogue:
         period = int(motions.period[index[0]])
         if period:
             one = Motions(
-                motions.compiled, motions.frequency[index], motions.state[index],
+                motions.compiled,
+                motions.frequency[index],
+                motions.state[index],
                 motions.force[index],
-            )  # fmt: skip
+            )
             settle(one, [0], self.survey.cycles, tolerance=_EXACT, width=1)
             motions, index = one, np.array([0])
             shorter = int(motions.period[0])
@@ -155,9 +157,14 @@ class Catalogue:
         full = path.states[: max(period, 1), 0]
         rms = float(path.rms[0])
         return Found(
-            motions.coordinates.reduce(full), full[0], motions.force[index[0]].copy(), period,
-            0.0 if rms < self.least else rms, float(path.contact_loss_share[0]), full,
-        )  # fmt: skip
+            motions.coordinates.reduce(full),
+            full[0],
+            motions.force[index[0]].copy(),
+            period,
+            0.0 if rms < self.least else rms,
+            float(path.contact_loss_share[0]),
+            full,
+        )
 
     def _irregular(self, label: Index, alive: Mask, motions: Motions) -> None:
         """Sort motions that do not repeat by their rms; those that still approach stay open."""
@@ -202,9 +209,12 @@ def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ModelWarning)
             orbit = steady_state(
-                motions.compiled.system, float(motions.frequency[0]), steps=steps,
-                periods=found.period, start=start,
-            )  # fmt: skip
+                motions.compiled.system,
+                float(motions.frequency[0]),
+                steps=steps,
+                periods=found.period,
+                start=start,
+            )
     except (ComputationError, InputError):
         return float("nan")
     if not orbit.converged or not orbit.floquet_multipliers.size:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.step_limit import LIMIT
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.step_limit import LIMIT
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
@@ -156,9 +156,17 @@ def bifurcation(
         largest = _largest_exponents(values, finer, rows, fine, exponents)
     progress.finish()
     return _diagram(
-        values, finer, rows, fine, parameter=given, parameter_name=parameter_name,
-        parameter_unit=parameter_unit, branches=branches, signal=name, largest_exponent=largest,
-    )  # fmt: skip
+        values,
+        finer,
+        rows,
+        fine,
+        parameter=given,
+        parameter_name=parameter_name,
+        parameter_unit=parameter_unit,
+        branches=branches,
+        signal=name,
+        largest_exponent=largest,
+    )
 
 
 def _begin(values: Points, row: Outcomes, keep: int) -> Outcomes:
@@ -244,9 +252,12 @@ def _read_survey(survey: Survey) -> Survey:
 
 
 def _rows(
-    values: Points, branches: tuple[str, ...], first: Array | None, survey: Survey,
+    values: Points,
+    branches: tuple[str, ...],
+    first: Array | None,
+    survey: Survey,
     progress: Progress,
-) -> list[Outcomes]:  # fmt: skip
+) -> list[Outcomes]:
     """Motions of every branch."""
     if branches != ("independent",):
         return march_sweeps(values, first, survey, branches, progress)

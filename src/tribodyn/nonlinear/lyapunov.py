@@ -17,12 +17,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.motion import sides
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem
-from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings, contact_sides
+from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
@@ -227,10 +229,15 @@ def lyapunov_exponents(
         return found
     try:
         refined = lyapunov_exponents(
-            system, mesh_frequency, start=start, transient=transient, steps=2 * steps,
+            system,
+            mesh_frequency,
+            start=start,
+            transient=transient,
+            steps=2 * steps,
             cycles=min(cycles, _FEW) if found.repeats else (cycles + 1) // 2,
-            extra_force=extra_force, verdict=False,
-        )  # fmt: skip
+            extra_force=extra_force,
+            verdict=False,
+        )
     except ComputationError:
         return replace(found, verdict="step-limited")
     return replace(found, verdict=exponent_verdict(found, refined))
@@ -256,9 +263,14 @@ class _Carrier:
     def _march(self, cycles: int, record: Array | None) -> None:
         frequency = self.tables.mesh_frequency
         state = march(
-            self.tables.compiled, np.array([1.0 / frequency]), self.state, cycles,
-            extra_force=self.extra[None, :], record=record, elapsed=self.elapsed,
-        )  # fmt: skip
+            self.tables.compiled,
+            np.array([1.0 / frequency]),
+            self.state,
+            cycles,
+            extra_force=self.extra[None, :],
+            record=record,
+            elapsed=self.elapsed,
+        )
         self.elapsed += cycles
         # The free rotation runs away and nothing depends on it.
         coordinates = self.tables.coordinates
@@ -291,13 +303,13 @@ class _Carrier:
         size, steps = self.extra.size, tables.compiled.grid.steps
         place = states[:, :size].reshape(-1, size)
 
-        def sides(q: Array, node: int) -> Array:
+        def sides_at(q: Array, node: int) -> Array:
             q = q.reshape(-1, steps, size)
             d = np.einsum("rji,cri->crj", nodes.direction[:, node], q) - nodes.error[:, node]
-            side = contact_sides(d, nodes.gap[:, node], tables.dead)
+            side = sides(d, nodes.gap[:, node], tables.dead)
             return side.reshape(len(q) * steps, d.shape[-1])
 
-        left, right = sides(place[:-1], 0), sides(place[1:], 2)
+        left, right = sides_at(place[:-1], 0), sides_at(place[1:], 2)
         number = np.tile(np.arange(steps), len(left) // steps)
         crossed = np.any(left != right, axis=1)
         touching = left != 0.0

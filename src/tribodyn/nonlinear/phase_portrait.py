@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.dynamics.response import Response
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.response import Response
 from tribodyn.errors import InputError, Problem
 from tribodyn.nonlinear.poincare import poincare
 from tribodyn.record import Record, fact, quantity, record

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.drawing import draw
-from tribodyn.dynamics.march import Compiled, compile_for
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.periods import closed_period, open_period
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.response import Response
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.response import Response
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.survey import Path, Verdict, follow, step_verdict
@@ -173,14 +173,17 @@ def poincare(
     known = (compiled.step_number, section.period, _path_rms(path))
     judged = judge_section(
         motion, mesh_frequency, (state, force), 2 * steps, transient, cycles, known
-    )  # fmt: skip
+    )
     return replace(section, verdict=judged)
 
 
 def _march(
-    compiled: Compiled, mesh_frequency: float, start: tuple[Array, Array], transient: int,
+    compiled: Compiled,
+    mesh_frequency: float,
+    start: tuple[Array, Array],
+    transient: int,
     cycles: int,
-) -> Path:  # fmt: skip
+) -> Path:
     """One motion over a transient, then once per mesh cycle."""
     state, force = (item[None, :] for item in start)
     motions, lane = Motions(compiled, np.array([mesh_frequency]), state, force), np.zeros(1, int)
@@ -249,10 +252,14 @@ def _judged_response(
     )
     # An orbit is followed until it has become that of the shorter steps.
     judged = judge_section(
-        system, response.mesh_frequency, (state, response.extra_force), 2 * steps,
+        system,
+        response.mesh_frequency,
+        (state, response.extra_force),
+        2 * steps,
         _ORBIT if orbit and response.stable else 0,
-        2 * response.periods if orbit else response.periods - skipped, known,
-    )  # fmt: skip
+        2 * response.periods if orbit else response.periods - skipped,
+        known,
+    )
     return replace(section, verdict=judged)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.dynamics.response import FineSamples, Response
+from tribodyn.dynamics.time.response import FineSamples, Response
 from tribodyn.errors import InputError, Problem
 from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, ComplexArray

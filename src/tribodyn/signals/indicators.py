@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.response import FineSamples
+from tribodyn.dynamics.time.response import FineSamples
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.signals.recorded_signal import checked_signal
 from tribodyn.types import Array

@@ -36,7 +36,7 @@ def _transient(
 ) -> Response:
     """March from the static equilibrium; a balancing torque is that of the steady state."""
     from tribodyn.dynamics import simulate, steady_state
-    from tribodyn.dynamics.march import compile_for
+    from tribodyn.dynamics.equations.compiled import compile_for
     from tribodyn.dynamics.orbits.start import static_start
 
     cycles = effective(case)["solver.cycles"]

@@ -22,8 +22,8 @@ _COARSE = 1024
 def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
     """Steps per mesh cycle that were asked for, else those that follow the fastest motion."""
     from tribodyn.dynamics import recommended_steps
-    from tribodyn.dynamics.program import compile_system
-    from tribodyn.dynamics.step_limit import LIMIT, largest_rate
+    from tribodyn.dynamics.equations.program import compile_system
+    from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 
     spec = Solver.spec(_STEPS)
     most = spec.high if spec else float("inf")

@@ -7,9 +7,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics.march import _refuse_unparted, _Run, compile_for, march
-from tribodyn.dynamics.marching import UNPARTED
-from tribodyn.dynamics.newmark_engine import newmark_engine
+from tribodyn.dynamics._engine.blocks import LaneBlock, _Run, march
+from tribodyn.dynamics._engine.marching import UNPARTED
+from tribodyn.dynamics._engine.method import RungeKutta4
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.time.newmark import march_newmark
 from tribodyn.errors import ComputationError
 
 FREQUENCY, MASS, DAMPING, STIFFNESS = 2400.0, 0.2, 300.0, 3e7
@@ -117,11 +119,11 @@ def test_nearly_coincident_ramps_move_like_coincident_ones(apart):
 def test_newmark_ends_its_search_and_converges_to_the_same_motion():
     ramps = Ramps(0)
     start = ramps.start[None] + [ramps.far, 0.0]
-    law, exact = np.array([0.5, 0.25, 1e-12]), ramps.reference()
+    exact = ramps.reference()
     errors = []
     for steps in (512, 1024):
-        engine = newmark_engine(compile_for(ramps.system, FREQUENCY, steps), law)
-        end = engine.march(np.array([1.0 / FREQUENCY]), start, CYCLES)[0]
+        compiled = compile_for(ramps.system, FREQUENCY, steps)
+        end = march_newmark(compiled, np.array([1.0 / FREQUENCY]), start, CYCLES)[0]
         errors.append(np.abs((end - [ramps.far, 0.0] - exact) / [1e-5, 0.3]).max())
     assert errors[1] < 1e-2
     assert errors[1] < errors[0] / 2.5
@@ -129,17 +131,17 @@ def test_newmark_ends_its_search_and_converges_to_the_same_motion():
 
 def test_a_step_that_comes_to_no_end_is_told():
     compiled = compile_for(Ramps(0).system, FREQUENCY, 64)
-    lanes = _Run(compiled, None, np.full(40, 1.0 / FREQUENCY), np.zeros((40, 2)), None)
+    period, state = np.full(40, 1.0 / FREQUENCY), np.zeros((40, 2))
+    lanes, block = _Run(compiled, RungeKutta4(), None, period, state, None), np.arange(16, 32)
     step, contact, lane = 5 * 64 + 16, 7, 3
     code = UNPARTED + (step * 12 + contact) * 16 + lane
     with pytest.raises(ComputationError, match="more than 64 times within one step") as told:
-        _refuse_unparted(lanes, 16, 16, code, 2)
+        lanes.report(LaneBlock(block, 16), code, 2)
     problem = told.value.problems[0]
     assert problem.where == (
         f"contacts[7], mesh phase 0.25 of mesh cycle 8, time {7.25 / FREQUENCY:.6g} s, in lane 19"
     )
     assert "steps" in problem.remedy
-    _refuse_unparted(lanes, 16, 16, step, 2)
 
 
 def test_a_damper_that_holds_a_mass_on_its_boundary_comes_to_an_end():

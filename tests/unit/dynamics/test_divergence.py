@@ -13,8 +13,8 @@ from tribodyn.dynamics import (
     simulate_ensemble,
     steady_state,
 )
-from tribodyn.dynamics.divergence import probable_cause
-from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.divergence import probable_cause
 from tribodyn.errors import ComputationError, InputError
 
 NAMES = ("pinion_x", "wheel_x")

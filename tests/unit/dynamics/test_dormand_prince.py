@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from known_systems import EVENTS, MESH_FREQUENCY, hysteresis_system, reference_system
+from plain.dormand_prince import step_plain
 from tribodyn.dynamics import Contact, System, energy_audit, simulate, solve_adaptive
-from tribodyn.dynamics.dormand_prince import adaptive_engine, march_adaptive
-from tribodyn.dynamics.dormand_prince_kernel import MATRIX, NODES, WEIGHT_ERROR
-from tribodyn.dynamics.dormand_prince_plain import step_plain
-from tribodyn.dynamics.dormand_prince_table import build_table, row_at
-from tribodyn.dynamics.march import compile_for, march
+from tribodyn.dynamics._engine.adaptive_engine import adaptive_engine
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.dormand_prince import MATRIX, NODES, WEIGHT_ERROR
+from tribodyn.dynamics._engine.phase_table import build_table, row_at
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.time.engines import march_adaptive
 from tribodyn.errors import ComputationError, InputError
 
 GRID = 32

@@ -12,9 +12,9 @@ from tribodyn.dynamics import (
     simulate,
     simulate_ensemble,
 )
-from tribodyn.dynamics.ensemble_moments import RecordedLanes, add_moments
-from tribodyn.dynamics.lane_tables import compile_lanes
-from tribodyn.dynamics.march import Member, compile_for, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Member, compile_for, compile_lanes
+from tribodyn.dynamics.time.recorded import RecordedLanes, add_moments
 from tribodyn.errors import ComputationError, InputError
 
 FREQUENCY = 0.4
@@ -236,8 +236,8 @@ def test_wrong_options_and_failures_name_the_lane():
 
 
 def test_a_system_of_its_own_in_march_newmark_and_march_adaptive():
-    from tribodyn.dynamics.dormand_prince import march_adaptive
-    from tribodyn.dynamics.newmark import march_newmark
+    from tribodyn.dynamics.time.engines import march_adaptive
+    from tribodyn.dynamics.time.newmark import march_newmark
 
     systems = [_build(), _build(0.7), _build()]
     compiled = compile_lanes(systems, np.full(3, FREQUENCY), 256)

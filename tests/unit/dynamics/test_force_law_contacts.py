@@ -7,6 +7,7 @@ import pytest
 
 from known_laws import GRID, LOAD, constant_law, gear_pair, mesh_functions, total_force, wavy_law
 from known_systems import BASE_RADIUS
+from plain.runge_kutta import march_plain
 from tribodyn.dynamics import (
     Contact,
     System,
@@ -16,9 +17,8 @@ from tribodyn.dynamics import (
     steady_state,
     torsional,
 )
-from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.plain import march_plain
 from tribodyn.errors import InputError
 from tribodyn.mesh import MeshForceLaw, PhaseFunction
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
+from plain.runge_kutta import march_plain
 from tribodyn.analysis import alternating_rms, extremes, mesh_harmonics, rms
 from tribodyn.dynamics import Contact, System, simulate, simulate_ensemble
-from tribodyn.dynamics.march import compile_for
-from tribodyn.dynamics.plain import march_plain
+from tribodyn.dynamics.equations.compiled import compile_for
 
 
 def _everything_varies():

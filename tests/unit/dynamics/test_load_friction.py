@@ -11,6 +11,7 @@ from known_systems import (
     hysteresis_system,
     reference_system,
 )  # fmt: skip
+from plain.runge_kutta import march_plain
 from tribodyn.analysis import lyapunov_exponents, mesh_harmonics
 from tribodyn.dynamics import (
     Contact,
@@ -23,10 +24,9 @@ from tribodyn.dynamics import (
     simulate_ensemble,
     steady_state,
 )
+from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.load_friction import friction_force, friction_tangent
-from tribodyn.dynamics.march import compile_for
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.plain import march_plain
 from tribodyn.errors import InputError
 
 AT_REST = (np.zeros(6), np.zeros(6))

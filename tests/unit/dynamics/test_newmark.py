@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
+from plain.newmark import newmark_plain
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics.march import compile_for
-from tribodyn.dynamics.newmark import NEWMARK_PRESETS, compile_newmark, march_newmark
-from tribodyn.dynamics.newmark_plain import newmark_plain
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.time.newmark import NEWMARK_PRESETS, compile_newmark, march_newmark
 from tribodyn.errors import ComputationError, InputError
 
 RATE = 3.0

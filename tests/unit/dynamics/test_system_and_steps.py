@@ -5,7 +5,7 @@ import pytest
 
 from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
 from tribodyn.dynamics import Contact, System, simulate, simulate_ensemble, steady_state
-from tribodyn.dynamics.grid import build_grid
+from tribodyn.dynamics.equations.grid import build_grid
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 
 ONE = Contact([1.0], stiffness=1.0)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.continuation_path import (
     BranchPoint,
     Family,
@@ -31,9 +32,8 @@ from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.orbits.start import _lowest_of_each_law, static_start
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
-from tribodyn.dynamics.response import Response, build_response
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.response import Response, build_response
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, Problem, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
@@ -175,8 +175,9 @@ def _first(
         # A given state may be that of an unstable orbit, which no search would keep.
         function.size = _motion(mapping, y)
         try:
-            point = correct(function, np.append(y / function.size, 0.0), hold(y.size + 1), None,
-                            tolerance)  # fmt: skip
+            point = correct(
+                function, np.append(y / function.size, 0.0), hold(y.size + 1), None, tolerance
+            )
             if np.linalg.norm(point.x[:-1] - y / function.size) < _NEAR:
                 return point
         except StalledError:
@@ -227,9 +228,13 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
         if (point.x - x) @ along > 0.5 * length:
             outward = np.sign(point.tangent @ along) or 1.0
             return BranchPoint(
-                point.x, outward * point.tangent, point.jet, point.multipliers, point.error,
+                point.x,
+                outward * point.tangent,
+                point.jet,
+                point.multipliers,
+                point.error,
                 point.effort,
-            )  # fmt: skip
+            )
     raise ComputationError(
         Problem(
             what=f"no branch of {function.periods} mesh cycles was found at {start.parameter:.8g}",
@@ -271,14 +276,30 @@ def _collect(
     def special(one: Located) -> SpecialPoint:
         value, own = function.parameter(one.point.x), figures(one.point)
         return SpecialPoint(
-            one.kind, value, own.mesh_frequency, own.position, own.velocity,
-            one.point.multipliers, own.rms, own.peak_to_peak, function.periods, one.after,
-        )  # fmt: skip
+            one.kind,
+            value,
+            own.mesh_frequency,
+            own.position,
+            own.velocity,
+            one.point.multipliers,
+            own.rms,
+            own.peak_to_peak,
+            function.periods,
+            one.after,
+        )
 
     values = np.array([function.parameter(point.x) for point in found])
     multipliers = np.array([point.multipliers for point in found])
-    columns = ("position", "velocity", "mean", "rms", "peak_to_peak", "peak_force",
-               "contact_loss", "clearance")  # fmt: skip
+    columns = (
+        "position",
+        "velocity",
+        "mean",
+        "rms",
+        "peak_to_peak",
+        "peak_force",
+        "contact_loss",
+        "clearance",
+    )
     return Branch(
         name=name,
         parameter=values,

@@ -15,10 +15,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled, compile_for
+from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
-from tribodyn.dynamics.system import System
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.progress import Progress
 from tribodyn.types import Array, ComplexArray

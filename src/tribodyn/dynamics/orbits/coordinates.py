@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.dynamics.march import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

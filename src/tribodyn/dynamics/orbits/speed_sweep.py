@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, SpeedFamily, follow
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
@@ -134,10 +134,14 @@ def speed_sweep(
 
 
 def _follow_all(
-    family: SpeedFamily, directions: Sequence[str],
-    start: tuple[ArrayLike, ArrayLike] | None, tolerance: float, patience: int,
-    periods: Sequence[int], progress: Progress,
-) -> list[list[Followed]]:  # fmt: skip
+    family: SpeedFamily,
+    directions: Sequence[str],
+    start: tuple[ArrayLike, ArrayLike] | None,
+    tolerance: float,
+    patience: int,
+    periods: Sequence[int],
+    progress: Progress,
+) -> list[list[Followed]]:
     """Motions of every direction in the order of the speeds."""
     count = family.frequency.size
     progress.start("Sweeping the speed", count * (1 if family.affine else len(directions)))
@@ -164,9 +168,16 @@ def _follow_all(
     def one(direction: str) -> list[Followed]:
         order = range(count) if direction == "up" else range(count)[::-1]
         met = follow(
-            family, order, closed, valid, start=begin, tolerance=tolerance, patience=patience,
-            periods=periods, told=told,
-        )  # fmt: skip
+            family,
+            order,
+            closed,
+            valid,
+            start=begin,
+            tolerance=tolerance,
+            patience=patience,
+            periods=periods,
+            told=told,
+        )
         return met if direction == "up" else met[::-1]
 
     found = in_threads(one, directions, len(directions))
@@ -187,9 +198,14 @@ def _shut(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
 
 
 def _result(
-    family: SpeedFamily, found: list[list[Followed]], linear: Array, outputs: tuple[str, ...],
-    output_unit: str, directions: tuple[str, ...], teeth: int,
-) -> SpeedSweep:  # fmt: skip
+    family: SpeedFamily,
+    found: list[list[Followed]],
+    linear: Array,
+    outputs: tuple[str, ...],
+    output_unit: str,
+    directions: tuple[str, ...],
+    teeth: int,
+) -> SpeedSweep:
     system, count = family.system, family.frequency.size
     flat = [each for met in found for each in met]
     number = np.tile(np.arange(count), len(found))

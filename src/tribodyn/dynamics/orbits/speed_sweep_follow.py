@@ -6,13 +6,14 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tribodyn.dynamics.ensemble import _fresh_moments
-from tribodyn.dynamics.march import Compiled, march
+from tribodyn.dynamics._engine.blocks import Statistics, march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, Orbits, newton
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.program import Program
 from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.time.ensemble import fresh_moments
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
@@ -99,9 +100,13 @@ class SpeedFamily:
         return state, extra
 
     def statistics(
-        self, number: Index, y: Array, periods: Index, cycles: int,
+        self,
+        number: Index,
+        y: Array,
+        periods: Index,
+        cycles: int,
         outputs: Array,
-    ) -> Array:  # fmt: skip
+    ) -> Array:
         """March motions over their periods and gather their figures."""
         contacts, others = len(self.system.contacts), self.system.size + len(outputs)
         figures = np.empty((2 * contacts + others, 5, number.size))
@@ -111,12 +116,16 @@ class SpeedFamily:
             for length in np.unique(periods[inside]):
                 lanes = np.flatnonzero(inside & (periods == length))
                 compiled, beat = self.compiled(int(group[0])), self.frequency[number[lanes]]
-                moments = _fresh_moments(contacts, others, 0, lanes.size)
+                moments = fresh_moments(contacts, others, 0, lanes.size)
                 waves = np.zeros((compiled.grid.steps, 3, 0, 2))
                 march(
-                    compiled, 1.0 / beat, state[lanes], int(length) or cycles,
-                    extra_force=extra[lanes], outputs=outputs, waves=waves, moments=moments,
-                )  # fmt: skip
+                    compiled,
+                    1.0 / beat,
+                    state[lanes],
+                    int(length) or cycles,
+                    extra_force=extra[lanes],
+                    statistics=Statistics(outputs, waves, moments),
+                )
                 figures[:, :, lanes] = moments.reshape(-1, 5, lanes.size)
         return figures
 
@@ -173,9 +182,14 @@ def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
 
 class _Follower:
     def __init__(
-        self, family: SpeedFamily, closed: Orbits | None, valid: Mask,
-        tolerance: float, patience: int, periods: Sequence[int],
-    ) -> None:  # fmt: skip
+        self,
+        family: SpeedFamily,
+        closed: Orbits | None,
+        valid: Mask,
+        tolerance: float,
+        patience: int,
+        periods: Sequence[int],
+    ) -> None:
         self.family, self.closed, self.valid = family, closed, valid
         self.tolerance, self.patience, self.periods = tolerance, patience, sorted(periods)
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.motion import compression
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.load_friction import carried_load, friction_secant, push_with_friction
-from tribodyn.dynamics.march import Compiled
-from tribodyn.dynamics.program import Nodes
 from tribodyn.types import Array, Mask
 
 #: Rounds in which the ramps of a force law open and close; each round goes down the law.
@@ -21,8 +22,8 @@ def static_start(compiled: Compiled) -> Array:
     carrying = nodes.stiffness
     position = _equilibrium(compiled, carrying)
     for _ in range(0 if kept.all() else _ROUNDS):
-        compression = np.einsum("rsji,i->rsj", nodes.direction, position) - nodes.error
-        closed = np.where(kept | (compression > nodes.gap), nodes.stiffness, 0.0)
+        beyond = compression(nodes, position) > nodes.gap
+        closed = np.where(kept | beyond, nodes.stiffness, 0.0)
         if np.array_equal(closed, carrying):
             break
         carrying = closed
@@ -35,8 +36,7 @@ def _equilibrium(compiled: Compiled, carrying: Array) -> Array:
     system, nodes = compiled.system, compiled.nodes
     position = _balance(compiled, carrying, nodes.force_direction)
     for _ in range(_ROUNDS if system.frictions else 0):
-        compression = np.einsum("rsji,i->rsj", nodes.direction, position) - nodes.error
-        load = carried_load(system, carrying * (compression - nodes.gap))
+        load = carried_load(system, carrying * (compression(nodes, position) - nodes.gap))
         ratio = friction_secant(system, nodes.friction_coefficients, load)
         last, position = (
             position,

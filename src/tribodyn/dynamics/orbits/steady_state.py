@@ -15,14 +15,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.march import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.periods import find_any_orbit, shortest_period
 from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.response import Response, build_response
-from tribodyn.dynamics.simulate import read_start
-from tribodyn.dynamics.system import System
+from tribodyn.dynamics.time.response import Response, build_response
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, Problem, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array

@@ -1,0 +1,245 @@
+"""Lanes in blocks, blocks in threads: marching with fixed steps, and what is said of a failure."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.divergence import (
+    Failed,
+    newmark_failure,
+    runaway,
+    unparted_step,
+)
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.program import lane_load
+from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes
+from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
+from tribodyn.types import Array, Index
+
+#: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
+#: stay in the first cache, which 64 lanes of a pair of gears overflow.
+_WIDTHS = (1, 16)
+#: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
+#: Fewer lanes than these march one by one.
+_OWN_ROWS = 4
+#: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
+_BRIEF = 200_000
+
+
+class Statistics(NamedTuple):
+    """What is gathered while marching, so that no time series is stored."""
+
+    outputs: Array  #: linear outputs of the state (m, 2 n)
+    waves: Array  #: cosine and sine of harmonics, (steps, 3, harmonics, 2)
+    moments: Array  #: (numbers, lanes); overwritten
+
+
+@dataclass(frozen=True)
+class LaneBlock:
+    """Lanes that march side by side: past the end the last one is repeated, to fill the block."""
+
+    index: Index
+    count: int  #: lanes that are not repeated
+
+    @property
+    def lanes(self) -> Index:
+        """Numbers of the lanes."""
+        return self.index[: self.count]
+
+
+def lane_blocks(lanes: int, width: int | None = None, *, own_rows: bool = False) -> list[LaneBlock]:
+    """Divide lanes into blocks."""
+    if width is None:
+        width = _WIDTHS[0] if lanes < _OWN_ROWS else _OWN_ROWS if own_rows else _WIDTHS[1]
+    return [
+        LaneBlock(np.minimum(np.arange(first, first + width), lanes - 1), min(width, lanes - first))
+        for first in range(0, lanes, width)
+    ]
+
+
+class BlockRecord:
+    """The lanes of one block in a record of all."""
+
+    def __init__(self, record: Array | None, lanes: Index, width: int) -> None:
+        self._all, self._lanes = record, lanes
+        whole = record is not None and record.shape[2] == lanes.size == width
+        self.states = record
+        if record is not None and not whole:
+            self.states = np.empty((*record.shape[:2], width))
+
+    def put(self) -> None:
+        """Put the lanes in their places."""
+        if self._all is not None and self.states is not None and self.states is not self._all:
+            self._all[:, :, self._lanes] = self.states[:, :, : self._lanes.size]
+
+
+def is_brief(compiled: Compiled, lanes: int, cycles: int) -> bool:
+    """Tell whether a march is over before an interruption is missed."""
+    size = compiled.system.size + len(compiled.system.contacts)
+    return lanes * cycles * compiled.grid.steps * size <= _BRIEF
+
+
+def march(
+    compiled: Compiled,
+    period: Array,
+    state: Array,
+    cycles: int,
+    *,
+    method: RungeKutta4 | Newmark = RungeKutta4(),  # noqa: B008  # a constant tuple
+    extra_force: Array | None = None,
+    parameters: LaneParameters | None = None,
+    record: Array | None = None,
+    statistics: Statistics | None = None,
+    width: int | None = None,
+    threads: int | None = None,
+    any_step: bool = False,
+    elapsed: int = 0,
+) -> Array:
+    """March lanes by whole mesh cycles, after ``elapsed`` others; returns their new state."""
+    lanes = state.shape[0]
+    if isinstance(method, RungeKutta4) and not any_step:
+        _refuse_scaled(compiled, 1.0 / period, parameters)
+    run = _Run(compiled, method, parameters, period, state, extra_force)
+    new = np.empty_like(state)
+
+    def march_lanes(block: LaneBlock) -> int:
+        part = np.ascontiguousarray(state[block.index])
+        kept = BlockRecord(record, block.lanes, block.index.size)
+        code = run.march(block, part, cycles, kept.states, statistics)
+        kept.put()
+        new[block.lanes] = part[: block.count]
+        return code
+
+    blocks = lane_blocks(lanes, width, own_rows=bool(compiled.members))
+    brief = is_brief(compiled, lanes, cycles)
+    codes = in_threads(march_lanes, blocks, threads or os.cpu_count() or 1, brief=brief)
+    if max(codes) >= 0:
+        run.report(blocks[int(np.argmax(codes))], max(codes), elapsed)
+    return new
+
+
+def _refuse_scaled(compiled: Compiled, beat: Array, parameters: LaneParameters | None) -> None:
+    if parameters is None or parameters is compiled.parameters:
+        return
+    for member in compiled.each(beat.size):
+        refuse_unstable_lanes(
+            member.system, member.nodes, compiled.grid, beat, parameters, lanes=member.lanes
+        )
+
+
+class _Run:
+    """Lanes with everything that the kernel wants to know about each of them."""
+
+    def __init__(
+        self,
+        compiled: Compiled,
+        method: RungeKutta4 | Newmark,
+        parameters: LaneParameters | None,
+        period: Array,
+        state: Array,
+        extra_force: Array | None,
+    ) -> None:
+        lanes, double = state.shape
+        self.compiled, self.method, self.period, self.state = compiled, method, period, state
+        extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
+        self.programs = compiled.programs(parameters)
+        self.member = np.zeros(lanes, dtype=np.int64)
+        self.scales = np.ones((lanes, 6)) if parameters is None else parameters.table(lanes)
+        self.load = np.empty((lanes, double // 2))
+        self.members = compiled.each(lanes)
+        for number, member in enumerate(self.members):
+            own = member.lanes
+            self.member[own] = number
+            self.load[own] = lane_load(
+                self.programs[number], member.system, extra[own], self.scales[own, 5]
+            )
+        if parameters is not None:
+            self.load = np.hstack((self.load, self.scales))
+
+    def march(
+        self,
+        block: LaneBlock,
+        state: Array,
+        cycles: int,
+        record: Array | None = None,
+        statistics: Statistics | None = None,
+    ) -> int:
+        """March the lanes of one block; returns what :func:`march_block` does."""
+        from tribodyn.dynamics._engine.marching import march_block
+        from tribodyn.dynamics._engine.moments import Gathered
+
+        index = block.index
+        program = self.programs[self.member[index[0]]]
+        rows = program.rows
+        width, double = state.shape
+        if self.compiled.members and width > 1:
+            rows = np.stack([self.programs[number].rows for number in self.member[index]], axis=-1)
+        gathered = None
+        states = np.zeros((0, double, width)) if record is None else record
+        if statistics is not None:
+            waves = np.ascontiguousarray(statistics.waves).reshape(-1)
+            moments = np.ascontiguousarray(statistics.moments[:, index]).reshape(-1)
+            harmonics = statistics.waves.shape[2]
+            gathered = Gathered(statistics.outputs, waves, harmonics, moments)
+        code = march_block(
+            (0.0,) * width, self.method, program, rows, self.period[index], self.load[index],
+            state, cycles, states, gathered, stop_flag(),
+        )  # fmt: skip
+        if statistics is not None and gathered is not None:
+            numbers = gathered.moments.reshape(-1, width)
+            statistics.moments[:, block.lanes] = numbers[:, : block.count]
+        return refuse_stopped(int(code))
+
+    def report(self, block: LaneBlock, code: int, elapsed: int) -> None:
+        """Tell why a block ended early."""
+        from tribodyn.dynamics._engine.marching import UNFOUND, UNPARTED
+
+        grid, several = self.compiled.grid, self.period.size > 1
+        if UNPARTED <= code < UNFOUND:
+            place, item = divmod(code - UNPARTED, block.index.size)
+            contacts = len(self.compiled.system.contacts)
+            cycle, number = divmod(place // contacts, grid.steps)
+            lane = int(block.index[item])
+            phase = elapsed + cycle + float(grid.left[number])
+            raise unparted_step(
+                place % contacts, contacts, phase, phase * float(self.period[lane]),
+                lane if several else None,
+            )  # fmt: skip
+        lane, before, record, last = self._again(block, code % UNPARTED)
+        member = self.members[self.member[lane]]
+        failed = Failed(
+            member.system, member.nodes, grid, record, before + elapsed, float(self.period[lane]),
+            lane if several else None, self.scales[lane], self.compiled.step_number,
+        )  # fmt: skip
+        if isinstance(self.method, Newmark):
+            done = last % UNPARTED if last >= 0 else grid.steps
+            raise newmark_failure(failed, done, last >= UNFOUND, self.method[:3])
+        raise runaway(failed)
+
+    def _again(self, block: LaneBlock, step: int) -> tuple[int, int, Array, int]:
+        """March the lane that failed once more: its number, cycles before, last cycle, code."""
+        # The step counted from the start is at the end of a mesh cycle. A lane marched by itself is
+        # rounded differently, so that it may take a cycle more or less.
+        steps = self.compiled.grid.steps
+        record, last, lane = np.zeros((steps + 1, self.state.shape[1], 1)), -1, block.index[0]
+        before = max((step - 1) // steps, 0)
+        for lane in block.lanes:
+            alone = LaneBlock(np.array([lane]), 1)
+            state, before = self.state[alone.index].copy(), max((step - 1) // steps, 0)
+            early = self.march(alone, state, before) if before else -1
+            if early >= 0:
+                before, state = max((early - 1) // steps, 0), self.state[alone.index].copy()
+                if before:
+                    self.march(alone, state, before)
+            for _ in range(2):
+                last = self.march(alone, state, 1, record)
+                if last >= 0:
+                    return int(lane), before, record, last
+                before += 1
+        return int(lane), before, record, last

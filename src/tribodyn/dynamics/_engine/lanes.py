@@ -1,0 +1,267 @@
+"""A vector of lanes as a number type of the compiled kernels.
+
+A lane is one trajectory of an ensemble. ``load(lanes, buffer, slot)`` reads one number per lane;
+the result adds and multiplies like a number and lives in vector registers. The number of lanes
+is the length of the tuple ``lanes``, so the compiler knows it and unrolls; with one lane the
+vector is a plain number. This replaces loops over lanes, which the compiler leaves scalar when
+it cannot prove that the slots written differ from the slots read.
+"""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic, models, overload, register_model
+
+_FLAGS = ("contract", "nsz")
+
+
+class LaneType(types.Type):
+    """Numba type of a vector with one float64 per lane."""
+
+    def __init__(self, width: int) -> None:
+        self.width = width
+        super().__init__(name=f"Lanes({width})")
+
+
+@register_model(LaneType)
+class _LaneModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: LaneType) -> None:
+        super().__init__(manager, kind, ir.VectorType(ir.DoubleType(), kind.width))
+
+
+def _data(context: Any, builder: Any, kind: Any, array: Any) -> Any:
+    return context.make_array(kind)(context, builder, array).data
+
+
+@intrinsic
+def address(typing: Any, array: Any) -> Any:
+    """Tell where the numbers of a contiguous array begin; somebody must keep the array alive."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _data(context, builder, signature.args[0], arguments[0])
+
+    return types.CPointer(array.dtype)(array), generate
+
+
+def _pointer(context: Any, builder: Any, kind: Any, array: Any, slot: Any, width: int) -> Any:
+    data = array if isinstance(kind, types.CPointer) else _data(context, builder, kind, array)
+    place = builder.gep(data, [builder.mul(slot, ir.Constant(slot.type, width))])
+    return builder.bitcast(place, ir.VectorType(ir.DoubleType(), width).as_pointer())
+
+
+@intrinsic
+def load(typing: Any, lanes: Any, buffer: Any, slot: Any) -> Any:
+    """Read slot ``slot`` of ``buffer``: one number per lane."""
+    kind = LaneType(len(lanes))
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        pointer = _pointer(
+            context, builder, signature.args[1], arguments[1], arguments[2], kind.width
+        )
+        return builder.load(pointer, align=8)
+
+    return kind(lanes, buffer, types.intp), generate
+
+
+@intrinsic
+def store(typing: Any, buffer: Any, slot: Any, value: Any) -> Any:
+    """Write one number per lane into slot ``slot`` of ``buffer``."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        width = signature.args[2].width
+        pointer = _pointer(context, builder, signature.args[0], arguments[0], arguments[1], width)
+        builder.store(arguments[2], pointer, align=8)
+        return context.get_dummy_value()
+
+    return types.none(buffer, types.intp, value), generate
+
+
+def _broadcast(builder: Any, scalar: Any, width: int) -> Any:
+    kind = ir.VectorType(ir.DoubleType(), width)
+    first = builder.insert_element(
+        ir.Constant(kind, ir.Undefined), scalar, ir.Constant(ir.IntType(32), 0)
+    )
+    mask = ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width)
+    return builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), mask)
+
+
+def _uniform(width: int, number: float) -> Any:
+    return ir.Constant(ir.VectorType(ir.DoubleType(), width), [number] * width)
+
+
+def _any(builder: Any, comparison: Any, width: int) -> Any:
+    return cgutils.is_not_null(builder, builder.bitcast(comparison, ir.IntType(width)))
+
+
+@intrinsic
+def any_negative(typing: Any, value: Any) -> Any:
+    """Tell whether the number of any lane is below zero."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        width = signature.args[0].width
+        below = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
+        return _any(builder, below, width)
+
+    return types.boolean(value), generate
+
+
+@intrinsic
+def any_above(typing: Any, value: Any, limit: Any) -> Any:
+    """Tell whether any lane is above its limit or no number."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        higher = builder.fcmp_unordered(">", arguments[0], arguments[1])
+        return _any(builder, higher, signature.args[0].width)
+
+    return types.boolean(value, limit), generate
+
+
+@intrinsic
+def negative_lanes(typing: Any, value: Any) -> Any:
+    """Bits of the lanes, at most 64, whose number is below zero."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        width = signature.args[0].width
+        below = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
+        bits = builder.bitcast(below, ir.IntType(width))
+        return bits if width == 64 else builder.zext(bits, ir.IntType(64))
+
+    return types.int64(value), generate
+
+
+def _indicator(comparison: str) -> Any:
+    def compare(typing: Any, left: Any, right: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            width = signature.args[0].width
+            holds = builder.fcmp_ordered(comparison, arguments[0], arguments[1])
+            return builder.select(holds, _uniform(width, 1.0), _uniform(width, 0.0))
+
+        return left(left, right), generate
+
+    return intrinsic(compare)
+
+
+@intrinsic
+def open_rows(typing: Any, rows: Any) -> Any:
+    """Tell where a row table begins, so that its type tells whether lanes have their own rows."""
+    place = types.CPointer(rows.dtype)
+    kind = place if rows.ndim == 1 else types.UniTuple(place, 1)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = _data(context, builder, signature.args[0], arguments[0])
+        if isinstance(signature.return_type, types.CPointer):
+            return data
+        return context.make_tuple(builder, signature.return_type, [data])
+
+    return kind(rows), generate
+
+
+@intrinsic
+def entry(typing: Any, lanes: Any, rows: Any, item: Any) -> Any:
+    """Read one item of a row table: a number, or one per lane where lanes have their own rows."""
+    own = isinstance(rows, types.BaseTuple)
+    kind = LaneType(len(lanes)) if own else types.float64
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        if not own:
+            return builder.load(builder.gep(arguments[1], [arguments[2]]))
+        data = builder.extract_value(arguments[1], 0)
+        pointer = _pointer(context, builder, rows[0], data, arguments[2], kind.width)
+        return builder.load(pointer, align=8)
+
+    return kind(lanes, rows, types.intp), generate
+
+
+def _operation(name: str) -> Any:
+    @intrinsic
+    def operate(typing: Any, left: Any, right: Any) -> Any:
+        kind = left if isinstance(left, LaneType) else right
+
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            operands = [
+                item
+                if isinstance(argument, LaneType)
+                else _broadcast(
+                    builder, context.cast(builder, item, argument, types.float64), kind.width
+                )
+                for item, argument in zip(arguments, signature.args, strict=True)
+            ]
+            return getattr(builder, name)(*operands, flags=_FLAGS)
+
+        return kind(left, right), generate
+
+    return operate
+
+
+_add, _sub, _mul = _operation("fadd"), _operation("fsub"), _operation("fmul")
+
+
+def _overload(function: Any, operate: Any) -> None:
+    @overload(function)
+    def choose(left, right):  # type: ignore[no-untyped-def]  # numba compares the signatures
+        numbers = (LaneType, types.Float, types.Integer)
+        lanes = isinstance(left, LaneType) or isinstance(right, LaneType)
+        if lanes and isinstance(left, numbers) and isinstance(right, numbers):
+            return lambda left, right: operate(left, right)
+        return None
+
+
+_overload(operator.add, _add)
+_overload(operator.sub, _sub)
+_overload(operator.mul, _mul)
+
+
+@intrinsic
+def first_lane(typing: Any, value: Any) -> Any:
+    """Return the number of the first lane."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), 0))
+
+    return types.float64(value), generate
+
+
+def _choice(comparison: str) -> Any:
+    @intrinsic
+    def choose(typing: Any, left: Any, right: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            first = builder.fcmp_ordered(comparison, arguments[0], arguments[1])
+            return builder.select(first, arguments[0], arguments[1])
+
+        return left(left, right), generate
+
+    return choose
+
+
+#: Smaller and larger of two vectors, lane by lane.
+least, greatest = _choice("<"), _choice(">")
+
+#: 1 for every lane whose left number is above, or below, the right one, else 0.
+above, below = _indicator(">"), _indicator("<")
+
+
+@intrinsic
+def quotient(typing: Any, left: Any, right: Any) -> Any:
+    """Divide lane by lane."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.fdiv(arguments[0], arguments[1])
+
+    return left(left, right), generate
+
+
+@intrinsic
+def magnitude(typing: Any, value: Any) -> Any:
+    """Take absolute values lane by lane."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        width = signature.args[0].width
+        negative = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
+        return builder.select(negative, builder.fneg(arguments[0]), arguments[0])
+
+    return value(value), generate

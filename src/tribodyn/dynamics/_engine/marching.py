@@ -1,0 +1,251 @@
+"""Marching a block of lanes over whole mesh cycles: steps, crossings, record and statistics."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numba import types
+from numba.extending import overload
+
+from tribodyn.compiled import source_digest
+from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
+from tribodyn.dynamics._engine.contact_forces import (
+    I64,
+    INNER,
+    JIT,
+    Law,
+    first_contact,
+    is_dead_zone,
+    left_side,
+    next_contact,
+    set_sides,
+    slots_of,
+)
+from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
+from tribodyn.dynamics._engine.lanes import address, open_rows
+from tribodyn.dynamics._engine.method import accept, own_slots, prepare, restart, step
+from tribodyn.dynamics._engine.moments import Gathered, gather, gather_parts
+from tribodyn.dynamics.equations.program import Program
+from tribodyn.interrupt import STOPPED
+from tribodyn.types import Array, Index
+
+#: Every file whose code ends up in the compiled kernel.
+_SOURCES = (
+    "lanes", "contact_forces", "method", "runge_kutta", "newmark", "crossing", "moments",
+    "marching", "../equations/program", "../equations/motion", "../equations/divergence",
+)  # fmt: skip
+#: What :func:`march_block` returns from here on tells of a step that comes to no end, and of one
+#: whose forces were not found.
+UNPARTED, UNFOUND = 1 << 40, 1 << 50
+
+
+@nb.njit(**INNER)
+def take_lane(lane: int, width: int, slots: int, w: Array, single: Array) -> None:
+    """Copy the slots of one lane of a block."""
+    for slot in range(slots):
+        single[slot] = w[slot * width + lane]
+
+
+@nb.njit(**INNER)
+def put_lane(lane: int, width: int, first: int, last: int, w: Array, single: Array) -> None:
+    """Copy slots of one lane back into the block."""
+    for slot in range(first, last):
+        w[slot * width + lane] = single[slot]
+
+
+def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> tuple[Law, int]:
+    """Law of one lane and where its three rows begin; gathered if lanes have rows of their own."""
+    raise NotImplementedError
+
+
+@overload(_rows_of_lane)
+def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-def]
+    if not isinstance(law.types[2], types.BaseTuple):
+        return lambda law, base, width, lane, gathered: (law, base)
+
+    def gather_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-def]
+        table = law.rows[0]
+        for item in range(3 * law.code[2]):
+            gathered[item] = table[(base + item) * width + lane]
+        return Law(law.code, law.reads, gathered), 0
+
+    return gather_rows
+
+
+def _moments_of(gathered: Any) -> Any:
+    """Numbers of all moments and of the waves of a step; none without statistics."""
+    raise NotImplementedError
+
+
+@overload(_moments_of)
+def _choose_moments(gathered):  # type: ignore[no-untyped-def]
+    if isinstance(gathered, types.NoneType):
+        return lambda gathered: (0, 0)
+    return lambda gathered: (gathered.moments.size, 6 * gathered.harmonics)
+
+
+@nb.njit(**INNER)
+def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w: Array) -> None:
+    """Fill the slots of all lanes: state, load and factors."""
+    s = slots_of(code)
+    n = s.n
+    for lane in range(width):
+        for i in range(2 * n):
+            w[i * width + lane] = state[lane, i]
+        for i in range(n):
+            w[(s.load + i) * width + lane] = load[lane, i]
+        for j in range(s.contacts):
+            w[(s.side + j) * width + lane] = 1.0
+        w[s.force_scale * width + lane] = 1.0
+        w[s.beat * width + lane] = 1.0 / period[lane]
+        if load.shape[1] > n:
+            w[s.stiffness * width + lane] = load[lane, n] - 1.0
+            w[s.damping * width + lane] = load[lane, n + 1] - 1.0
+            w[s.rub * width + lane] = load[lane, n + 2] - 1.0
+            w[s.error * width + lane] = 1.0 - load[lane, n + 3]
+            w[s.gap * width + lane] = load[lane, n + 4] - 1.0
+            w[s.force_scale * width + lane] = load[lane, n + 5]
+
+
+@nb.njit(**INNER)
+def has_dead_zones(law: Law) -> bool:
+    """Whether any contact has a dead zone."""
+    here = first_contact(law, I64(0), I64(0))
+    some: Any = np.bool_(False)
+    for _ in range(law.code[1]):
+        some = some or is_dead_zone(law, here)
+        here = next_contact(law, here)
+    return some
+
+
+def _build(digest: str) -> Any:
+    @nb.njit(cache=True, **JIT)
+    def march_block(
+        lanes: Any,
+        method: Any,
+        program: Program,
+        rows: Array,
+        period: Array,
+        load: Array,
+        state: Array,
+        cycles: int,
+        record: Array,
+        gathered: Gathered | None,
+        stop: Index,
+    ) -> int:
+        """March every lane by ``cycles`` mesh cycles.
+
+        Returns -1 when done, :data:`STOPPED` when stopped, else the step, counted from the start,
+        after which a state is not finite; or, with ``step * contacts + contact`` times the lanes
+        plus the lane on top of it, :data:`UNPARTED`; or :data:`UNFOUND` plus the step.
+        """
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        share, again = program.width, program.restart
+        law = Law(address(program.code), address(program.reads), open_rows(rows))
+        s, n, columns, width = slots_of(law.code), law.code[0], law.code[2], len(lanes)
+        own, lasting = own_slots(method, law)
+        slots = s.end + own
+        # Slots of all lanes, those of one, rows of a part of a step, rows of one lane.
+        work = np.zeros(slots * (width + 1) + 6 * columns)
+        single, part = address(work[slots * width :]), address(work[slots * (width + 1) :])
+        w, room = address(work), address(work[slots * (width + 1) + 3 * columns :])
+        # A list of the parts of a step, the search, moments of the lanes that were split, waves.
+        listed = 1 + (most_splits(s.contacts) + 1) * (2 + s.contacts + 4 * n)
+        most = listed + WIDTH * (s.contacts + 1)
+        counts = _moments_of(gathered)
+        kept = np.empty(most + counts[0] + counts[1])
+        parts, search = address(kept), address(kept[listed:])
+        set_up(width, law.code, period, load, state, w)
+        for lane in range(width if own > 0 else 0):
+            take_lane(lane, width, slots, w, single)
+            alone, first = _rows_of_lane(law, I64(0), width, lane, room)
+            prepare(method, alone, first, period[lane], single)
+            put_lane(lane, width, s.end, slots, w, single)
+        switching = has_dead_zones(law)
+        keep = record.shape[0] > 0
+        point = 0
+        for _cycle in range(cycles):
+            for r in range(share.size):
+                if stop[0] != 0:
+                    return STOPPED
+                base = 3 * columns * r
+                for lane in range(width):
+                    w[s.h * width + lane] = period[lane] * share[r]
+                if again[r] or point == 0:
+                    if switching:
+                        set_sides(lanes, law, base, I64(0), w)
+                    restart(lanes, method, law, base, w)
+                if keep:
+                    for i in range(2 * n):
+                        for lane in range(width):
+                            record[point, i, lane] = w[i * width + lane]
+                if not step(lanes, method, law, r, base, w):
+                    return UNFOUND + point + 1
+                gone = I64(0)
+                if switching:
+                    gone = left_side(lanes, law, base + 2 * columns, w)
+                if gone != 0:
+                    for lane in range(width):
+                        if not (gone >> lane) & 1:
+                            continue
+                        take_lane(lane, width, slots, w, single)
+                        alone, first = _rows_of_lane(law, base, width, lane, room)
+                        whole = period[lane] * share[r]
+                        good, contact = split_step(
+                            method, alone, first, whole, part, single, parts, search
+                        )
+                        if contact >= 0:
+                            return UNPARTED + (point * s.contacts + contact) * width + lane
+                        if not good:
+                            return UNFOUND + point + 1
+                        put_lane(lane, width, 4 * n, 6 * n, w, single)
+                        put_lane(lane, width, s.force, s.side + s.contacts, w, single)
+                        put_lane(lane, width, s.end, s.end + lasting, w, single)
+                        if gathered is not None:
+                            count = counts[0] // width
+                            mine = address(kept[most + lane * count :])
+                            take_lane(lane, width, count, address(gathered.moments), mine)
+                            gather_parts(
+                                alone, first, parts, whole, part, single, gathered.outputs,
+                                share[r] / cycles, address(gathered.waves),
+                                6 * gathered.harmonics * r, gathered.harmonics,
+                                address(kept[most + counts[0] :]), mine,
+                            )  # fmt: skip
+                if gathered is not None:
+                    for lane in range(width):
+                        w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
+                    moments = address(gathered.moments)
+                    gather(
+                        lanes, law, base, switching, w, gathered.outputs, share[r] / cycles,
+                        address(gathered.waves), 6 * gathered.harmonics * r, gathered.harmonics,
+                        moments,
+                    )  # fmt: skip
+                    # The whole step was added to lanes that were split: their own moments instead.
+                    for lane in range(width if gone != 0 else 0):
+                        if (gone >> lane) & 1:
+                            count = counts[0] // width
+                            mine = address(kept[most + lane * count :])
+                            put_lane(lane, width, I64(0), count, moments, mine)
+                accept(lanes, method, law, w)
+                point += 1
+            for item in range(2 * n * width):
+                if not np.isfinite(w[item]):
+                    return point
+        # Addresses hold only as long as their owners are in use.
+        kept[0] = work[0]
+        for lane in range(width):
+            for i in range(2 * n):
+                state[lane, i] = w[i * width + lane]
+        if keep:
+            for i in range(2 * n):
+                for lane in range(width):
+                    record[point, i, lane] = w[i * width + lane]
+        return -1
+
+    return march_block
+
+
+march_block = _build(source_digest(Path(__file__).parent, _SOURCES))

@@ -1,0 +1,163 @@
+"""Statistics of every lane, gathered while marching, so that no time series is stored.
+
+Each step contributes with Simpson's rule: both ends and the middle, where the state is the cubic
+Hermite interpolant of the two ends. A lane in which a contact opens or closes within the step
+contributes with every part of it by itself, as the damping force jumps there. Signals are, in this
+order: compression of every contact, force of every contact, acceleration of every coordinate, and
+linear outputs of the state.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numba as nb
+import numpy as np
+
+from tribodyn.dynamics._engine.contact_forces import (
+    I64,
+    INNER,
+    Law,
+    acceleration,
+    compression,
+    first_contact,
+    next_contact,
+    set_sides,
+    slots_of,
+)
+from tribodyn.dynamics._engine.crossing import row_within
+from tribodyn.dynamics._engine.lanes import greatest, least, load, store
+from tribodyn.dynamics.equations import motion
+from tribodyn.types import Array
+
+cubic_middle = nb.njit(**INNER)(motion.cubic_middle)
+
+#: Per signal: mean, mean square, minimum, maximum, share of the time off the driving flank.
+#: Signals of the contacts are followed by a cosine and a sine part per harmonic.
+PLAIN_MOMENTS = 5
+#: Shorter parts of a step are left out: their rate of change would be nothing but rounding.
+_SHORTEST = 1e-7
+
+
+class Gathered(NamedTuple):
+    """What statistics are gathered."""
+
+    outputs: Array  #: linear outputs of the state
+    waves: Array  #: cosine and sine of every harmonic at the three nodes of every step
+    harmonics: int
+    moments: Array  #: of all lanes
+
+
+@nb.njit(**INNER)
+def _middle(lanes: Any, law: Law, w: Array) -> None:
+    """Interpolant of buffers 0 and 2 at the middle of the step, into buffer 1."""
+    s = slots_of(law.code)
+    n, h, inverse = s.n, load(lanes, w, s.h), load(lanes, w, s.inverse)
+    for i in range(n):
+        q, v = cubic_middle(
+            h, inverse, load(lanes, w, i), load(lanes, w, n + i),
+            load(lanes, w, 4 * n + i), load(lanes, w, 5 * n + i),
+        )  # fmt: skip
+        store(w, 2 * n + i, q)
+        store(w, 3 * n + i, v)
+
+
+@nb.njit(**INNER)
+def _add(
+    lanes: Any, value: Any, weight: float, at: int, waves: Array, wave: int, harmonics: int,
+    m: Array,
+) -> None:  # fmt: skip
+    weighted = weight * value
+    store(m, at, load(lanes, m, at) + weighted)
+    store(m, at + 1, load(lanes, m, at + 1) + weighted * value)
+    store(m, at + 2, least(load(lanes, m, at + 2), value))
+    store(m, at + 3, greatest(load(lanes, m, at + 3), value))
+    for item in range(2 * harmonics):
+        slot = at + PLAIN_MOMENTS + item
+        store(m, slot, load(lanes, m, slot) + waves[wave + item] * weighted)
+
+
+@nb.njit(**INNER)
+def gather(
+    lanes: Any, law: Law, base: int, switching: bool, w: Array, outputs: Array, share: float,
+    waves: Array, wave: int, harmonics: int, m: Array,
+) -> None:  # fmt: skip
+    """Add one step, whose ends are in buffers 0 and 2, to the moments ``m``."""
+    s, columns = slots_of(law.code), law.code[2]
+    n, contacts = s.n, s.contacts
+    long = PLAIN_MOMENTS + 2 * harmonics
+    _middle(lanes, law, w)
+    for node in range(3):
+        buffer, row = (0, 1, 2)[node], base + node * columns
+        weight = (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)[node] * share
+        phase = wave + node * 2 * harmonics
+        if switching:
+            set_sides(lanes, law, row, buffer, w)
+        acceleration(lanes, law, row, buffer, s.first, w)
+        here = first_contact(law, row, buffer)
+        for j in range(contacts):
+            d = compression(lanes, law, here, w)
+            _add(lanes, d, weight, j * long, waves, phase, harmonics, m)
+            force = load(lanes, w, s.force + j)
+            _add(lanes, force, weight, (contacts + j) * long, waves, phase, harmonics, m)
+            off = weight * (1.0 - greatest(load(lanes, w, s.side + j), 0.0 * d))
+            slot = (contacts + j) * long + 4
+            store(m, slot, load(lanes, m, slot) + off)
+            here = next_contact(law, here)
+        signal = 2 * contacts * long
+        for i in range(n):
+            a = load(lanes, w, s.first + i)
+            _add(lanes, a, weight, signal, waves, phase, 0, m)
+            signal += PLAIN_MOMENTS
+        for o in range(outputs.shape[0]):
+            y = 0.0 * load(lanes, w, 0)
+            for i in range(2 * n):
+                if outputs[o, i] != 0.0:
+                    y = y + outputs[o, i] * load(lanes, w, 2 * n * buffer + i)
+            _add(lanes, y, weight, signal, waves, phase, 0, m)
+            signal += PLAIN_MOMENTS
+
+
+@nb.njit(**INNER)
+def _waves_within(
+    waves: Array, wave: int, harmonics: int, tau: float, near: Array, node: int
+) -> None:
+    """Cosine and sine of every harmonic at the fraction ``tau`` of a step, into ``near``."""
+    for item in range(0, 2 * harmonics, 2):
+        c0, s0 = waves[wave + item], waves[wave + item + 1]
+        half = wave + 2 * harmonics + item
+        c1, s1 = waves[half], waves[half + 1]
+        angle = math.atan2(s0, c0) + 2.0 * tau * math.atan2(s1 * c0 - c1 * s0, c1 * c0 + s1 * s0)
+        near[2 * harmonics * node + item] = math.cos(angle)
+        near[2 * harmonics * node + item + 1] = math.sin(angle)
+
+
+@nb.njit(**INNER)
+def gather_parts(
+    law: Law, base: int, parts: Array, width: float, part: Array, w: Array, outputs: Array,
+    share: float, waves: Array, wave: int, harmonics: int, near: Array, m: Array,
+) -> None:  # fmt: skip
+    """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``."""
+    s, own = slots_of(law.code), Law(law.code, law.reads, part)
+    n, contacts, at = s.n, s.contacts, I64(1)
+    for _ in range(I64(parts[0])):
+        start, end = parts[at], parts[at + 1]
+        at += 2
+        if end - start > _SHORTEST:
+            for j in range(contacts):
+                w[s.side + j] = parts[at + j]
+            for i in range(2 * n):
+                w[i] = parts[at + contacts + i]
+                w[4 * n + i] = parts[at + contacts + 2 * n + i]
+            for node in range(3):
+                tau = start + 0.5 * node * (end - start)
+                row_within(law, base, tau, part, I64(node))
+                _waves_within(waves, wave, harmonics, tau, near, I64(node))
+            w[s.h] = width * (end - start)
+            w[s.inverse] = 1.0 / w[s.h]
+            gather(
+                (0.0,), own, I64(0), np.bool_(False), w, outputs, share * (end - start), near,
+                I64(0), harmonics, m,
+            )  # fmt: skip
+        at += contacts + 4 * n

@@ -1,0 +1,433 @@
+"""Newmark's scheme: one step of all lanes.
+
+``q1 = q + h v + h^2 [(1/2 - beta) a + beta a1]``, ``v1 = v + h [(1 - gamma) a + gamma a1]`` and
+the law of motion at the right end of the step. The structure alone gives ``a1 = S^-1 b`` with
+``S = 1 + gamma h C + beta h^2 K``, all divided by the mass matrix, one inverse per lane and width
+of a step. The contact forces are the unknowns of Newton's method: compressions and rates depend on
+them linearly, so that its matrix has the size of the number of contacts and is exact, friction
+included. The acceleration is found anew at every event and contact change: without that the scheme
+is of first order. Source: Newmark (1959), A method of computation for structural dynamics.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numba as nb
+from numba.extending import overload
+
+from tribodyn.dynamics._engine.contact_forces import (
+    I64,
+    INNER,
+    Cursor,
+    Law,
+    acceleration,
+    acceleration_of,
+    compression_and_rate,
+    contact_law,
+    first_contact,
+    friction_forces,
+    friction_law,
+    next_contact,
+    next_coordinate,
+    slots_of,
+)
+from tribodyn.dynamics._engine.lanes import (
+    any_above,
+    entry,
+    greatest,
+    load,
+    magnitude,
+    quotient,
+    store,
+)
+from tribodyn.dynamics._engine.method import (
+    Newmark,
+    accept,
+    is_method,
+    own_slots,
+    part_step,
+    prepare,
+    restart,
+    step,
+)
+from tribodyn.dynamics._engine.runge_kutta import take_over
+from tribodyn.types import Array, Index
+
+#: Passes of Newton's method. Between contact changes two are enough, unless friction follows the
+#: load.
+PASSES = 25
+
+
+class _Slots(NamedTuple):
+    """Slots of the method."""
+
+    now: int  #: acceleration at the beginning of the step
+    new: int  #: and at its end
+    guess: int  #: contact forces to begin with
+    plain: int  #: compressions if no contact pushed
+    rates: int  #: and their rates
+    slope: int  #: change of every friction with its load
+    push: int  #: what a unit of each force does to the accelerations
+    effect: int  #: and to compressions and rates
+    matrix: int  #: of Newton's method
+    right: int  #: its right side
+    spare: int  #: matrix that is inverted
+    inverse: int  #: of every width of a step
+    end: int
+
+
+@nb.njit(forceinline=True, **INNER)
+def _slots_of(code: Index) -> _Slots:
+    s = slots_of(code)
+    n, m = s.n, s.contacts
+    frictions = s.end - s.friction
+    guess = s.end + 2 * n
+    slope = guess + 3 * m
+    push = slope + frictions
+    effect = push + (m + frictions) * n
+    matrix = effect + 2 * m * (m + frictions)
+    right = matrix + m * m
+    spare = right + m
+    inverse = spare + n * n
+    return _Slots(
+        s.end, s.end + n, guess, guess + m, guess + 2 * m, slope, push, effect, matrix, right,
+        spare, inverse, inverse - s.end,
+    )  # fmt: skip
+
+
+@nb.njit(**INNER)
+def _friction_terms(law: Law, base: int, buffer: int) -> Cursor:
+    """Where the frictions begin."""
+    here = first_contact(law, base, buffer)
+    for _ in range(law.code[1]):
+        here = next_contact(law, here)
+    return here
+
+
+@nb.njit(forceinline=True, **INNER)
+def _next_friction(law: Law, here: Cursor) -> Cursor:
+    """Where the next friction begins."""
+    contacts, terms = law.code[here.at], law.code[here.at + 1]
+    return Cursor(here.at + 2, here.read + contacts, here.row + 2 + terms)
+
+
+@nb.njit(**INNER)
+def _coordinate_terms(law: Law, base: int, buffer: int) -> Cursor:
+    """Where the terms of the coordinates begin."""
+    here = _friction_terms(law, base, buffer)
+    count = law.code[here.at]
+    here = Cursor(here.at + 1, here.read, here.row)
+    for _ in range(count):
+        here = _next_friction(law, here)
+    return here
+
+
+@nb.njit(**INNER)
+def _invert(method: Newmark, law: Law, base: int, h: float, inverse: int, w: Array) -> None:
+    """Inverse of ``1 + gamma h C + beta h^2 K`` of one lane, by elimination with pivots."""
+    n, spare = law.code[0], _slots_of(law.code).spare
+    for item in range(n * n):
+        w[spare + item] = w[inverse + item] = 0.0
+    here = _coordinate_terms(law, base, I64(0))
+    for i in range(n):
+        w[spare + i * n + i] += 1.0
+        w[inverse + i * n + i] = 1.0
+        for item in range(law.code[here.at]):
+            slot, factor = law.reads[here.read + item], law.rows[here.row + item]
+            if slot < n:
+                w[spare + i * n + slot] -= method.beta * h * h * factor
+            elif slot < 2 * n:
+                w[spare + i * n + slot - n] -= method.gamma * h * factor
+        here = next_coordinate(law, here)
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(w[spare + i * n + k]) > abs(w[spare + best * n + k]):
+                best = i
+        for part in (spare, inverse):
+            for j in range(n):
+                upper = w[part + k * n + j]
+                w[part + k * n + j] = w[part + best * n + j]
+                w[part + best * n + j] = upper
+        pivot = 1.0 / w[spare + k * n + k]
+        for j in range(n):
+            w[spare + k * n + j] *= pivot
+            w[inverse + k * n + j] *= pivot
+        for i in range(n):
+            factor = w[spare + i * n + k]
+            if i != k and factor != 0.0:
+                for j in range(n):
+                    w[spare + i * n + j] -= factor * w[spare + k * n + j]
+                    w[inverse + i * n + j] -= factor * w[inverse + k * n + j]
+
+
+@nb.njit(**INNER)
+def _without_contacts(
+    lanes: Any, method: Newmark, law: Law, base: int, inverse: int, w: Array
+) -> None:
+    """State at the end of the step, compressions and rates, if no contact pushed."""
+    s, o = slots_of(law.code), _slots_of(law.code)
+    n, h = s.n, load(lanes, w, s.h)
+    zero = 0.0 * h
+    early, slow = (0.5 - method.beta) * h * h, (1.0 - method.gamma) * h
+    late, fast = method.beta * h * h, method.gamma * h
+    for i in range(n):
+        v, a = load(lanes, w, n + i), load(lanes, w, o.now + i)
+        store(w, 4 * n + i, load(lanes, w, i) + h * v + early * a)
+        store(w, 5 * n + i, v + slow * a)
+    for j in range(s.contacts):
+        store(w, o.guess + j, load(lanes, w, s.force + j))
+        store(w, s.force + j, zero)
+    for f in range(s.friction, s.end):
+        store(w, f, zero)
+    here = _coordinate_terms(law, base, I64(2))
+    for i in range(n):
+        store(w, s.second + i, acceleration_of(lanes, law, here, i, w))
+        here = next_coordinate(law, here)
+    for i in range(n):
+        a = zero
+        for k in range(n):
+            a = a + load(lanes, w, inverse + i * n + k) * load(lanes, w, s.second + k)
+        store(w, o.new + i, a)
+    for i in range(n):
+        a = load(lanes, w, o.new + i)
+        store(w, 4 * n + i, load(lanes, w, 4 * n + i) + late * a)
+        store(w, 5 * n + i, load(lanes, w, 5 * n + i) + fast * a)
+    here = first_contact(law, base, I64(2))
+    for j in range(s.contacts):
+        d, rate = compression_and_rate(lanes, law, here, w)
+        store(w, o.plain + j, d)
+        store(w, o.rates + j, rate)
+        store(w, s.force + j, load(lanes, w, o.guess + j))
+        here = next_contact(law, here)
+
+
+@nb.njit(**INNER)
+def _pushes(lanes: Any, law: Law, base: int, inverse: int, w: Array) -> None:
+    """What a unit of each contact force and friction does to the accelerations."""
+    s, o = slots_of(law.code), _slots_of(law.code)
+    n, zero = s.n, 0.0 * load(lanes, w, s.h)
+    for item in range(o.push, o.effect):
+        store(w, item, zero)
+    here = _coordinate_terms(law, base, I64(0))
+    for i in range(n):
+        for item in range(law.code[here.at]):
+            slot = law.reads[here.read + item]
+            source = slot - s.force
+            if slot >= s.friction:
+                source = s.contacts + slot - s.friction
+            elif slot < s.force or slot >= s.side:
+                continue
+            factor, at = entry(lanes, law.rows, here.row + item), o.push + source * n
+            for k in range(n):
+                a = load(lanes, w, at + k) + load(lanes, w, inverse + k * n + i) * factor
+                store(w, at + k, a)
+        here = next_coordinate(law, here)
+
+
+@nb.njit(**INNER)
+def _effects(lanes: Any, method: Newmark, law: Law, base: int, w: Array) -> None:
+    """What a unit of each contact force and friction does to compressions and rates."""
+    s, o = slots_of(law.code), _slots_of(law.code)
+    n, m, sources = s.n, s.contacts, s.contacts + s.end - s.friction
+    h, beat = load(lanes, w, s.h), load(lanes, w, s.beat)
+    late, fast = method.beta * h * h, method.gamma * h
+    here = first_contact(law, base, I64(0))
+    for i in range(m):
+        for j in range(sources):
+            along, turned, push = 0.0 * h, 0.0 * h, o.push + j * n
+            count = law.code[here.at]
+            for item in range(count):
+                a = load(lanes, w, push + law.reads[here.read + item])
+                along = along + entry(lanes, law.rows, here.row + 5 + item) * a
+            for item in range(count, count + law.code[here.at + 1]):
+                a = load(lanes, w, push + law.reads[here.read + item])
+                turned = turned + entry(lanes, law.rows, here.row + 5 + item) * a
+            store(w, o.effect + i * sources + j, late * along)
+            store(w, o.effect + (m + i) * sources + j, fast * along + beat * late * turned)
+        here = next_contact(law, here)
+
+
+@nb.njit(**INNER)
+def _solve(lanes: Any, m: int, matrix: int, right: int, w: Array) -> None:
+    """Solve for the corrections of the contact forces by elimination."""
+    for k in range(m):
+        for i in range(k + 1, m):
+            part = quotient(load(lanes, w, matrix + i * m + k), load(lanes, w, matrix + k * m + k))
+            for j in range(k + 1, m):
+                old = load(lanes, w, matrix + i * m + j)
+                store(w, matrix + i * m + j, old - part * load(lanes, w, matrix + k * m + j))
+            store(w, right + i, load(lanes, w, right + i) - part * load(lanes, w, right + k))
+    for back in range(m):
+        i = m - 1 - back
+        total = load(lanes, w, right + i)
+        for j in range(i + 1, m):
+            total = total - load(lanes, w, matrix + i * m + j) * load(lanes, w, right + j)
+        store(w, right + i, quotient(total, load(lanes, w, matrix + i * m + i)))
+
+
+@nb.njit(**INNER)
+def _slopes(lanes: Any, law: Law, here: Cursor, w: Array) -> None:
+    """Every friction and its change with the load."""
+    s, o = slots_of(law.code), _slots_of(law.code)
+    here = Cursor(here.at + 1, here.read, here.row)
+    for f in range(s.end - s.friction):
+        force, slope, following = friction_law(lanes, law, here, w)
+        store(w, s.friction + f, force)
+        store(w, o.slope + f, slope)
+        here = following
+
+
+@nb.njit(**INNER)
+def _row_of_newton(lanes: Any, law: Law, i: int, rubbing: Cursor, k: Any, c: Any, w: Array) -> None:
+    """Row of the matrix for contact ``i``, whose force changes by ``k`` and ``c``."""
+    s, o = slots_of(law.code), _slots_of(law.code)
+    m, frictions = s.contacts, s.end - s.friction
+    by_d, by_rate = o.effect + i * (m + frictions), o.effect + (m + i) * (m + frictions)
+    for j in range(m):
+        d, rate = load(lanes, w, by_d + j), load(lanes, w, by_rate + j)
+        here = Cursor(rubbing.at + 1, rubbing.read, rubbing.row)
+        for f in range(frictions):
+            for item in range(law.code[here.at]):
+                if law.reads[here.read + item] == s.force + j:
+                    slope = load(lanes, w, o.slope + f)
+                    d = d + load(lanes, w, by_d + m + f) * slope
+                    rate = rate + load(lanes, w, by_rate + m + f) * slope
+            here = _next_friction(law, here)
+        unit = 1.0 if i == j else 0.0
+        store(w, o.matrix + i * m + j, unit - (k * d + c * rate))
+
+
+@nb.njit(**INNER)
+def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> bool:
+    """Find the contact forces by Newton's method; False if the passes are not enough."""
+    s, o = slots_of(law.code), _slots_of(law.code)
+    m, frictions = s.contacts, s.end - s.friction
+    sources, rubbing = m + frictions, _friction_terms(law, base, I64(2))
+    for _ in range(PASSES):
+        size = 0.0 * load(lanes, w, s.h)
+        _slopes(lanes, law, rubbing, w)
+        here = first_contact(law, base, I64(2))
+        for i in range(m):
+            start, change = load(lanes, w, o.plain + i), load(lanes, w, o.rates + i)
+            d, rate = start, change
+            for j in range(sources):
+                force = load(lanes, w, s.force + j if j < m else s.friction + j - m)
+                d = d + load(lanes, w, o.effect + i * sources + j) * force
+                rate = rate + load(lanes, w, o.effect + (m + i) * sources + j) * force
+            force, k, c = contact_law(lanes, law, here, i, d, rate, w)
+            old = load(lanes, w, s.force + i)
+            store(w, o.right + i, force - old)
+            size = greatest(size, magnitude(old) + magnitude(force))
+            size = greatest(size, magnitude(k * start) + magnitude(c * change))
+            _row_of_newton(lanes, law, i, rubbing, k, c, w)
+            here = next_contact(law, here)
+        _solve(lanes, m, o.matrix, o.right, w)
+        there = True
+        for i in range(m):
+            correction = load(lanes, w, o.right + i)
+            store(w, s.force + i, load(lanes, w, s.force + i) + correction)
+            there = there and not any_above(magnitude(correction), tolerance * size)
+        if there:
+            return True
+    return False
+
+
+@nb.njit(**INNER)
+def newmark_step(lanes: Any, method: Newmark, law: Law, base: int, inverse: int, w: Array) -> bool:
+    """March every lane by one step with the sides at its start; ``base`` is the row at its end."""
+    s, o = slots_of(law.code), _slots_of(law.code)
+    n, m = s.n, s.contacts
+    _without_contacts(lanes, method, law, base, inverse, w)
+    if m == 0:
+        return True
+    _pushes(lanes, law, base, inverse, w)
+    _effects(lanes, method, law, base, w)
+    there: bool = _iterate(lanes, method.tolerance, law, base, w)
+    friction_forces(lanes, law, _friction_terms(law, base, I64(2)), w)
+    h = load(lanes, w, s.h)
+    late, fast = method.beta * h * h, method.gamma * h
+    for i in range(n):
+        a = load(lanes, w, o.push + i) * load(lanes, w, s.force)
+        for j in range(1, m + s.end - s.friction):
+            force = load(lanes, w, s.force + j if j < m else s.friction + j - m)
+            a = a + load(lanes, w, o.push + j * n + i) * force
+        store(w, o.new + i, load(lanes, w, o.new + i) + a)
+        store(w, 4 * n + i, load(lanes, w, 4 * n + i) + late * a)
+        store(w, 5 * n + i, load(lanes, w, 5 * n + i) + fast * a)
+    return there
+
+
+@overload(own_slots)
+def _own_slots(method, law):  # type: ignore[no-untyped-def]
+    if not is_method(method, Newmark):
+        return None
+
+    def count(method, law):  # type: ignore[no-untyped-def]
+        n = law.code[0]
+        return _slots_of(law.code).end + method.widths.size * n * n, 2 * n
+
+    return count
+
+
+@overload(prepare)
+def _prepare(method, law, base, period, w):  # type: ignore[no-untyped-def]
+    if not is_method(method, Newmark):
+        return None
+
+    def invert(method, law, base, period, w):  # type: ignore[no-untyped-def]
+        n, inverse = law.code[0], _slots_of(law.code).inverse
+        for kind in range(method.widths.size):
+            h = method.widths[kind] * period
+            _invert(method, law, base, h, inverse + kind * n * n, w)
+
+    return invert
+
+
+@overload(restart)
+def _restart(lanes, method, law, base, w):  # type: ignore[no-untyped-def]
+    if not is_method(method, Newmark):
+        return None
+    return lambda lanes, method, law, base, w: acceleration(
+        lanes, law, base, I64(0), _slots_of(law.code).now, w
+    )
+
+
+@overload(step)
+def _step(lanes, method, law, number, base, w):  # type: ignore[no-untyped-def]
+    if not is_method(method, Newmark):
+        return None
+
+    def march(lanes, method, law, number, base, w):  # type: ignore[no-untyped-def]
+        inverse = _slots_of(law.code).inverse + method.kind[number] * law.code[0] ** 2
+        return newmark_step(lanes, method, law, base + 2 * law.code[2], inverse, w)
+
+    return march
+
+
+@overload(part_step)
+def _part_step(method, law, w):  # type: ignore[no-untyped-def]
+    if not is_method(method, Newmark):
+        return None
+
+    def march(method, law, w):  # type: ignore[no-untyped-def]
+        base, inverse = 2 * law.code[2], _slots_of(law.code).inverse
+        _invert(method, law, base, w[slots_of(law.code).h], inverse, w)
+        return newmark_step((0.0,), method, law, base, inverse, w)
+
+    return march
+
+
+@overload(accept)
+def _accept(lanes, method, law, w):  # type: ignore[no-untyped-def]
+    if not is_method(method, Newmark):
+        return None
+
+    def keep(lanes, method, law, w):  # type: ignore[no-untyped-def]
+        n, o = law.code[0], _slots_of(law.code)
+        take_over(lanes, n, w)
+        for i in range(n):
+            store(w, o.now + i, load(lanes, w, o.new + i))
+
+    return keep

@@ -1,0 +1,289 @@
+"""What to say of a motion that grew beyond all bounds: when, who, and the probable cause."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.grid import Grid, system_events
+from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.step_limit import state_roots
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.load_friction import friction_tangent, push_with_friction
+from tribodyn.errors import ComputationError, Problem
+from tribodyn.types import Array
+
+#: ``omega_max * dt`` above which the step itself is a suspect.
+_SUSPECT_STEP = 2.0
+#: Steps of the grid on which an adaptive system is looked at.
+_SAMPLE = 64
+#: Negative eigenvalues smaller than this share of the largest are rounding.
+_ROUNDING = 1e-9
+#: A state above this has grown beyond all bounds; contact forces are then not to blame.
+_HUGE = 1e100
+
+
+class Failed(NamedTuple):
+    """A trajectory that failed, and its last mesh cycle."""
+
+    system: System
+    nodes: Nodes
+    grid: Grid
+    states: Array  #: before every step and at the end (steps + 1, 2 n, 1)
+    cycles: int  #: mesh cycles before
+    period: float  #: [s]
+    lane: int | None  #: its number among several
+    factors: Array  #: of stiffness, damping, friction, error, gap and force [1]
+    step_number: float  #: ``omega_max * dt`` [-]
+
+    @property
+    def who(self) -> str:
+        """Name of the lane."""
+        return "" if self.lane is None else f" in lane {self.lane}"
+
+    def fastest(self, step: int) -> str:
+        """Coordinate with most of the kinetic energy; one that went first has it too."""
+        with np.errstate(all="ignore"):
+            speed = np.abs(self.states[step, self.system.size :, 0])
+            energy = np.diag(np.asarray(self.system.mass)) * speed**2
+        return self.system.names[int(np.argmax(np.nan_to_num(energy, nan=np.inf)))]
+
+    def left(self, step: int) -> float:
+        """Mesh phase before a step."""
+        return float(np.append(self.grid.left, 1.0)[step])
+
+
+def runaway(failed: Failed) -> ComputationError:
+    """Error that tells when and where a motion ran away, and why that may be."""
+    finite = np.all(np.isfinite(failed.states[:, :, 0]), axis=1)
+    last = int(np.argmin(finite)) - 1 if not finite.all() else len(finite) - 2
+    last = max(last, 0)
+    phase = failed.cycles + failed.left(min(last, failed.grid.steps - 1))
+    name = failed.fastest(last)
+    body = name.rpartition("_")[0]
+    causes, remedy = probable_cause(failed.system, failed.nodes, failed.step_number, failed.factors)
+    return ComputationError(
+        Problem(
+            what=f"the motion grew beyond all bounds after {phase:.4g} mesh cycles, at the time "
+            f"{phase * failed.period:.6g} s" + (f",{failed.who}" if failed.who else ""),
+            where=f"coordinate {name}" + (f" of the body {body}" if body else "") + ", first of all"
+            if failed.system.size > 1
+            else f"coordinate {name}",
+            why=f"{causes}. omega_max*dt = {failed.step_number:.3g}, limit 2.7 of the integrator",
+            remedy=remedy,
+        )
+    )
+
+
+def newmark_failure(
+    failed: Failed, done: int, unfound: bool, law: tuple[float, float, float]
+) -> ComputationError:
+    """Error of Newmark's scheme: it ran away, or contact forces were not found."""
+    states = failed.states[:done, :, 0]
+    finite = np.isfinite(states).all(axis=1)
+    step = done if finite.all() else int(np.argmin(finite))
+    small = bool(finite.all()) and float(np.abs(states).max()) < _HUGE
+    time = (failed.cycles + failed.left(step)) * failed.period
+    reached = failed.step_number
+    number = f" at omega_max*dt = {reached:.3g}" if np.isfinite(reached) else ""
+    if unfound and small:
+        return ComputationError(
+            Problem(
+                what=f"the contact forces of the step that ends at {time:.6g} s were not "
+                f"found{failed.who}",
+                why="Newton's method did not come below the tolerance of "
+                f"{law[2]:.0e} within 25 passes{number}",
+                remedy="Take more steps per mesh cycle or a larger tolerance, and look for a "
+                "contact stiffness or damping below zero, which can make the equations of a step "
+                "singular",
+            )
+        )
+    cause, remedy = probable_cause(failed.system, failed.nodes, 0.0, failed.factors)
+    return ComputationError(
+        Problem(
+            what=f"the motion grew beyond all bounds at about {time:.6g} s{failed.who}, most of "
+            f"all {failed.fastest(max(step - 1, 0))}",
+            why=f"{cause}. gamma = {law[0]:g}, beta = {law[1]:g} are stable{number}, so "
+            "the step is not to blame",
+            remedy=remedy,
+        )
+    )
+
+
+def most_splits(contacts: int) -> int:
+    """Changes of side that may part a step; what has more does not come to an end."""
+    return 16 + 4 * contacts
+
+
+def unparted_step(
+    contact: int, contacts: int, phase: float, time: float, lane: int | None
+) -> ComputationError:
+    """Error of a step that cannot be parted; ``phase`` counts mesh cycles [1], ``time`` is in s."""
+    who = "" if lane is None else f", in lane {lane}"
+    return ComputationError(
+        Problem(
+            what=f"the contacts open and close more than {most_splits(contacts)} times within one "
+            "step",
+            where=f"contacts[{contact}], mesh phase {phase % 1.0:.6g} of mesh cycle "
+            f"{int(phase) + 1}, time {time:.6g} s{who}",
+            why="The flanks chatter at the boundary of the dead zone, where the damping force "
+            "jumps: the step cannot be marched in parts with one force law each",
+            remedy="Take more steps per mesh cycle, or damping that does not vanish in the gap; "
+            "look for an error or a gap that changes fast at that mesh phase",
+        )
+    )
+
+
+def probable_cause(
+    system: System, nodes: Nodes, step_number: float, factors: Array
+) -> tuple[str, str]:
+    """Look for what can make a motion grow."""
+    stiff, damp = factors[:2]
+    for kind, entry, factor, unit in (
+        ("stiffness", nodes.stiffness, stiff, "N/m"), ("damping", nodes.damping, damp, "N*s/m"),
+    ):  # fmt: skip
+        values = factor * entry
+        if values.size and values.min() < 0.0:
+            row, node, j = np.unravel_index(int(values.argmin()), values.shape)
+            return (
+                f"The {kind} of contact {j} is negative: {values.min():.6g} {unit} at the mesh "
+                f"phase {nodes.phase[row, node]:.4g}",
+                f"Look for a wrong sign in contacts[{j}].{kind}",
+            )
+    spring, damper, push = _mean_matrices(system, nodes, factors)
+    checks = (
+        ("stiffness", spring, np.asarray(system.stiffness)),
+        ("damping", damper, np.asarray(system.damping)),
+    )
+    for kind, total, own in checks:
+        found = _negative_direction(total, system)
+        if found:
+            where = f"System.{kind}" if _negative_direction(own, system) else "the contacts"
+            return (
+                f"The {kind} matrix has a negative eigenvalue, in a motion of {found}",
+                f"Look for a wrong sign or place in {where}",
+            )
+    mass = np.asarray(system.mass)
+    if np.abs(push).max(initial=0.0) > 0.0:
+        rub_spring, rub_damper = push
+        growth, still = (
+            _growth(mass, spring + part * rub_spring, damper + part * rub_damper)
+            for part in (1.0, 0.0)
+        )
+        if growth > max(10.0 * still, _ROUNDING):
+            return (
+                "Friction feeds energy in: with it a motion about the static load grows, without "
+                "it none does",
+                "Look for the sign of the sliding direction, or add damping",
+            )
+    if step_number > _SUSPECT_STEP:
+        return (
+            "Nothing in the system makes its motion grow, but the step is near the stability limit",
+            "Use twice as many steps per mesh cycle",
+        )
+    if np.ptp(nodes.stiffness, axis=(0, 1)).max(initial=0.0) > 0.0:
+        return (
+            "The mean system is stable, so that the stiffness that changes over the mesh cycle "
+            "feeds energy in: a parametric resonance",
+            "Add damping, move the mesh frequency, or let the contact open with a gap",
+        )
+    return (
+        "The system itself is unstable",
+        "Look for negative stiffness or damping, or friction that feeds energy in",
+    )
+
+
+def _mean_matrices(system: System, nodes: Nodes, factors: Array) -> tuple[Array, Array, Array]:
+    """Stiffness and damping with all contacts closed, and what friction adds to both."""
+    stiff, damp, rub = factors[:3]
+    push = nodes.force_direction
+    if system.frictions:
+        nominal = np.array([one.load for one in system.frictions])
+        ratio = friction_tangent(system, nodes.friction_coefficients, nominal)
+        push = push_with_friction(system, nodes, ratio)
+    along = nodes.direction
+    spring, damper = (
+        np.einsum("rs,rsj,rsji,rsjk->ik", nodes.weight, part, along, along)
+        for part in (stiff * nodes.stiffness, damp * nodes.damping)
+    )
+    sliding = rub * (push - along)
+    added = [
+        np.einsum("rs,rsj,rsji,rsjk->ik", nodes.weight, part, sliding, along)
+        for part in (stiff * nodes.stiffness, damp * nodes.damping)
+    ]
+    total = spring + np.asarray(system.stiffness), damper + np.asarray(system.damping)
+    return (*total, np.array(added))
+
+
+def _negative_direction(matrix: Array, system: System) -> str:
+    """Coordinates of the motion with the most negative eigenvalue; empty if there is none."""
+    scale = np.sqrt(np.diag(np.asarray(system.mass)))
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T) / np.outer(scale, scale))
+    if values[0] >= -_ROUNDING * np.abs(values).max():
+        return ""
+    motion = np.abs(vectors[:, 0])
+    most = [system.names[int(i)] for i in np.flatnonzero(motion > 0.5 * motion.max())]
+    return " and ".join(most[:4])
+
+
+def _growth(mass: Array, stiffness: Array, damping: Array) -> float:
+    """Largest growth of a motion over the fastest rate [-]."""
+    inverse = np.linalg.inv(mass)
+    values = state_roots(inverse @ stiffness, inverse @ damping)
+    return float(values.real.max() / max(np.abs(values).max(), 1e-300))
+
+
+def adaptive_failure(
+    report: Array,
+    period: float,
+    state: Array,
+    scale: Array,
+    system: System,
+    factors: Array,
+    lane: int | None,
+) -> ComputationError:
+    """Error of an adaptive march that ends early: when, which state, and why that may be."""
+    cycle, phase = int(report[9]), float(report[5])
+    n = system.size
+    where = f"time {(cycle + phase) * period:.6g} s, mesh cycle {cycle + 1}, phase {phase:.6g}"
+    where += f", trajectory {lane}" if lane is not None else ""
+    if report[4] == 2.0:
+        return ComputationError(
+            Problem(
+                what=f"contact {int(report[7])} opens and closes more than 64 times within a "
+                "millionth of a mesh cycle",
+                where=where,
+                why="It chatters: its damping, error or direction throws it back at once, or its "
+                "flanks are far too hard or too near each other",
+                remedy="Look for negative damping, and for an error or a gap that jumps "
+                "at a phase that is not an event",
+            )
+        )
+    size = np.abs(state) / np.maximum(scale, 1e-300)
+    worst = int(np.argmax(np.where(np.isfinite(state), size, np.inf)))
+    name = system.names[worst % n]
+    kind = "position" if worst < n else "velocity"
+    if not np.isfinite(state[worst]) or size[worst] > 1e9:
+        steps = max(_SAMPLE, 2 * len(system_events(system)))
+        _, nodes, _ = compile_system(system, steps)
+        cause, remedy = probable_cause(system, nodes, 0.0, factors)
+        return ComputationError(
+            Problem(
+                what=f"the motion grew beyond all bounds: the {kind} of {name} is "
+                f"{state[worst]:.3g}",
+                where=where,
+                why=f"{cause}. Steps are as short as accuracy needs, so it is not they",
+                remedy=remedy,
+            )
+        )
+    return ComputationError(
+        Problem(
+            what=f"no step meets the tolerance: {name} moves fastest, its {kind} is "
+            f"{state[worst]:.3g}",
+            where=where,
+            why="An entry is not smooth there, or rounding exceeds the tolerance",
+            remedy="Give the phase as an event, or a larger rtol or atol",
+        )
+    )

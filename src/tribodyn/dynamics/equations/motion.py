@@ -1,0 +1,151 @@
+"""The equation of motion in NumPy, for rows of the table of any shape.
+
+``M q'' = f + extra - K q - C v - sum_j h_j N_j - sum_j s_j N_j - friction that follows its load``,
+``N_j = k_j (d_j - side_j gap_j) + c_j d_j'`` on a side of the dead zone, ``d_j = h_j.q - e_j``.
+The compiled law is :mod:`tribodyn.dynamics._engine.contact_forces`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.load_friction import friction_force
+from tribodyn.types import Array, Index, Mask
+
+
+class Scales(NamedTuple):
+    """Factors of the parts of a system, numbers or arrays that go with the rows [1]."""
+
+    stiffness: Any = 1.0
+    damping: Any = 1.0
+    friction: Any = 1.0
+    error: Any = 1.0
+    gap: Any = 1.0
+    force: Any = 1.0
+
+    @classmethod
+    def of_lanes(cls, table: Array) -> Scales:
+        """Factors of lanes (lanes, 6) that go with rows (steps, 3, ...)."""
+        return cls(*(column[:, None, None, None] for column in table.T))
+
+
+class Forces(NamedTuple):
+    """What the equation of motion gives."""
+
+    deflection: Array  #: compression of every contact [m]
+    contact: Array  #: force of every contact [N]
+    side: Array  #: side of the dead zone of every contact
+    acceleration: Array  #: [m/s^2 or rad/s^2]
+
+
+_SAME = Scales()
+
+
+def has_gap(nodes: Nodes) -> Mask:
+    """Contacts with a dead zone."""
+    return np.asarray(np.any(nodes.gap > 0.0, axis=tuple(range(nodes.gap.ndim - 1))))
+
+
+def compression(rows: Nodes, q: Array, error: Any = 1.0) -> Array:
+    """Compression of every contact."""
+    return np.asarray(np.einsum("...ji,...i->...j", rows.direction, q) - error * rows.error)
+
+
+def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array, error: Any = 1.0) -> Array:
+    """Rate of every compression at the mesh frequency ``beat``."""
+    turning = np.einsum("...ji,...i->...j", rows.direction_slope, q) - error * rows.error_slope
+    return np.asarray(np.einsum("...ji,...i->...j", rows.direction, v) + beat * turning)
+
+
+def sides(deflection: Array, gap: Array, dead: Mask) -> Array:
+    """Side of its dead zone on which every contact is; 1 where it has none."""
+    beyond = np.where(deflection > gap, 1.0, np.where(deflection < -gap, -1.0, 0.0))
+    return np.where(dead, beyond, 1.0)
+
+
+def clearance(deflection: Array, gap: Array, side: Array, leaving: Array) -> Array:
+    """Distance to the boundary of a side; in the gap, to the boundary in direction ``leaving``."""
+    return np.where(side != 0.0, side * deflection - gap, gap - leaving * deflection)
+
+
+def forces(
+    system: System,
+    rows: Nodes,
+    beat: Any,
+    q: Array,
+    v: Array,
+    side: Array | None = None,
+    scales: Scales = _SAME,
+    extra: Any = 0.0,
+) -> Forces:
+    """Contact forces and accelerations; without ``side`` every contact is where it is pressed."""
+    d = compression(rows, q, scales.error)
+    rate = compression_rate(rows, beat, q, v, scales.error)
+    gap = scales.gap * rows.gap
+    if side is None:
+        side = sides(d, gap, has_gap(rows))
+    in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
+    contact = np.abs(side) * scales.stiffness * rows.stiffness * (d - side * gap)
+    contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
+    total = scales.force * rows.force + extra
+    total = total - q @ np.asarray(system.stiffness).T - v @ np.asarray(system.damping).T
+    total = total - np.einsum("...ji,...j->...i", rows.direction, contact)
+    rub = np.einsum("...ji,...j->...i", rows.force_direction - rows.direction, contact)
+    if system.frictions:
+        drag = friction_force(system, rows.friction_coefficients, contact)
+        rub = rub + np.einsum("...fi,...f->...i", rows.friction_direction, drag)
+    total = total - scales.friction * rub
+    return Forces(d, contact, side, total @ np.linalg.inv(np.asarray(system.mass)).T)
+
+
+def quadratic_weights(tau: Any) -> tuple[Any, Any, Any]:
+    """Weights of the left end, the middle and the right end of a step at its fraction ``tau``."""
+    return (1.0 - tau) * (1.0 - 2.0 * tau), 4.0 * tau * (1.0 - tau), tau * (2.0 * tau - 1.0)
+
+
+def cubic_middle(h: Any, inverse: Any, q0: Any, v0: Any, q1: Any, v1: Any) -> tuple[Any, Any]:
+    """Middle of the cubic through position and velocity at both ends; ``inverse`` is 1/h."""
+    return 0.5 * (q0 + q1) + 0.125 * h * (v0 - v1), 1.5 * inverse * (q1 - q0) - 0.25 * (v0 + v1)
+
+
+def with_middles(duration: Array, state: Array) -> tuple[Array, Array]:
+    """Position and velocity at both ends and in the middle of steps, (..., steps, 3, n).
+
+    ``state`` (..., steps + 1, 2 n) is known at the ends, ``duration`` (..., steps) in s.
+    """
+    q, v = np.split(state, 2, axis=-1)
+    h = duration[..., None]
+    ends = q[..., :-1, :], v[..., :-1, :], q[..., 1:, :], v[..., 1:, :]
+    middle = cubic_middle(h, 1.0 / h, *ends)
+    return (
+        np.stack((ends[0], middle[0], ends[2]), axis=-2),
+        np.stack((ends[1], middle[1], ends[3]), axis=-2),
+    )
+
+
+def quadratic(rows: Array, step: Index, tau: Array) -> Array:
+    """Rows (steps, 3, ...) at fractions of steps, as the integrators interpolate them."""
+    values = rows[step % rows.shape[0]]
+    at = tau.reshape((*tau.shape, *(1,) * (rows.ndim - 2)))
+    left, middle, right = quadratic_weights(at)
+    three = np.moveaxis(values, tau.ndim, 0)
+    return np.asarray(left * three[0] + middle * three[1] + right * three[2])
+
+
+def rows_within(nodes: Nodes, step: Index, tau: Array) -> Nodes:
+    """Every row at fractions of steps."""
+    return Nodes(*(quadratic(part, step, tau) for part in nodes))
+
+
+def within_steps(grid: Grid, cycle: Index, phase: Array) -> tuple[Index, Array]:
+    """Steps in which triples of samples lie, and the fraction of the step of each."""
+    edges = np.concatenate((grid.left, [1.0]))
+    own = phase - cycle[:, None]
+    inner = own + np.array([1e-12, 0.0, -1e-12])
+    number = np.clip(np.searchsorted(edges, inner, side="right") - 1, 0, grid.steps - 1)
+    return number, np.clip((own - grid.left[number]) / grid.width[number], 0.0, 1.0)

@@ -1,0 +1,120 @@
+"""The rows of a system on its grid, with names.
+
+Every entry is evaluated at the left end, the middle and the right end of each step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.load_friction import friction_coefficients, friction_directions
+from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
+
+#: Sums of stiffnesses below zero by less than this part of the largest are rounding.
+_ROUNDING = 1e-9
+
+
+class Nodes(NamedTuple):
+    """The same rows with names, for evaluation outside the loop; all at (steps, 3)."""
+
+    phase: Array
+    stiffness: Array
+    damping: Array
+    error: Array
+    error_slope: Array
+    gap: Array
+    direction: Array
+    direction_slope: Array
+    force_direction: Array
+    force: Array
+    weight: Array
+    friction_direction: Array
+    friction_coefficients: Array
+
+
+def evaluate_nodes(system: System, grid: Grid) -> Nodes:
+    """Evaluate every entry on a grid."""
+    rows = RowEvaluator(grid)
+    size = system.size
+    contacts = tuple(system.contacts)
+
+    def scalar(name: str, take: Callable[..., Array]) -> Array:
+        columns = [
+            take(f"contacts[{j}].{name}", getattr(contact, name))[..., 0]
+            for j, contact in enumerate(contacts)
+        ]
+        return np.stack(columns, axis=-1) if columns else np.zeros((grid.steps, 3, 0))
+
+    def vector(name: str, take: Callable[..., Array]) -> Array:
+        out = np.zeros((grid.steps, 3, len(contacts), size))
+        for j, contact in enumerate(contacts):
+            entry = getattr(contact, name)
+            if entry is not None:
+                out[:, :, j] = take(f"contacts[{j}].{name}", entry, size)
+        return out
+
+    direction = vector("direction", rows.values)
+    gap = scalar("gap", rows.values)
+    if np.any(gap < 0.0):
+        raise InputError(
+            Problem(
+                what=f"gap = {gap.min():.6g} m",
+                where="Contact.gap",
+                why="The gap is half the dead zone and cannot be negative",
+                remedy="Use `error` for an interference",
+            )
+        )
+    nodes = Nodes(
+        phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
+        stiffness=scalar("stiffness", rows.values),
+        damping=scalar("damping", rows.values),
+        error=scalar("error", rows.values),
+        error_slope=scalar("error", rows.derivatives),
+        gap=gap,
+        direction=direction,
+        direction_slope=vector("direction", rows.derivatives),
+        force_direction=direction + vector("friction", rows.values),
+        force=rows.values("force", system.force, size),
+        weight=grid.width[:, None] * np.array([1.0, 4.0, 1.0]) / 6.0,
+        friction_direction=friction_directions(system, rows),
+        friction_coefficients=friction_coefficients(system, rows),
+    )
+    refuse_falling_force(nodes.phase, nodes.stiffness, nodes.gap, nodes.direction, nodes.error)
+    return nodes
+
+
+def refuse_falling_force(
+    phase: Array, stiffness: Array, gap: Array, direction: Array, error: Array
+) -> None:
+    """Refuse dead zones beyond which the force of a mesh falls with compression."""
+    dead = np.flatnonzero(np.any(gap > 0.0, axis=(0, 1)))
+    if not np.any(stiffness[:, :, dead] < 0.0):
+        return
+    floor = -_ROUNDING * float(np.abs(stiffness).max())
+    for j in dead:
+        total = np.zeros(phase.shape)
+        for i in range(stiffness.shape[2]):
+            same = np.array_equal(direction[:, :, i], direction[:, :, j]) and np.array_equal(
+                error[:, :, i], error[:, :, j]
+            )
+            if same:
+                total += np.where(gap[:, :, i] <= gap[:, :, j], stiffness[:, :, i], 0.0)
+        if total.min() < floor:
+            at = np.unravel_index(int(np.argmin(total)), total.shape)
+            raise InputError(
+                Problem(
+                    what=f"the force falls by {-total[at]:.4g} N per m of compression beyond "
+                    f"{1e6 * gap[(*at, j)]:.4g} um, at the mesh phase {phase[at]:.4g}",
+                    where=f"contacts[{j}].stiffness",
+                    why="A contact that is pressed together pushes back more: a force law that "
+                    "falls has several compressions for one load",
+                    remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
+                    "to any other, is not negative",
+                )
+            )

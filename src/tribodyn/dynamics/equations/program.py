@@ -1,0 +1,222 @@
+"""A system turned into the flat arrays that the kernels read.
+
+The equations are divided by the mass matrix once, so that the loop works on accelerations:
+``a = f - K q - C v - sum_j g_j N_j`` with ``K = M^-1 K``, ``g_j = M^-1 (h_j + s_j)``. Only the
+entries that are not zero are kept; those that change over the mesh cycle live in the row table.
+Lanes that scale their contacts have the same rows: the factors are numbers of the lane.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.load_friction import coefficient_count
+from tribodyn.types import Array, Index, Mask
+
+
+class Program(NamedTuple):
+    """Everything that the kernel reads, in flat arrays, in the order in which it reads."""
+
+    code: Index  #: coordinates, contacts, columns of the row table, reads per buffer
+    reads: Index  #: slot that each term reads, for each of the three state buffers
+    rows: Array  #: factor of each term at the left end, middle and right end of each step
+    width: Array  #: phase width of each step [-]
+    restart: Mask  #: whether a step begins at an event
+    constant_load: Array  #: part of the load that does not vary, as an acceleration
+    pattern: Mask  #: which of all possible terms are there
+
+    @property
+    def slots(self) -> Slots:
+        """Where a lane keeps what in the work buffer."""
+        contacts = int(self.code[1])
+        return lay_out(int(self.code[0]), contacts, int(self.code[4 + 4 * contacts]))
+
+
+class Slots(NamedTuple):
+    """Slots of the work buffer: one number per lane in each.
+
+    Three states (position, velocity) begin at 0, 2 n and 4 n; the factors of a lane are kept such
+    that a lane of zeros, but for ``force_scale``, is the system as it stands.
+    """
+
+    n: int  #: coordinates
+    contacts: int
+    first: int  #: acceleration of every coordinate
+    second: int  #: the same once more
+    force: int  #: force of every contact
+    side: int  #: side of every contact: 1, 0 in the gap, -1
+    load: int  #: constant acceleration of every coordinate
+    force_scale: int  #: factor of the external force
+    h: int  #: duration of the step [s]
+    beat: int  #: mesh frequency [Hz]
+    error: int  #: 1 less the factor of the error
+    inverse: int  #: 1/h
+    gap: int  #: factor of the dead zones less 1
+    stiffness: int  #: factor of the stiffness less 1
+    damping: int  #: factor of the damping less 1
+    rub: int  #: factor of the friction less 1
+    friction: int  #: force of every friction that follows its load
+    end: int  #: number of slots; those of a method begin here
+
+
+def lay_out(n: int, contacts: int, frictions: int) -> Slots:
+    """Lay out the work buffer, in Python and, compiled, in the kernels."""
+    force, side, load = 8 * n, 8 * n + contacts, 8 * n + 2 * contacts
+    lane = load + n
+    friction = lane + 9
+    return Slots(
+        n, contacts, 6 * n, 7 * n, force, side, load,
+        lane, lane + 1, lane + 2, lane + 3, lane + 4, lane + 5, lane + 6, lane + 7, lane + 8,
+        friction, friction + frictions,
+    )  # fmt: skip
+
+
+def compile_system(
+    system: System, steps: int, events: tuple[float, ...] | None = None
+) -> tuple[Grid, Nodes, Program]:
+    """Evaluate a system on its event-aligned grid."""
+    grid = build_grid(events or system_events(system), steps)
+    return grid, *compile_on(system, grid)
+
+
+def compile_on(system: System, grid: Grid) -> tuple[Nodes, Program]:
+    """Evaluate a system on any grid."""
+    nodes = evaluate_nodes(system, grid)
+    return nodes, build_program(system, grid, nodes)
+
+
+class _Terms:
+    """Collects factors and the slots that they multiply, in reading order."""
+
+    def __init__(self, steps: int, pattern: Mask | None) -> None:
+        self.shape = (steps, 3)
+        self.factors: list[Array] = []
+        self.slots: list[int] = []
+        self.pattern = pattern
+        self.kept: list[bool] = []
+
+    def factor(self, values: Array | float) -> None:
+        """Append a factor without a slot."""
+        self.factors.append(np.broadcast_to(values, self.shape))
+
+    def keeps(self, wanted: Any) -> bool:
+        """Whether a possible term is there: as wanted, or as in the pattern that was given."""
+        given = bool(wanted) if self.pattern is None else bool(self.pattern[len(self.kept)])
+        self.kept.append(given)
+        return given
+
+    def term(self, values: Array | float, slot: int) -> int:
+        """Append a term unless it is zero throughout; returns how many were appended."""
+        if not self.keeps(np.any(values)):
+            return 0
+        self.factor(np.asarray(values))
+        self.slots.append(slot)
+        return 1
+
+
+def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:
+    code: list[int] = []
+    for j, contact in enumerate(system.contacts):
+        scalars = (nodes.stiffness, nodes.damping, nodes.error, nodes.error_slope, nodes.gap)
+        for item in scalars:
+            terms.factor(item[:, :, j])
+        for part in (nodes.direction, nodes.direction_slope):
+            code.append(sum(terms.term(part[:, :, j, i], i) for i in range(system.size)))
+        code += [int(np.any(nodes.gap[:, :, j])), int(contact.damping_in_gap) + scaled]
+    return code
+
+
+def _friction_terms(
+    system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
+) -> list[int]:
+    code = [slots.end - slots.friction]
+    for f, one in enumerate(system.frictions):
+        count = coefficient_count(f"frictions[{f}].coefficients", one)
+        code += [len(one.contacts), count]
+        terms.slots += [slots.force + j for j in one.contacts]
+        terms.factor(1.0 / one.load)
+        terms.factor(one.limit)
+        for item in range(count):
+            terms.factor(nodes.friction_coefficients[:, :, f, item])
+    for j in range(len(system.contacts) if split else 0):
+        # The friction of a contact as one with the coefficient 1, to be scaled by itself.
+        code += [1, 1]
+        terms.slots.append(slots.force + j)
+        for value in (1.0, 1.0, 1.0):
+            terms.factor(value)
+    return code
+
+
+def _coordinate_terms(
+    system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
+) -> tuple[list[int], Mask]:
+    """Number of terms of every coordinate, and whether its load varies."""
+    inverse = np.linalg.inv(np.asarray(system.mass))
+    along = nodes.direction if split else nodes.force_direction
+    rub = nodes.friction_direction
+    if split:
+        rub = np.concatenate((rub, nodes.force_direction - nodes.direction), axis=2)
+    reaction, drag = (-np.einsum("ik,rsjk->rsji", inverse, part) for part in (along, rub))
+    load = np.einsum("ik,rsk->rsi", inverse, nodes.force)
+    state = -np.hstack([inverse @ np.asarray(part) for part in (system.stiffness, system.damping)])
+    state[np.abs(state) <= 1e-15 * np.abs(state).max(axis=1, keepdims=True)] = 0.0
+    code: list[int] = []
+    varies = np.zeros(system.size, dtype=bool)
+    for i in range(system.size):
+        count = sum(terms.term(state[i, k], k) for k in range(2 * system.size))
+        count += sum(
+            terms.term(reaction[:, :, j, i], slots.force + j) for j in range(reaction.shape[2])
+        )
+        count += sum(terms.term(drag[:, :, f, i], slots.friction + f) for f in range(drag.shape[2]))
+        varies[i] = terms.keeps(np.ptp(load[:, :, i]) > 0.0)
+        if varies[i]:
+            terms.factor(load[:, :, i])
+            terms.slots.append(slots.force_scale)
+            count += 1
+        code.append(count)
+    return code, varies
+
+
+def build_program(
+    system: System,
+    grid: Grid,
+    nodes: Nodes,
+    *,
+    scaled: bool = False,
+    split: bool = False,
+    pattern: Mask | None = None,
+) -> Program:
+    """Flatten a system on its grid."""
+    size, contacts = system.size, len(system.contacts)
+    slots = lay_out(size, contacts, len(system.frictions) + (contacts if split else 0))
+    terms = _Terms(grid.steps, pattern)
+    lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
+    lists += _friction_terms(system, nodes, terms, slots, split)
+    own, varies = _coordinate_terms(system, nodes, terms, slots, split)
+    factors = terms.factors or [np.zeros(terms.shape)]
+    relative = np.array(terms.slots, dtype=np.int64)
+    # State slots move with the buffer that a stage reads; all others stay.
+    moving = (relative < 2 * size).astype(np.int64)
+    reads = np.concatenate([relative + moving * buffer * 2 * size for buffer in range(3)])
+    load = np.linalg.inv(np.asarray(system.mass)) @ nodes.force[0, 0]
+    return Program(
+        code=np.array([size, contacts, len(factors), relative.size, *lists, *own], dtype=np.int64),
+        reads=reads,
+        rows=np.ascontiguousarray(np.stack(factors, axis=-1)).reshape(-1),
+        width=grid.width,
+        restart=grid.after_event,
+        constant_load=np.where(varies, 0.0, load),
+        pattern=np.array(terms.kept, dtype=bool),
+    )
+
+
+def lane_load(program: Program, system: System, extra: Any, factor: Any = 1.0) -> Array:
+    """Constant acceleration of each lane: the constant part of the load plus an extra force."""
+    inverse = np.linalg.inv(np.asarray(system.mass))
+    own = np.multiply.outer(np.asarray(factor, dtype=float), program.constant_load)
+    return np.asarray(own + np.asarray(extra, dtype=float) @ inverse.T)

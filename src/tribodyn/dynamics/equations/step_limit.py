@@ -1,0 +1,173 @@
+"""The largest step that the integrator can follow.
+
+The classical Runge-Kutta scheme is stable on the imaginary axis up to ``|lambda| h = 2.83``.
+Beyond it the computed motion explodes or, with a dead zone, wanders: a published route to chaos
+is nothing but this. Steps are refused above 2.7.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.load_friction import friction_tangent, push_with_friction
+from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array, ComplexArray, Index
+
+#: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.
+LIMIT = 2.7
+
+#: Rows of the table that are examined at most, and lanes.
+_SAMPLES, _LANES = 32, 256
+#: Factors of stiffness, damping and friction of a system as it stands.
+_PLAIN = (1.0, 1.0, 1.0)
+#: ``omega_max * dt`` at which figures of a spur gear pair are good to about 1e-6.
+_ACCURATE = 0.2
+#: Range of the recommended steps; the limit of 2.7 still holds above it.
+_FEWEST, _MOST = 1024, 65536
+
+
+def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLAIN) -> float:
+    """Largest modulus of an eigenvalue of the motion with all contacts closed."""
+    rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
+    return float(_rates(system, nodes, rows, stages, np.array([factors])).max())
+
+
+def _rates(system: System, nodes: Nodes, rows: Index, stages: Index, factors: Array) -> Array:
+    """Largest modulus of an eigenvalue for each row of ``factors`` (f, 3), f or 1 rows each."""
+    along, push = nodes.direction[rows, stages], nodes.force_direction[rows, stages]
+    if system.frictions:
+        at = Nodes(*(part[rows, stages] for part in nodes))
+        nominal = np.array([one.load for one in system.frictions])
+        push = push_with_friction(
+            system, at, friction_tangent(system, at.friction_coefficients, nominal)
+        )
+    spring, damper, rub = (column[:, None, None, None] for column in factors.T)
+    outer = np.einsum("...mji,mjk->...mjik", along + rub * (push - along), along)
+    stiffness = np.einsum("mj,...mjik->...mik", nodes.stiffness[rows, stages], outer)
+    damping = np.einsum("mj,...mjik->...mik", nodes.damping[rows, stages], outer)
+    inverse = np.linalg.inv(np.asarray(system.mass))
+    elastic = inverse @ (spring * stiffness + np.asarray(system.stiffness))
+    viscous = inverse @ (damper * damping + np.asarray(system.damping))
+    return np.asarray(np.abs(state_roots(elastic, viscous)).max(axis=(-2, -1)))
+
+
+def state_roots(elastic: Array, viscous: Array) -> ComplexArray:
+    """Eigenvalues of ``q'' = -elastic q - viscous q'``, for matrices (..., n, n)."""
+    size = elastic.shape[-1]
+    # Displacements in units of velocity over the largest stiffness rate: without it the matrix
+    # mixes entries of 1 and 1e12 and the eigenvalues lose digits.
+    scale = max(float(np.sqrt(np.abs(elastic).max())), 1e-30)
+    state = np.zeros((*elastic.shape[:-2], 2 * size, 2 * size))
+    state[..., :size, size:] = scale * np.eye(size)
+    state[..., size:, :size] = -elastic / scale
+    state[..., size:, size:] = -viscous
+    return np.asarray(np.linalg.eigvals(state), dtype=complex)
+
+
+def _stiffest_rows(total: Array) -> tuple[Index, Index]:
+    """Rows of the table to examine, spread over the cycle, each where its step is stiffest."""
+    spread = np.linspace(0, total.shape[0] - 1, _SAMPLES).astype(np.int64)
+    rows = np.unique(np.append(spread, total.max(axis=1).argmax()))
+    return rows, total[rows].argmax(axis=1)
+
+
+def recommended_steps(system: System, mesh_frequency: float) -> int:
+    """Steps per mesh cycle that follow the fastest motion of a system accurately.
+
+    Parameters
+    ----------
+    system : System
+    mesh_frequency : float
+        Mesh frequency [Hz].
+
+    Returns
+    -------
+    int
+        A power of two from 1024 to 65536, with ``omega_max * dt <= 0.2`` where that is enough.
+
+    Examples
+    --------
+    >>> recommended_steps(System([[1.0]], [[0.0]], [[4e8]], [0.0]), 50.0)
+    2048
+    """
+    _, nodes, _ = compile_system(system, _FEWEST)
+    needed = largest_rate(system, nodes) / (_ACCURATE * mesh_frequency)
+    return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), _FEWEST), _MOST))
+
+
+def refuse_unstable_step(
+    system: System,
+    nodes: Nodes,
+    grid: Grid,
+    mesh_frequency: float,
+    factors: tuple[float, ...] = _PLAIN,
+    lane: str = "",
+) -> float:
+    """Return ``omega_max * dt`` of the widest step, or refuse it."""
+    rate = largest_rate(system, nodes, factors)
+    number = rate * float(grid.width.max()) / mesh_frequency
+    if number > LIMIT:
+        needed = int(np.ceil(grid.steps * number / LIMIT / 64.0)) * 64
+        raise InputError(
+            Problem(
+                what=f"omega_max*dt = {number:.3f} with {grid.steps} steps per mesh cycle at "
+                f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
+                where="argument steps",
+                why=f"The limit is {LIMIT}; above 2.83 the Runge-Kutta scheme is unstable and "
+                "its result is not physics",
+                remedy=f"Use at least {needed} steps per mesh cycle",
+            )
+        )
+    return number
+
+
+def refuse_unstable_lanes(
+    system: System,
+    nodes: Nodes,
+    grid: Grid,
+    mesh_frequency: Array,
+    parameters: LaneParameters | None,
+    lanes: Index | None = None,
+) -> float:
+    """Return the largest ``omega_max * dt`` of lanes that scale a system, or refuse it."""
+    table, beat = _every_lane(mesh_frequency, parameters, lanes)
+    longest = float(grid.width.max())
+    # Often the stiffest, most damped and slowest of all would still be within the limit.
+    least = largest_rate(system, nodes, tuple(table.max(axis=0))) * longest / float(beat.min())
+    if least <= LIMIT:
+        return least
+    likely = np.unique(
+        np.concatenate([np.argsort(-key)[:_LANES] for key in (table[:, 0] / beat**2,
+                                                             table[:, 1] / beat)])
+    )  # fmt: skip
+    rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
+    stiffest = np.array([int(nodes.stiffness.sum(axis=-1)[rows, stages].argmax())])
+    rates = _rates(system, nodes, rows[stiffest], stages[stiffest], table[likely])
+    worst = int(likely[np.argmax(rates / beat[likely])])
+    names = ("stiffness_scale", "damping_scale", "friction_scale")
+    given = [f"{name} = {value:g}" for name, value in zip(names, table[worst], strict=True)
+             if value != 1.0]  # fmt: skip
+    number = worst if lanes is None else int(lanes[worst])
+    who = f" in lane {number}" + (f" ({', '.join(given)})" if given else "")
+    factors = tuple(table[worst].tolist())
+    return refuse_unstable_step(system, nodes, grid, float(beat[worst]), factors, who)
+
+
+def _every_lane(
+    mesh_frequency: Array, parameters: LaneParameters | None, lanes: Index | None
+) -> tuple[Array, Array]:
+    """Factors (m, 3) and mesh frequency (m,) of the lanes concerned."""
+    beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    count = beat.size
+    if count == 1 and parameters is not None:
+        count = parameters.count
+        beat = np.broadcast_to(beat, (count,))
+    table = np.ones((count, 3)) if parameters is None else parameters.table(count)[:, :3]
+    return (table, beat) if lanes is None else (table[lanes], beat[lanes])

@@ -1,0 +1,237 @@
+"""A lumped structure and its contacts: the data of one kernel, whatever the machine.
+
+``M q'' + C q' + K q = f - sum_j [h_j(phi) + s_j(phi)] N_j`` with
+``N_j = k_j(phi) g(delta_j) + c_j(phi) delta_j'`` while in contact, ``delta_j = h_j(phi).q -
+e_j(phi)``, ``g`` a dead zone of half width ``gap``, ``phi`` the mesh phase, ``h`` the direction
+of the line of action in generalized coordinates and ``s`` the direction of friction, which
+already carries the sign of sliding, the friction coefficients and the load shares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.dynamics.equations.entry import Entry, read_events
+from tribodyn.dynamics.load_friction import LoadFriction
+from tribodyn.errors import InputError, Problem
+from tribodyn.types import Array
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One contact of a structure: direction, force law and friction over the mesh phase.
+
+    Each entry is a constant or a vectorized function of the mesh phase in [0, 1). A function for
+    ``direction`` or ``friction`` takes phases of shape (p,) and returns (p, n).
+
+    Parameters
+    ----------
+    direction : (n,) array or function
+        Derivative of the contact's compression with respect to the coordinates [1 or m].
+    stiffness : float or function
+        Contact stiffness [N/m].
+    damping : float or function
+        Contact damping [N*s/m], acting while in contact.
+    error : float or function
+        Displacement error taken off the compression [m].
+    gap : float or function
+        Half of the dead zone [m]. Zero makes the contact linear, without separation.
+    friction : (n,) array or function, optional
+        Generalized friction force per unit contact force [1 or m].
+    events : tuple of float
+        Mesh phases at which an entry jumps. They become grid points, and values there are taken
+        from the left and from the right separately.
+    damping_in_gap : bool
+        Keep the damping in free flight. Unphysical; for comparison with published models.
+
+    Raises
+    ------
+    InputError
+        If an event lies outside [0, 1).
+
+    Examples
+    --------
+    >>> Contact(direction=[1.0], stiffness=lambda phase: 1.0 + 0.2 * np.cos(2 * np.pi * phase))
+    Contact(stiffness=function, gap=0.0, events=(0.0,))
+    """
+
+    direction: Entry
+    stiffness: Entry
+    damping: Entry = 0.0
+    error: Entry = 0.0
+    gap: Entry = 0.0
+    friction: Entry | None = None
+    events: tuple[float, ...] = (0.0,)
+    damping_in_gap: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
+
+    def __repr__(self) -> str:
+        """One line."""
+        stiffness = "function" if callable(self.stiffness) else f"{self.stiffness}"
+        gap = "function" if callable(self.gap) else f"{self.gap}"
+        return f"Contact(stiffness={stiffness}, gap={gap}, events={self.events})"
+
+
+def _matrix(name: str, value: ArrayLike) -> Array:
+    matrix = np.array(value, dtype=float, ndmin=2)
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
+        raise InputError(
+            Problem(
+                what=f"{name} has the shape {matrix.shape}",
+                where=f"System.{name}",
+                why="It must be a square (n, n) matrix",
+            )
+        )
+    if not np.all(np.isfinite(matrix)):
+        raise InputError(Problem(what=f"{name} holds NaN or infinity", where=f"System.{name}"))
+    return matrix
+
+
+@dataclass(frozen=True)
+class System:
+    """A lumped structure with its contacts.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (n, n) array
+        Structural matrices without the contacts [kg or kg*m^2, N*s/m, N/m, ...].
+    force : (n,) array or function
+        External generalized force [N or N*m]; a function returns (p, n).
+    contacts : sequence of Contact
+        Any number of contacts.
+    names : sequence of str, optional
+        Names of the coordinates; ``q0, q1, ...`` by default.
+    balance : (n,) array, optional
+        Direction of a torque whose size is found so that the free rotation of the whole drive
+        keeps its mean speed [N*m per unit]. Without it every force is held as given.
+    frictions : sequence of LoadFriction
+        Frictions whose coefficients follow the contact forces.
+
+    Raises
+    ------
+    InputError
+        If shapes disagree, a value is not finite, the mass matrix is not that of a kinetic energy
+        greater than zero, or a friction names a contact that does not exist.
+
+    Examples
+    --------
+    >>> System(mass=[[1.0]], damping=[[0.1]], stiffness=[[0.0]], force=[0.5],
+    ...        contacts=[Contact(direction=[1.0], stiffness=1.0, gap=1.0)])
+    System(1 coordinates, 1 contact)
+    """
+
+    mass: ArrayLike
+    damping: ArrayLike
+    stiffness: ArrayLike
+    force: Entry
+    contacts: Sequence[Contact] = ()
+    names: Sequence[str] = ()
+    balance: ArrayLike | None = None
+    frictions: Sequence[LoadFriction] = ()
+    _checked: bool = field(default=False, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        matrices = {name: _matrix(name, getattr(self, name)) for name in _MATRICES}
+        size = matrices["mass"].shape[0]
+        for name, matrix in matrices.items():
+            if matrix.shape != (size, size):
+                raise InputError(
+                    Problem(
+                        what=f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
+                        where=f"System.{name}",
+                        why="All three matrices belong to the same coordinates",
+                    )
+                )
+            object.__setattr__(self, name, matrix)
+        contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
+        object.__setattr__(self, "contacts", tuple(contacts))
+        one = isinstance(self.frictions, LoadFriction)
+        object.__setattr__(self, "frictions", (self.frictions,) if one else tuple(self.frictions))
+        names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
+        if len(names) != size:
+            raise InputError(
+                Problem(what=f"{len(names)} names for {size} coordinates", where="System.names")
+            )
+        object.__setattr__(self, "names", names)
+        _refuse_singular(matrices["mass"], names)
+        _refuse_missing_contacts(self)
+        if self.balance is not None:
+            balance = np.asarray(self.balance, dtype=float)
+            if balance.shape != (size,):
+                raise InputError(
+                    Problem(
+                        what=f"balance has the shape {balance.shape}, not ({size},)",
+                        where="System.balance",
+                    )
+                )
+            object.__setattr__(self, "balance", balance)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(np.asarray(self.mass).shape[0])
+
+    def __repr__(self) -> str:
+        """One line."""
+        count = len(self.contacts)
+        return f"System({self.size} coordinates, {count} contact{'s' if count != 1 else ''})"
+
+
+_MATRICES = ("mass", "damping", "stiffness")
+
+
+def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:
+    scale = np.sqrt(np.abs(np.diag(mass)))
+    empty = np.flatnonzero(scale == 0.0)
+    if empty.size or np.linalg.cond(mass / np.outer(scale, scale)) > 1e12:
+        at = int(empty[0]) if empty.size else 0
+        detail = f"coordinate {at} has no inertia ({names[at]})"
+        raise InputError(
+            Problem(
+                what="the mass matrix cannot be inverted: "
+                + (detail if empty.size else f"it is singular{_without_inertia(mass, names)}"),
+                where="System.mass",
+                why="Every coordinate needs an inertia of its own",
+                remedy="Remove the coordinate, or give it a mass or moment of inertia",
+            )
+        )
+    even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
+    if not even or np.linalg.eigvalsh(mass / np.outer(scale, scale))[0] <= 0.0:
+        raise InputError(
+            Problem(
+                what="the mass matrix is not symmetric and positive definite"
+                + ("" if not even else _without_inertia(mass, names)),
+                where="System.mass",
+                why="Every motion has a kinetic energy greater than zero",
+                remedy="Look for a wrong sign or place in the matrix",
+            )
+        )
+
+
+def _without_inertia(mass: Array, names: tuple[str, ...]) -> str:
+    """Name the coordinates that move most in the motion with the least kinetic energy."""
+    scale = np.sqrt(np.abs(np.diag(mass)))
+    even = 0.5 * (mass + mass.T) / np.outer(scale, scale)
+    motion = np.abs(np.linalg.eigh(even)[1][:, 0])
+    most = [names[i] for i in np.flatnonzero(motion > 0.5 * motion.max())]
+    return f", a motion of {' and '.join(most[:4])} has no kinetic energy"
+
+
+def _refuse_missing_contacts(system: System) -> None:
+    for f, friction in enumerate(system.frictions):
+        if max(friction.contacts) >= len(system.contacts):
+            count = len(system.contacts)
+            raise InputError(
+                Problem(
+                    what=f"friction {f} follows contact {max(friction.contacts)}, and there "
+                    + (f"are {count} contacts" if count != 1 else "is 1 contact"),
+                    where=f"System.frictions[{f}].contacts",
+                    why="Contacts are counted from 0 in the order of System.contacts",
+                )
+            )

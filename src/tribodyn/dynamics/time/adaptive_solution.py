@@ -1,0 +1,260 @@
+"""A motion in steps of its own length, known at every time between."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, adaptive_engine
+from tribodyn.dynamics._engine.tolerance import Tolerance
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.simulate import read_start, require_cycles
+from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+
+#: Steps of a mesh cycle for which room is made at first.
+_ROOM = 4096
+
+
+@dataclass(frozen=True)
+class AdaptiveSolution:
+    """Motion of a system in accepted steps; call it with times for the motion between.
+
+    Steps end at events of the mesh cycle and where a contact changes its side.
+
+    Parameters
+    ----------
+    time : (steps + 1,) array
+        Ends of the steps, beginning with 0 [s].
+    phase : (steps + 1,) array
+        Mesh phase counted from the start [cycles].
+    state : (steps + 1, 2 n) array
+        Position and velocity [m or rad, m/s or rad/s].
+    names : tuple of str
+        Names of the coordinates.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    rtol : float
+        Relative tolerance [-].
+    atol : (2 n,) array
+        Absolute tolerance of each state [m or rad, m/s or rad/s].
+    rejections : int
+        Steps that were repeated because their error was too large.
+    crossings : int
+        Changes of side of contacts.
+    table_error : float
+        Mean deviation of the entries between events from their polynomials, over their size [-].
+    """
+
+    time: Array
+    phase: Array
+    state: Array
+    names: tuple[str, ...]
+    mesh_frequency: float
+    rtol: float
+    atol: Array
+    rejections: int
+    crossings: int
+    table_error: float
+    _trail: Array = field(repr=False)
+
+    @property
+    def steps(self) -> int:
+        """Number of accepted steps."""
+        return self.time.size - 1
+
+    @property
+    def position(self) -> Array:
+        """Positions at the ends of the steps, (steps + 1, n) [m or rad]."""
+        return self.state[:, : self.state.shape[1] // 2]
+
+    @property
+    def velocity(self) -> Array:
+        """Velocities at the ends of the steps, (steps + 1, n) [m/s or rad/s]."""
+        return self.state[:, self.state.shape[1] // 2 :]
+
+    def __call__(self, time: ArrayLike) -> Array:
+        """State at any time of the motion.
+
+        Parameters
+        ----------
+        time : float or (...) array
+            Time from 0 to the end of the motion [s].
+
+        Returns
+        -------
+        (..., 2 n) array
+            Position and velocity: the quintic Hermite interpolant of the step and its derivative.
+
+        Raises
+        ------
+        InputError
+            If a time lies outside the motion.
+        """
+        given = np.asarray(time, dtype=float)
+        outside = ~((given >= -1e-12 * self.time[-1]) & (given <= (1.0 + 1e-12) * self.time[-1]))
+        if np.any(outside):
+            raise InputError(
+                Problem(
+                    what=f"time = {given[outside].flat[0]:.6g} s",
+                    where="argument time",
+                    why=f"The motion goes from 0 to {self.time[-1]:.6g} s",
+                )
+            )
+        phase = given.reshape(-1) * self.mesh_frequency
+        step = np.clip(np.searchsorted(self.phase, phase, side="right") - 1, 0, self.steps - 1)
+        part = self._trail[step]
+        theta = np.clip((phase - self.phase[step]) / part[:, 1], 0.0, 1.0)
+        n = self.state.shape[1] // 2
+        found = _hermite(part[:, 2:].reshape(-1, 6, n), part[:, 1] / self.mesh_frequency, theta)
+        return found.reshape(*given.shape, 2 * n)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"AdaptiveSolution({self.phase[-1]:g} mesh cycles at {self.mesh_frequency:.6g} Hz, "
+            f"{len(self.names)} coordinates, {self.steps} steps, {self.rejections} rejected, "
+            f"{self.crossings} crossings, rtol {self.rtol:.1e})"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the accepted steps as an :class:`xarray.Dataset` with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``time`` and ``coordinate``.
+        """
+        import xarray
+
+        both = ("time", "coordinate")
+        data: dict[str, Any] = {
+            "position": (both, self.position, {"units": "m or rad"}),
+            "velocity": (both, self.velocity, {"units": "m/s or rad/s"}),
+        }
+        coords: dict[str, Any] = {
+            "time": ("time", self.time, {"units": "s"}),
+            "phase": ("time", self.phase, {"units": "1"}),
+            "coordinate": list(self.names),
+        }
+        attributes = {
+            "mesh_frequency": self.mesh_frequency,
+            "rtol": self.rtol,
+            "rejections": self.rejections,
+            "crossings": self.crossings,
+        }
+        return xarray.Dataset(data, coords, attributes)
+
+
+def _hermite(parts: Array, h: Array, theta: Array) -> Array:
+    """Quintic Hermite interpolant of steps ``h`` and its derivative at the fractions ``theta``."""
+    q0, v0, a0, mean, v1, a1 = (parts[:, k] for k in range(6))
+    s, h = theta[:, None], h[:, None]
+    position = q0 + h * (
+        s**3 * (10 - 15 * s + 6 * s**2) * mean
+        + (s - s**3 * (6 - 8 * s + 3 * s**2)) * v0
+        - s**3 * (4 - 7 * s + 3 * s**2) * v1
+        + h * s**2 * ((0.5 - s * (1.5 - 1.5 * s + 0.5 * s**2)) * a0 + s * (0.5 - s + s**2 / 2) * a1)
+    )
+    velocity = (
+        30 * s**2 * (1 - s) ** 2 * mean
+        + (1 - s**2 * (18 - 32 * s + 15 * s**2)) * v0
+        - s**2 * (12 - 28 * s + 15 * s**2) * v1
+        + h * (s - s**2 * (4.5 - 6 * s + 2.5 * s**2)) * a0
+        + h * s**2 * (1.5 - 4 * s + 2.5 * s**2) * a1
+    )
+    return np.hstack((position, velocity))
+
+
+def solve_adaptive(
+    system: System,
+    mesh_frequency: float,
+    cycles: int,
+    start: tuple[ArrayLike, ArrayLike],
+    rtol: float = 1e-6,
+    atol: Tolerance | None = None,
+    *,
+    extra_force: ArrayLike | None = None,
+) -> AdaptiveSolution:
+    """March a system over time in steps as short as a tolerance needs.
+
+    Parameters
+    ----------
+    system : System
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    cycles : int
+        Whole mesh cycles.
+    start : (position, velocity)
+        Two (n,) arrays [m or rad, m/s or rad/s].
+    rtol : float
+        Error over the largest size so far of each state [-].
+    atol : float, (position, velocity) or (2 n,) array, optional
+        Error allowed on top of that [m or rad, m/s or rad/s]; by default 0.001 ``rtol`` times the
+        size of the static state.
+    extra_force : (n,) array, optional
+        Constant generalized force on top of the system's [N or N*m].
+
+    Returns
+    -------
+    AdaptiveSolution
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or an entry jumps at a phase that is not an event.
+    ComputationError
+        If the motion grows beyond all bounds, or a contact chatters.
+
+    Notes
+    -----
+    Dormand and Prince (1980), fifth order with an error of fourth order, PI step control. Steps end
+    at events and, found on the dense output, where a contact changes its side.
+
+    Examples
+    --------
+    >>> free = System([[1.0]], [[0.0]], [[4.0]], [0.0])
+    >>> motion = solve_adaptive(free, 1.0, 3, ([1.0], [0.0]), rtol=1e-8)
+    >>> bool(abs(motion(2.5)[0] - np.cos(5.0)) < 3e-8)
+    True
+    """
+    require_positive("mesh_frequency", mesh_frequency, "Hz")
+    require_cycles(cycles)
+    engine = adaptive_engine(system, mesh_frequency, cycles, rtol=rtol, atol=atol)
+    state = read_start(system, start)[None, :]
+    extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    lane = AdaptiveLanes(engine, np.array([1.0 / mesh_frequency]), extra_force=extra[None, :])
+    trails, room, counts = [], _ROOM, np.zeros(2, dtype=np.int64)
+    for cycle in range(cycles):
+        memory = lane.memory.copy()
+        run = lane.march(state, 1, room=room, elapsed=cycle)
+        while run.steps > room:
+            room, lane.memory = 2 * run.steps, memory.copy()
+            run = lane.march(state, 1, room=room, elapsed=cycle)
+        run.trail[:, 0] += cycle
+        trails.append(run.trail)
+        counts += (run.rejections, run.crossings)
+        state = run.state
+    trail = np.concatenate(trails)
+    n = system.size
+    phase = np.append(trail[:, 0], float(cycles))
+    return AdaptiveSolution(
+        time=phase / mesh_frequency,
+        phase=phase,
+        state=np.concatenate((trail[:, 2 : 2 + 2 * n], state)),
+        names=tuple(system.names),
+        mesh_frequency=float(mesh_frequency),
+        rtol=engine.rtol,
+        atol=engine.atol,
+        rejections=int(counts[0]),
+        crossings=int(counts[1]),
+        table_error=engine.table.error,
+        _trail=trail,
+    )

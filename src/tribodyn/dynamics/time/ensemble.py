@@ -1,0 +1,290 @@
+"""Many trajectories at once: lanes that differ in mesh frequency, load, start and parts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.dynamics._engine.blocks import Statistics
+from tribodyn.dynamics._engine.tolerance import Tolerance
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.time.engines import Method, Setting, prepare
+from tribodyn.errors import InputError, Problem
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array, ComplexArray
+
+#: Mean, mean square, minimum, maximum, share off the driving flank; see the compiled statistics.
+_PLAIN = 5
+
+
+@dataclass(frozen=True)
+class LaneStatistics:
+    """Statistics of one kind of signal.
+
+    Parameters
+    ----------
+    mean, rms, minimum, maximum : (lanes, signals) array
+        In the unit of the signal; ``rms`` includes the mean.
+    harmonics : (lanes, signals, count) complex array
+        Amplitudes of the mesh harmonics 1, 2, ...; empty where none were gathered.
+    """
+
+    mean: Array
+    rms: Array
+    minimum: Array
+    maximum: Array
+    harmonics: ComplexArray = field(repr=False)
+
+    @property
+    def alternating_rms(self) -> Array:
+        """Rms of the alternating part, (lanes, signals)."""
+        return np.asarray(np.sqrt(np.maximum(self.rms**2 - self.mean**2, 0.0)))
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """End states and statistics of many trajectories.
+
+    Parameters
+    ----------
+    mesh_frequency : (lanes,) array
+        Mesh frequency [Hz].
+    position, velocity : (lanes, n) array
+        State after the last mesh cycle [m or rad, m/s or rad/s].
+    deflection, contact_force, acceleration, output : LaneStatistics
+        Statistics over the last ``averaged`` mesh cycles [m, N, m/s^2 or rad/s^2, as given].
+    contact_loss_share : (lanes, contacts) array
+        Part of that time off the driving flank [-].
+    averaged : int
+        Mesh cycles over which the statistics were gathered.
+    """
+
+    mesh_frequency: Array
+    position: Array
+    velocity: Array
+    deflection: LaneStatistics = field(repr=False)
+    contact_force: LaneStatistics = field(repr=False)
+    acceleration: LaneStatistics = field(repr=False)
+    output: LaneStatistics = field(repr=False)
+    contact_loss_share: Array = field(repr=False)
+    averaged: int
+
+    def __repr__(self) -> str:
+        """One line."""
+        low, high = self.mesh_frequency.min(), self.mesh_frequency.max()
+        return (
+            f"Ensemble({self.mesh_frequency.size} trajectories, mesh frequency {low:.6g} to "
+            f"{high:.6g} Hz, statistics over {self.averaged} mesh cycles)"
+        )
+
+
+def fresh_moments(contacts: int, others: int, harmonics: int, lanes: int) -> Array:
+    """Moments before the first step: zero, but minima and maxima at infinity."""
+    tall = np.zeros((2 * contacts, _PLAIN + 2 * harmonics, lanes))
+    short = np.zeros((others, _PLAIN, lanes))
+    for part in (tall, short):
+        part[:, 2], part[:, 3] = np.inf, -np.inf
+    return np.concatenate((tall.reshape(-1, lanes), short.reshape(-1, lanes)))
+
+
+def simulate_ensemble(
+    system: System | Sequence[System],
+    mesh_frequency: ArrayLike,
+    cycles: int,
+    start: tuple[ArrayLike, ArrayLike],
+    *,
+    steps: int = 512,
+    extra_force: ArrayLike | None = None,
+    parameters: LaneParameters | None = None,
+    averaged: int = 1,
+    harmonics: int = 5,
+    outputs: ArrayLike | None = None,
+    threads: int | None = None,
+    progress: Progress = SILENT,
+    method: Method = "rk4",
+    rtol: float | None = None,
+    atol: Tolerance | None = None,
+    gamma: float | None = None,
+    beta: float | None = None,
+    preset: str | None = None,
+) -> Ensemble:
+    """March many trajectories and gather their statistics without storing a series.
+
+    Parameters
+    ----------
+    system : System or sequence of System
+        One for all lanes, or one for each, all with the same number of coordinates, contacts and
+        frictions.
+    mesh_frequency : float or (lanes,) array
+        Mesh frequency of each lane [Hz]. A single number holds for as many lanes as the systems
+        or the parameters have.
+    cycles : int
+        Whole mesh cycles of each lane.
+    start : (position, velocity)
+        (n,) or (lanes, n) arrays [m or rad, m/s or rad/s].
+    steps : int
+        Steps per mesh cycle.
+    extra_force : (lanes, n) array, optional
+        Constant generalized force on top of the system's [N or N*m].
+    parameters : LaneParameters, optional
+        Factors by which each lane scales its system.
+    averaged : int
+        The last mesh cycles, over which statistics are gathered.
+    harmonics : int
+        Mesh harmonics of deflection and contact force.
+    outputs : (m, 2 n) array, optional
+        Linear outputs of (position, velocity), for example bearing forces [N/m, N*s/m].
+    threads : int, optional
+        Blocks of lanes marched at a time; the number of processors by default.
+    progress : Progress
+        Told about the mesh cycles.
+    method : "rk4", "dormand-prince" or "newmark"
+        Classical Runge-Kutta steps; adaptive steps of Dormand and Prince; Newmark's scheme.
+    rtol : float, optional
+        Of "dormand-prince": error over the largest size so far of each state, 1e-6 by default [-].
+    atol : float, (position, velocity) or (2 n,) array, optional
+        Of "dormand-prince": error allowed on top of that [m or rad, m/s or rad/s].
+    gamma, beta : float, optional
+        Of "newmark": its parameters, 1/2 and 1/4 (average acceleration) by default [-].
+    preset : str, optional
+        Of "newmark": "average acceleration", "linear acceleration", "central difference" or "seed"
+        (1/2, 1/2) instead of the two numbers.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    InputError
+        If shapes disagree, an argument is out of range or belongs to another method, or the step is
+        too long.
+    ComputationError
+        If a motion grows beyond all bounds.
+
+    Examples
+    --------
+    >>> free = System([[1.0]], [[0.0]], [[4.0]], [0.0])
+    >>> simulate_ensemble(free, [1.0, 2.0], 2, ([1.0], [0.0]), steps=64)
+    Ensemble(2 trajectories, mesh frequency 1 to 2 Hz, statistics over 1 mesh cycles)
+    """
+    frequency = _frequencies(system, mesh_frequency, parameters)
+    if not 0 <= averaged <= cycles:
+        raise InputError(
+            Problem(
+                what=f"averaged = {averaged} with cycles = {cycles}",
+                where="argument averaged",
+                why="Statistics cover some of the last mesh cycles",
+            )
+        )
+    options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
+    lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size
+    extra = np.zeros((lanes, size)) if extra_force is None else np.asarray(extra_force, float)
+    extra = np.ascontiguousarray(np.broadcast_to(extra, (lanes, size)))
+    setting = Setting(system, frequency, cycles, steps, extra, parameters)
+    marcher = prepare(method, setting, **options)
+    state = _states(start, lanes, size)
+    compiled = marcher.compiled
+    linear = np.zeros((0, 2 * size)) if outputs is None else np.asarray(outputs, float)
+    contacts = len(compiled.system.contacts)
+    moments = fresh_moments(contacts, size + len(linear), harmonics, lanes)
+    statistics = Statistics(linear, _waves(compiled, harmonics), moments)
+    progress.start("Marching the ensemble", cycles)
+    early = cycles - averaged
+    for count, gathered, elapsed in ((early, None, 0), (averaged, statistics, early)):
+        if count:
+            state = marcher.march(
+                state, count, statistics=gathered, threads=threads, elapsed=elapsed
+            )
+            progress.advance(count)
+    progress.finish()
+    return _collect(frequency, state, moments, contacts, size, harmonics, averaged)
+
+
+def _frequencies(
+    system: System | Sequence[System],
+    mesh_frequency: ArrayLike,
+    parameters: LaneParameters | None,
+) -> Array:
+    """Mesh frequency of every lane."""
+    frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    counts = {
+        "mesh_frequency": frequency.size,
+        "parameters": 1 if parameters is None else parameters.count,
+        "system": 1 if isinstance(system, System) else len(system),
+    }
+    lanes = max(counts.values())
+    odd = [name for name, count in counts.items() if count not in (1, lanes)]
+    if frequency.ndim != 1 or odd:
+        name = odd[0] if odd else "mesh_frequency"
+        raise InputError(
+            Problem(
+                what=f"{name} is for {counts[name]} lanes, others are for {lanes}",
+                where=f"argument {name}",
+                why="One for each lane, or one for all",
+            )
+        )
+    return np.array(np.broadcast_to(frequency, (lanes,)))
+
+
+def _states(start: tuple[ArrayLike, ArrayLike], lanes: int, size: int) -> Array:
+    try:
+        parts = [np.broadcast_to(np.asarray(part, float), (lanes, size)) for part in start]
+        state = np.ascontiguousarray(np.concatenate(parts, axis=1))
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            Problem(
+                what="start is not a pair (position, velocity)",
+                where="argument start",
+                why=f"Each of the two has the shape ({size},) or ({lanes}, {size})",
+            )
+        ) from error
+    if state.shape != (lanes, 2 * size) or not np.all(np.isfinite(state)):
+        raise InputError(Problem(what="start holds NaN or infinity", where="argument start"))
+    return state
+
+
+def _waves(compiled: Compiled, harmonics: int) -> Array:
+    angle = 2.0 * np.pi * compiled.nodes.phase[:, :, None] * np.arange(1, harmonics + 1)
+    return np.stack((np.cos(angle), np.sin(angle)), axis=-1)
+
+
+def _collect(
+    frequency: Array, state: Array, moments: Array, contacts: int, size: int, harmonics: int,
+    averaged: int,
+) -> Ensemble:  # fmt: skip
+    long = _PLAIN + 2 * harmonics
+    split = 2 * contacts * long
+    tall = moments[:split].reshape(2 * contacts, long, moments.shape[1])
+    short = moments[split:].reshape(-1, _PLAIN, moments.shape[1])
+    waves = 2.0 * (tall[:, _PLAIN::2] - 1j * tall[:, _PLAIN + 1 :: 2])
+
+    def statistics(rows: Array, amplitudes: NDArray[Any]) -> LaneStatistics:
+        return LaneStatistics(
+            mean=rows[:, 0].T,
+            rms=np.sqrt(rows[:, 1]).T,
+            minimum=rows[:, 2].T,
+            maximum=rows[:, 3].T,
+            harmonics=np.moveaxis(amplitudes, -1, 0),
+        )
+
+    def plain(rows: Array) -> LaneStatistics:
+        return statistics(rows, np.zeros((rows.shape[0], 0, rows.shape[2]), dtype=complex))
+
+    return Ensemble(
+        mesh_frequency=frequency,
+        position=state[:, :size],
+        velocity=state[:, size:],
+        deflection=statistics(tall[:contacts], waves[:contacts]),
+        contact_force=statistics(tall[contacts:], waves[contacts:]),
+        acceleration=plain(short[:size]),
+        output=plain(short[size:]),
+        contact_loss_share=tall[contacts:, 4].T,
+        averaged=averaged,
+    )
