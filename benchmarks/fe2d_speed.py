@@ -26,11 +26,9 @@ from race import Goal, arguments, machine, print_goals, print_table, race
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import Material, SpurGear, SpurPair, spur_pair
 from tribodyn.stiffness.fe2d import MeshSize, fe2d_influence
-from tribodyn.stiffness.fe2d.element import plane_stress, shape_gradients
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
-from tribodyn.stiffness.fe2d.ring import Ring, sector_stiffness
-from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh
-from tribodyn.stiffness.fe2d.tooth_mesh import tooth_mesh
+from tribodyn.stiffness.fe2d.ring import Ring, plane_stress, sector_stiffness, shape_gradients
+from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, tooth_mesh
 
 __all__ = ["main", "plain_assembly", "whole_ring"]
 

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+# The readable rival is kept with the tests.
+sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
+
+from plain.film import PlainContact, PlainOil
 from tribodyn.ehl import solve_line_contact_moes
-from tribodyn.ehl.plain import PlainContact, PlainOil
 from tribodyn.lubricant import Lubricant, from_library
 
 __all__ = ["MODULUS", "MoesContact", "Study", "random_contacts", "random_si", "study", "twin"]

@@ -20,8 +20,8 @@ os.environ.setdefault("MKL_NUM_THREADS", "1")
 import numpy as np
 
 from film_contacts import MoesContact, random_contacts, twin
+from plain.film_newton import solve_plain
 from race import Goal, arguments, machine, print_goals, print_table
-from tribodyn.ehl.plain_newton import solve_plain
 from tribodyn.errors import ComputationError
 
 __all__ = ["main", "plain_times", "quickest"]

@@ -8,21 +8,25 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 import warnings
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 # Everyone's linear algebra keeps to one core; NumPy reads this when it is loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("MKL_NUM_THREADS", "1")
+# The plain solver stands beside the tests that compare the compiled one with it.
+sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 
 import numpy as np
 
+from plain.loaded_contact import plain_approach
 from race import Goal, Runner, Times, arguments, machine, print_goals, print_table, race
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import Material, SpurPair, spur_pair
 from tribodyn.stiffness import MODELS, ContactProblem, loaded_contact, optimize_tip_relief
 from tribodyn.stiffness.loaded import contact_problem
-from tribodyn.stiffness.loaded.plain import plain_approach
 
 __all__ = ["compiled", "main", "plain", "ross_mesh", "studies"]
 

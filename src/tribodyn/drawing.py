@@ -17,7 +17,7 @@ from importlib.metadata import entry_points
 from typing import Any
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 #: Why a result lacks what a figure draws; empty if it has it.
 Lack = Callable[[Any], str]

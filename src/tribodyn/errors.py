@@ -7,23 +7,91 @@ or argument), why (the limit and its origin) and what to do next.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 __all__ = [
+    "Argument",
     "ComputationError",
     "InputError",
+    "ModelOption",
     "ModelWarning",
     "OutputExistsError",
     "Problem",
     "TribodynError",
+    "collected",
+    "quiet",
     "require_between",
+    "require_one_of",
     "require_positive",
     "warn",
 ]
+
+
+#: What takes the model warnings of this thread before they are issued, the innermost last.
+_listeners: ContextVar[tuple[Callable[[ModelWarning], bool], ...]] = ContextVar(
+    "listeners", default=()
+)
+
+
+@dataclass(frozen=True)
+class Argument:
+    """The argument of a function, or the field of an object, that a problem is about.
+
+    Parameters
+    ----------
+    name : str
+        Its name; a field of an argument follows after a point.
+    gear : str
+        ``"pinion"`` or ``"wheel"`` for what each of the two gears has; empty otherwise.
+
+    Examples
+    --------
+    >>> str(Argument("modification.tip_relief", gear="pinion"))
+    'argument pinion_modification.tip_relief'
+    """
+
+    name: str
+    gear: str = ""
+
+    def __str__(self) -> str:
+        """Name the argument as the caller writes it."""
+        return f"argument {self.gear}_{self.name}" if self.gear else f"argument {self.name}"
+
+
+@dataclass(frozen=True)
+class ModelOption:
+    """The option of a model picked by name that a problem is about, or the model as a whole.
+
+    Parameters
+    ----------
+    kind : str
+        What the model is of: ``"stiffness"``.
+    model : str
+        Name of the model; empty where an option of all models is meant.
+    name : str
+        Name of the option; empty where the model as a whole is meant.
+
+    Examples
+    --------
+    >>> str(ModelOption("stiffness", "table", "phase")), str(ModelOption("stiffness", "table"))
+    ('table stiffness: phase', 'table stiffness')
+    """
+
+    kind: str
+    model: str = ""
+    name: str = ""
+
+    def __str__(self) -> str:
+        """Name the model and its option."""
+        if not self.model:
+            return f"{self.kind} option {self.name}"
+        return f"{self.model} {self.kind}: {self.name}".removesuffix(": ")
 
 
 @dataclass(frozen=True)
@@ -34,8 +102,9 @@ class Problem:
     ----------
     what : str
         The finding, with value and unit.
-    where : str
-        Argument name, or ``file:line: key``. Empty when the context is obvious.
+    where : Argument, ModelOption or str
+        What it is about; a text such as ``file:line: key`` for anything else, or empty when the
+        context is obvious.
     why : str
         The limit that is broken and where it comes from.
     remedy : str
@@ -43,7 +112,7 @@ class Problem:
     """
 
     what: str
-    where: str = ""
+    where: Argument | ModelOption | str = ""
     why: str = ""
     remedy: str = ""
 
@@ -61,13 +130,26 @@ class TribodynError(Exception):
     ----------
     problems : Problem, str or iterable of Problem
         What is wrong; all faults of one input come in one error.
+    where, why, remedy : str
+        The rest of a :class:`Problem` whose finding is given as a text.
+
+    Examples
+    --------
+    >>> print(InputError("nodes = 3", where=Argument("nodes"), why="At least 4 are needed"))
+    argument nodes: nodes = 3. At least 4 are needed.
     """
 
     exit_code = 1
 
-    def __init__(self, problems: Problem | str | Iterable[Problem]) -> None:
+    def __init__(
+        self,
+        problems: Problem | str | Iterable[Problem],
+        where: Argument | ModelOption | str = "",
+        why: str = "",
+        remedy: str = "",
+    ) -> None:
         if isinstance(problems, str):
-            problems = Problem(problems)
+            problems = Problem(problems, where, why, remedy)
         self.problems: tuple[Problem, ...] = (
             (problems,) if isinstance(problems, Problem) else tuple(problems)
         )
@@ -119,7 +201,41 @@ def warn(code: str, message: str, *, stacklevel: int = 2) -> None:
     stacklevel : int
         Frames to skip, as in :func:`warnings.warn`.
     """
-    warnings.warn(ModelWarning(code, message), stacklevel=stacklevel + 1)
+    warning = ModelWarning(code, message)
+    if not any(takes(warning) for takes in reversed(_listeners.get())):
+        warnings.warn(warning, stacklevel=stacklevel + 1)
+
+
+@contextmanager
+def _listening(takes: Callable[[ModelWarning], bool]) -> Iterator[None]:
+    token = _listeners.set((*_listeners.get(), takes))
+    try:
+        yield
+    finally:
+        _listeners.reset(token)
+
+
+@contextmanager
+def collected() -> Iterator[list[ModelWarning]]:
+    """Collect the model warnings issued inside the block, each once, and by this thread alone."""
+    found: dict[str, ModelWarning] = {}
+    told: list[ModelWarning] = []
+
+    def keep(warning: ModelWarning) -> bool:
+        if str(warning) not in found:
+            found[str(warning)] = warning
+            told.append(warning)
+        return True
+
+    with _listening(keep):
+        yield told
+
+
+@contextmanager
+def quiet(*codes: str) -> Iterator[None]:
+    """Drop the model warnings of these codes, or all, that are issued inside the block."""
+    with _listening(lambda warning: not codes or warning.code in codes):
+        yield
 
 
 def _check(
@@ -132,7 +248,7 @@ def _check(
         raise InputError(
             Problem(
                 what=f"{name} = {worst:.6g} {unit}".rstrip(),
-                where=f"argument {name}",
+                where=Argument(name),
                 why=f"{name} must be finite and {limit}",
                 remedy=remedy,
             )
@@ -200,3 +316,35 @@ def require_between(
         f"between {low:g} and {high:g} {unit}".rstrip(),
         remedy,
     )
+
+
+def require_one_of(name: str, value: Any, known: Iterable[str]) -> None:
+    """Raise :class:`InputError` unless a value is one of the known words.
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : object
+        What was given.
+    known : iterable of str
+        The words.
+
+    Raises
+    ------
+    InputError
+        If the value is none of them.
+
+    Examples
+    --------
+    >>> require_one_of("inlet", "flooded", ("flooded", "zero"))
+    """
+    words = list(known)
+    if value not in words:
+        raise InputError(
+            Problem(
+                what=f'{name} = "{value}"',
+                where=f"argument {name}",
+                why=f"Known: {', '.join(words)}",
+            )
+        )

@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future, wait
+from contextvars import copy_context
 from queue import SimpleQueue
 from types import TracebackType
 from typing import Any, TypeVar
@@ -63,7 +64,7 @@ class Threads:
                 continue
             try:
                 future.set_result(function(*arguments))
-            except BaseException as error:
+            except (Exception, KeyboardInterrupt, SystemExit) as error:
                 future.set_exception(error)
             del task, future, function, arguments
 
@@ -71,7 +72,8 @@ class Threads:
         """Let one of the threads call a function."""
         future: Future[Value] = Future()
         self._waiting.append(future)
-        self._tasks.put((future, function, arguments))
+        # What listens to warnings here listens to those of the thread too.
+        self._tasks.put((future, copy_context().run, (function, *arguments)))
         return future
 
     def __enter__(self) -> Threads:

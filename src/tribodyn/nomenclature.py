@@ -28,6 +28,8 @@ class Quantity:
         Unit shown to engineers.
     meaning : str
         One line.
+    example : str
+        A sensible value as a case file writes it.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Quantity:
     unit: str
     display_unit: str
     meaning: str
+    example: str = ""
 
     @property
     def label(self) -> str:
@@ -46,43 +49,43 @@ class Quantity:
 
 _TABLE = """
 teeth | z | | | number of teeth
-normal_module | m_n | m | mm | module in the normal section
-normal_pressure_angle | alpha_n | rad | deg | pressure angle of the basic rack
+normal_module | m_n | m | mm | module in the normal section | "4.5 mm"
+normal_pressure_angle | alpha_n | rad | deg | pressure angle of the basic rack | "20 deg"
 operating_pressure_angle | alpha_wt | rad | deg | pressure angle at the operating pitch circle
-center_distance | a | m | mm | distance between the two axes
+center_distance | a | m | mm | distance between the two axes | "91.5 mm"
 profile_shift_coefficient | x | | | rack displacement divided by the module, positive outwards
 addendum_coefficient | h_aP* | | | addendum of the basic rack divided by the module
 dedendum_coefficient | h_fP* | | | dedendum of the basic rack divided by the module
 rack_tip_radius_coefficient | rho_fP* | | | tip radius of the basic rack divided by the module
-face_width | b | m | mm | width of the toothing
+face_width | b | m | mm | width of the toothing | "20 mm"
 common_face_width | b | m | mm | face width in which both gears are in contact
-tip_diameter | d_a | m | mm | diameter of the tip circle
+tip_diameter | d_a | m | mm | diameter of the tip circle | "88.6 mm"
 root_diameter | d_f | m | mm | diameter of the root circle
 reference_diameter | d | m | mm | diameter of the reference circle
-bore_diameter | d_i | m | mm | diameter of the bore; zero for a solid gear
+bore_diameter | d_i | m | mm | diameter of the bore; zero for a solid gear | "30 mm"
 base_radius | r_b | m | mm | radius of the base circle
 base_pitch | p_b | m | mm | distance of neighbouring flanks along the line of action
 tip_shortening_coefficient | k | | | shortening of the addendum divided by the module
 tip_thickness | s_a | m | mm | tooth thickness at the tip circle
 transverse_contact_ratio | epsilon_alpha | | | length of the path of contact divided by the base pitch
-roll_angle | xi | rad | rad | roll angle of the driving gear, radius of curvature over base radius
+roll_angle | xi | rad | rad | roll angle of the driving gear, radius of curvature over base radius | "0.5 rad"
 curvature_radius | rho | m | mm | radius of curvature of a flank in the contact
 equivalent_radius | R | m | mm | reduced radius of curvature of the contact
-mass | m | kg | kg | mass of a gear
-moment_of_inertia | I | kg*m^2 | kg*mm^2 | polar moment of inertia of a gear about its axis
-youngs_modulus | E | Pa | GPa | Young's modulus
+mass | m | kg | kg | mass of a gear | "0.676 kg"
+moment_of_inertia | I | kg*m^2 | kg*mm^2 | polar moment of inertia of a gear about its axis | "407 kg*mm^2"
+youngs_modulus | E | Pa | GPa | Young's modulus | "206 GPa"
 poissons_ratio | nu | | | Poisson's ratio
-density | rho | kg/m^3 | kg/m^3 | density
+density | rho | kg/m^3 | kg/m^3 | density | "880 kg/m^3"
 effective_modulus | E' | Pa | GPa | 2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2 (Dowson-Higginson convention)
-dynamic_viscosity | eta_0 | Pa*s | mPa*s | absolute viscosity at ambient pressure and working temperature
+dynamic_viscosity | eta_0 | Pa*s | mPa*s | absolute viscosity at ambient pressure and working temperature | "82 mPa*s"
 kinematic_viscosity | nu | m^2/s | mm^2/s | viscosity divided by density
-pressure_viscosity_coefficient | alpha | 1/Pa | 1/GPa | slope of ln(viscosity) over pressure at ambient pressure
-temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per kelvin at ambient pressure
-eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear
-thermal_conductivity | k | W/m/K | W/m/K | thermal conductivity of the oil
-temperature | theta | K | degC | working temperature
-speed | n | rad/s | rpm | rotational speed of the gear named by speed_of
-torque | T | N*m | N*m | torque on the gear named by speed_of
+pressure_viscosity_coefficient | alpha | 1/Pa | 1/GPa | slope of ln(viscosity) over pressure at ambient pressure | "21.9 1/GPa"
+temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per kelvin at ambient pressure | "0.04 1/K"
+eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear | "5 MPa"
+thermal_conductivity | k | W/m/K | W/m/K | thermal conductivity of the oil | "0.13 W/m/K"
+temperature | theta | K | degC | working temperature | "40 degC"
+speed | n | rad/s | rpm | rotational speed of the gear named by speed_of | "900 rpm"
+torque | T | N*m | N*m | torque on the gear named by speed_of | "90 N*m"
 mesh_frequency | f_m | Hz | Hz | tooth engagements per second
 mesh_phase | phi | | | fraction of the mesh cycle since a tooth pair entered contact at A
 load_per_width | w | N/m | N/mm | normal load of a tooth pair per face width
@@ -90,7 +93,7 @@ normal_force | F_n | N | N | force along the line of action
 load_share | | | | part of the total normal force that a tooth pair carries
 hertz_pressure | p_H | Pa | GPa | maximum Hertzian pressure
 half_width | a | m | um | half width of the Hertzian contact
-sliding_speed | v_s | m/s | m/s | difference of the surface speeds, pinion minus wheel
+sliding_speed | v_s | m/s | m/s | difference of the surface speeds, pinion minus wheel | "0.001 m/s"
 entrainment_speed | u_e | m/s | m/s | half the sum of the surface speeds
 slide_to_roll_ratio | SR | | | sliding speed over entrainment speed
 film_thickness | h | m | um | oil film thickness
@@ -99,13 +102,13 @@ minimum_film | h_min | m | um | least oil film thickness
 film_ratio | Lambda | | | minimum film over composite roughness
 film_pressure | p_max | Pa | GPa | greatest pressure in the oil film
 film_stiffness | K_o | N/m | N/um | stiffness of the oil film of one tooth pair along the line of action
-composite_roughness | S | m | um | root of the sum of squares of the two rms roughnesses
-roughness_rms | S_q | m | um | rms roughness of one flank
-friction_coefficient | mu | | | friction force over normal force
+composite_roughness | S | m | um | root of the sum of squares of the two rms roughnesses | "0.5 um"
+roughness_rms | S_q | m | um | rms roughness of one flank | "0.4 um"
+friction_coefficient | mu | | | friction force over normal force | 0.05
 gear_loss_factor | H_V | | | mean sliding work over transmitted work at unit friction
 tooth_stiffness | k_t | N/m | N/um | stiffness of the teeth of one pair without their oil film
-pair_stiffness | k_i | N/m | N/um | stiffness of one tooth pair along the line of action
-mesh_stiffness | K_m | N/m | N/um | stiffness of all tooth pairs in contact
+pair_stiffness | k_i | N/m | N/um | stiffness of one tooth pair along the line of action | "2e8 N/m"
+mesh_stiffness | K_m | N/m | N/um | stiffness of all tooth pairs in contact | "2.5e8 N/m"
 mesh_stiffness_secant | | N/m | N/um | force of all tooth pairs over the deflection that it causes
 mesh_stiffness_tangent | | N/m | N/um | slope of the force of all tooth pairs over the deflection
 maximum_single_pair_stiffness | | N/m | N/um | greatest stiffness of one tooth pair that carries the load alone
@@ -115,22 +118,22 @@ corner_share | | | | part of the load on tip corners beyond the path of contact
 mesh_force | N | N | N | dynamic force along the line of action
 friction_force | F_f | N | N | dynamic friction force of all tooth pairs
 power | P | W | W | power
-mesh_damping | c_m | N*s/m | N*s/m | damping of the tooth contact along the line of action
+mesh_damping | c_m | N*s/m | N*s/m | damping of the tooth contact along the line of action | "900 N*s/m"
 mesh_damping_ratio | zeta | | | mesh damping over its critical value
-bearing_stiffness | k_b | N/m | N/um | radial stiffness of each gear's support
-bearing_damping | c_b | N*s/m | N*s/m | radial damping of each gear's support
-shaft_stiffness | k_s | N*m/rad | N*m/rad | torsional stiffness of a shaft
-shaft_damping | c_s | N*m*s/rad | N*m*s/rad | torsional damping of a shaft
+bearing_stiffness | k_b | N/m | N/um | radial stiffness of each gear's support | "3.5e9 N/m"
+bearing_damping | c_b | N*s/m | N*s/m | radial damping of each gear's support | "4000 N*s/m"
+shaft_stiffness | k_s | N*m/rad | N*m/rad | torsional stiffness of a shaft | "75400 N*m/rad"
+shaft_damping | c_s | N*m*s/rad | N*m*s/rad | torsional damping of a shaft | "1 N*m*s/rad"
 bearing_force | F_b | N | N | force of a gear on its support
-backlash | j_bt | m | mm | total play along the line of action
+backlash | j_bt | m | mm | total play along the line of action | "0.05 mm"
 static_transmission_error | STE | m | um | approach of the gears along the line of action under load at rest
-transmission_error | e | m | um | displacement of the wheel behind its ideal place on the line of action
+transmission_error | e | m | um | displacement of the wheel behind its ideal place on the line of action | "2 um"
 dynamic_transmission_error | DTE | m | um | compression of the mesh along the line of action while running
 deflection | delta | m | um | compression of a contact
 acceleration | a | m/s^2 | m/s^2 | acceleration
 frequency | f | Hz | Hz | frequency
 time | t | s | ms | time
-angle | | rad | deg | angle
+angle | | rad | deg | angle | "20 deg"
 contact_loss_share | | | | part of the mesh cycle without contact on the driving flank
 steady_state_error | | | | distance to the exact periodic orbit relative to its size
 path | g | m | mm | distance of a contact from the pinion's base tangent point along the line of action
@@ -153,20 +156,20 @@ mean_friction_coefficient | mu_m | | | friction coefficient weighted with the lo
 compliance | | m/N | um/kN | deflection over force
 bore_radius | r_i | m | mm | radius of the bore
 root_radius | r_f | m | mm | radius of the root circle
-tip_relief | C_a | m | um | material taken away from the flank at the tip
-tip_relief_length | L_Ca | m | mm | distance from the tip inwards over which the relief ends, as roll length
-root_relief | C_f | m | um | material taken away at the lowest point that the mate touches
-root_relief_length | L_Cf | m | mm | distance from that point outwards over which the relief ends, as roll length
-profile_crowning | C_alpha | m | um | material taken away at both ends of the used flank against its middle
-profile_slope | C_Halpha | m | um | material taken away at the tip, in proportion from the lowest point that the mate touches
-crowning | C_beta | m | um | material taken away at both ends of the face against its middle
-lead_slope | C_Hbeta | m | um | material taken away at the positive end of the face, more than at the other
-misalignment | F_beta | m | um | difference of the gap between the flanks over the common face width
-single_pitch_deviation | f_p | m | um | deviation of the pitch from the flank before, one for each tooth
-cumulative_pitch_deviation | F_p | m | um | by how much each flank stands further on than evenly spaced ones
-run_out | F_r | m | um | run-out of the toothing, twice its eccentricity
-run_out_phase | phi_r | rad | deg | rotation from where tooth 0 comes into contact to where the flanks stand most proud
-wear_depth | h_w | m | um | depth of wear, alone or at equal distances from the lowest point to the tip
+tip_relief | C_a | m | um | material taken away from the flank at the tip | "10 um"
+tip_relief_length | L_Ca | m | mm | distance from the tip inwards over which the relief ends, as roll length | "4 mm"
+root_relief | C_f | m | um | material taken away at the lowest point that the mate touches | "10 um"
+root_relief_length | L_Cf | m | mm | distance from that point outwards over which the relief ends, as roll length | "4 mm"
+profile_crowning | C_alpha | m | um | material taken away at both ends of the used flank against its middle | "5 um"
+profile_slope | C_Halpha | m | um | material taken away at the tip, in proportion from the lowest point that the mate touches | "5 um"
+crowning | C_beta | m | um | material taken away at both ends of the face against its middle | "5 um"
+lead_slope | C_Hbeta | m | um | material taken away at the positive end of the face, more than at the other | "5 um"
+misalignment | F_beta | m | um | difference of the gap between the flanks over the common face width | "5 um"
+single_pitch_deviation | f_p | m | um | deviation of the pitch from the flank before, one for each tooth | "5 um"
+cumulative_pitch_deviation | F_p | m | um | by how much each flank stands further on than evenly spaced ones | "5 um"
+run_out | F_r | m | um | run-out of the toothing, twice its eccentricity | "20 um"
+run_out_phase | phi_r | rad | deg | rotation from where tooth 0 comes into contact to where the flanks stand most proud | "0 deg"
+wear_depth | h_w | m | um | depth of wear, alone or at equal distances from the lowest point to the tip | "5 um"
 roll_length | L_y | m | mm | radius of curvature of the involute as a place on the profile
 face_position | y | m | mm | place along the face from its middle
 profile_deviation | f_alpha | m | um | measured excess of material along the normal of the flank

@@ -141,7 +141,7 @@ class Record:
         name, told = self._array_name(), {**told, **attributes}
         return xarray.DataArray(values, coordinates, dims, name, told)
 
-    def plot(self, **options: Any) -> Any:
+    def plot(self, *arguments: Any, **options: Any) -> Any:
         """Draw the result by the figure registered for its class.
 
         Parameters
@@ -153,7 +153,7 @@ class Record:
         -------
         plotly.graph_objects.Figure
         """
-        return draw(self, **options)
+        return draw(self, "", *arguments, **options)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result to a netCDF file that appears whole or not at all.

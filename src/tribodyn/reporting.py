@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from tribodyn.drawing import load_figures
 from tribodyn.errors import InputError, Problem
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 Writer = TypeVar("Writer", bound=Callable[..., Path])
 

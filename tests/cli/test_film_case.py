@@ -121,7 +121,7 @@ def test_names_of_the_film_are_explained(name: str, capsys: pytest.CaptureFixtur
 
 @pytest.mark.parametrize("model", ["newton", "multigrid"])
 def test_the_solver_is_cited(model: str) -> None:
-    from tribodyn.study.citations import cite
+    from tribodyn.study.pipeline.citations import cite
 
     case = td.load_case("fzg-film").replace({"film.model": model})
     assert ("Venner" in cite(case)) == (model == "multigrid")

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from tribodyn.cli.interrupt import interruptible
+from tribodyn.cli.entry import interruptible
 
 
 class _Interrupted:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tribodyn.cli import call
-from tribodyn.study.save import RESULT_FILES
+from tribodyn.study.pipeline.save import RESULT_FILES
 
 _TRIBODYN = (sys.executable, "-m", "tribodyn.cli")
 _FAST = ("--set", "solver.steps_per_mesh_cycle=256")
@@ -91,7 +91,7 @@ def test_a_failed_computation_exits_with_one(
     def fail(*_: object) -> None:
         raise ComputationError("the search failed")
 
-    monkeypatch.setattr("tribodyn.study.pipeline.run", fail)
+    monkeypatch.setattr("tribodyn.study.pipeline.run.run", fail)
     assert call(["run", "fzg-roughness", "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["error"]["exit_code"] == 1
     assert os.listdir(folder) == []

@@ -16,9 +16,9 @@ import pytest
 import xarray
 
 from tribodyn.cli import call
-from tribodyn.cli.ranges import read_ranges
+from tribodyn.cli.settings import read_ranges
 from tribodyn.errors import InputError
-from tribodyn.study.save import BIFURCATION_FILES, SWEEP_FILES
+from tribodyn.study.pipeline.save import BIFURCATION_FILES, SWEEP_FILES
 
 _TRIBODYN = (sys.executable, "-m", "tribodyn.cli")
 _FAST = ("--set", "solver.steps_per_mesh_cycle=512", "--set", "film.model=none")

@@ -9,8 +9,8 @@ from tribodyn.cli.app import COMMANDS
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
-from tribodyn.study.options import model_options
-from tribodyn.study.reference import case_keys, reference_tables
+from tribodyn.study.case.checks import case_options
+from tribodyn.study.case.reference import case_keys, reference_tables
 
 _ROW = r"^\| `([\w-]+)` \| (.*) \|$"
 _DOCS = Path(__file__).parents[2] / "docs"
@@ -34,7 +34,7 @@ def test_options_on_the_page_belong_to_their_models() -> None:
     for (section, names), row in zip(sections, rows, strict=True):
         # "none" is both a film model and a friction law
         for name in names:
-            assert set(re.findall(r"`(\w+)`", row[name])) == set(model_options(section, name))
+            assert set(re.findall(r"`(\w+)`", row[name])) == set(case_options(section, name))
 
 
 def test_every_command_is_on_its_page() -> None:

@@ -10,6 +10,8 @@ import pytest
 from glossary import PAGE, page
 from pages import PAGES, ROOT, anchors, blocks, broken_links
 
+from registries import as_before
+
 README = (ROOT / "README.md").read_text("utf-8")
 WITH_PYTHON = [path for path in PAGES if blocks(path.read_text("utf-8"), "python")]
 
@@ -29,8 +31,9 @@ def test_readme_has_exactly_the_two_commands() -> None:
 def test_python_blocks_run(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {"__name__": "page"}
-    for block in blocks(path.read_text("utf-8"), "python"):
-        exec(compile(block, path.name, "exec"), names)
+    with as_before():
+        for block in blocks(path.read_text("utf-8"), "python"):
+            exec(compile(block, path.name, "exec"), names)
     if path.name == "README.md":
         assert (tmp_path / "my-report" / "report.html").is_file()
 
@@ -81,3 +84,11 @@ def test_commands_of_the_readme_exist(command: str) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert command in done.stdout + done.stderr
+
+
+def test_the_page_on_extending_shows_the_files_that_are_tested() -> None:
+    page = (ROOT / "docs" / "extending.md").read_text("utf-8")
+    files = sorted((ROOT / "docs" / "extending").glob("*.py"))
+    assert len(files) == 6
+    for file in files:
+        assert file.read_text("utf-8") in blocks(page, "python")

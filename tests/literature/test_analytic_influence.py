@@ -4,6 +4,9 @@ Two references. FZG type A: converged figures, E 206 GPa, nu 0.3, bores 30 mm. O
 triangles on the outline of the whole gear, bore held, load spread as a Hertz pressure of half width
 0.02 modules, whose local compression ``2/(pi E) (ln(2 h/a) - nu/2)`` is taken off; converged to
 0.5 %, and 0.4 % from the figures of FZG type A.
+
+The figures are those of both models, which are neither printed nor part of this repository: mark
+``regression``.
 """
 
 from __future__ import annotations
@@ -17,11 +20,16 @@ import pytest
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import Material, SpurGear, SpurPair, spur_pair
-from tribodyn.stiffness import load_point, weber_banaschek_compression
-from tribodyn.stiffness.analytic import analytic_influence
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.loaded import loaded_contact
-from tribodyn.stiffness.weber import weber_influence
+from tribodyn.stiffness import (
+    GearInfluence,
+    load_point,
+    loaded_contact,
+    weber_banaschek_compression,
+)
+from tribodyn.stiffness.teeth.analytic import analytic_influence
+from tribodyn.stiffness.teeth.weber import weber_influence
+
+pytestmark = pytest.mark.regression
 
 WIDTH = 20e-3
 #: One pair carrying 100 N/mm [N/m].

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from references.film_cases import FZG, MODULUS, RADIUS, SPEED
 from tribodyn.ehl import (
     FILM_MODELS,
     dowson_1968_minimum,
@@ -18,10 +19,8 @@ from tribodyn.ehl import (
 )
 from tribodyn.lubricant import from_library
 
-#: FZG pair, wheel of 24 teeth driving, pitch point, one pair in contact, solved fully flooded by
-#: two independent schemes: torque [N*m], load [N/m], central and minimum film [um].
-SOLVED = {50: (49267.5, 1.1395, 0.991), 150: (147802.0, 1.0248, 0.896)}
-RADIUS, SPEED, MODULUS = 8e-3, 3.0722, 2.2e11
+#: Torque [N*m] -> load [N/m], central and minimum film [um], solved fully flooded.
+SOLVED = {torque: (row[0], *row[3:]) for torque, row in FZG.items()}
 
 
 def film(formula, load):

@@ -1,4 +1,8 @@
-"""Solved films against values of an independent two-scheme solution, and against one of our own."""
+"""Solved films against another scheme: its figures (tests/references/film_cases.py) and itself.
+
+Figures of single grids and of the domain of the source (mark ``regression``) are kept so that a
+change is seen.
+"""
 
 from __future__ import annotations
 
@@ -8,26 +12,12 @@ from itertools import pairwise
 import pytest
 
 from known_films import known_film, wetted
+from references.film_cases import FZG, MODULUS, MOES, RADIUS, SPEED
 from tribodyn.ehl import line_contact_groups, solve_line_contact, solve_line_contact_moes
 from tribodyn.lubricant import Lubricant
 
 ENGINES = ("newton", "multigrid")
 
-#: Cases of Moes' numbers with z = 0.68, alpha = 2.2e-8 1/Pa, P = 0 at both ends of (-4.5, 1.5):
-#: M, L, compressible, central and minimum film in b^2/R, outlet in b.
-MOES = {
-    "M20 L10": (20.0, 10.0, True, 0.085232, 0.074163, 1.0753),
-    "M20 L10 incompressible": (20.0, 10.0, False, 0.100013, 0.07526, 1.0544),
-    "M5 L5": (5.0, 5.0, True, 0.301073, 0.243137, 1.1259),
-}
-#: FZG pair of the first source document, wheel of 24 teeth driving at 1400 rpm, pitch point, one
-#: pair in contact, flooded: torque [N*m] -> load [N/m], Hertz pressure [GPa], half width [um],
-#: central and minimum film [um].
-FZG = {
-    50: (49267.5, 0.4644, 67.544, 1.1395, 0.991),
-    150: (147802.0, 0.8043, 116.989, 1.0248, 0.896),
-}
-RADIUS, SPEED, MODULUS = 8e-3, 3.0722, 2.2e11
 OIL = Lubricant(0.082, 880.0, 2.19e-8)
 
 
@@ -69,6 +59,7 @@ def test_fine_grid_reaches_the_printed_digits(name):
     assert found.outlet == pytest.approx(outlet, abs=5e-4)
 
 
+@pytest.mark.regression
 @pytest.mark.parametrize(
     ("nodes", "central"), [(257, 0.083989), (513, 0.084919), (1025, 0.085154), (2049, 0.085213)]
 )
@@ -105,6 +96,7 @@ def test_speed_is_half_the_sum_of_the_surface_speeds():
     assert sum_of_speeds.central_film / right.central_film == pytest.approx(1.62, abs=0.03)
 
 
+@pytest.mark.regression
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 @pytest.mark.parametrize(("torque", "loss"), [(50, -0.32), (150, -0.14), (300, -0.07)])
 def test_domain_of_the_source_starves_its_contacts(torque, loss):
@@ -137,6 +129,7 @@ def test_fzg_pair_with_an_inlet_of_a_hundred_half_widths(torque):
     assert found.minimum_film * 1e6 == pytest.approx(known.minimum * unit, rel=1e-3)
 
 
+@pytest.mark.regression
 def test_height_of_the_spike_needs_a_fine_grid():
     """Truth 0.944 of the Hertz pressure; a uniform grid of 257 to 2049 nodes finds 0.63 to 0.81."""
     known = known_film(20.0, 10.0, wetted(moes("M20 L10", 8193)), inlet=-4.5, nodes=700)

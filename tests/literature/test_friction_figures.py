@@ -1,7 +1,8 @@
 """Friction of an FZG type A pair: reference values along the path of contact, and claims.
 
 Pinion of 16 teeth driving, 90 N*m and 900 rpm on the pinion, 82 mPa*s, face width 20 mm, total
-normal force 2660.44 N, half of it on each pair while two are in contact.
+normal force 2660.44 N, half of it on each pair while two are in contact. The figures are those of
+tests/references/friction_table.py, from the papers of both laws.
 """
 
 from __future__ import annotations
@@ -11,20 +12,15 @@ import math
 import numpy as np
 import pytest
 
+from references import friction_table
+from references.friction_table import FACE_WIDTH, NORMAL_FORCE, VISCOSITY
 from tribodyn.errors import ModelWarning
 from tribodyn.friction import LAWS, TribologicalContact, benedict_kelly
 
-NORMAL_FORCE, FACE_WIDTH, VISCOSITY, MODULUS = 2660.44, 20e-3, 0.082, 2.30769e11
+MODULUS = 2.30769e11
 
 #: share, sliding speed, entrainment speed, slide-to-roll ratio, R [mm], P_h [GPa], Xu, B-K
-TABLE = np.array(
-    [
-        [0.5, -0.471463, 1.269503, -0.371376, 7.523826, 0.569806, 0.079431, 0.107659],
-        [1.0, +0.210801, 1.337729, +0.157581, 8.598883, 0.753772, 0.063169, 0.122133],
-        [1.0, +0.913038, 1.407953, +0.648486, 8.577181, 0.754725, 0.067992, 0.105843],
-        [0.5, +2.297540, 1.546403, +1.485731, 5.181786, 0.686604, 0.060681, 0.087109],
-    ]
-)
+TABLE = np.array(friction_table.TABLE)[:, 1:]
 POSITIONS = ["A", "after B", "middle of B-D", "E"]
 
 

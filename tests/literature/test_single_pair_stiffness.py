@@ -3,6 +3,9 @@
 Reference: plane stress ring with the bore held and a plane strain local term, secant stiffness at
 100 N/mm, E 206 GPa, nu 0.3, bores 30 mm, face width 20 mm. The energy method with true fillets,
 foundation and local compression is known to be 1.6 to 5.3 % too soft on the mean over the path.
+
+The figures are those of the reference model, which is neither printed nor part of this repository:
+mark ``regression``.
 """
 
 from __future__ import annotations
@@ -17,6 +20,8 @@ from tribodyn.contact import path_of_contact
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import Material, SpurPair, spur_pair
 from tribodyn.stiffness import MODELS, iso6336_pair_stiffness, single_pair_stiffness
+
+pytestmark = pytest.mark.regression
 
 FINITE_ELEMENTS = {"A": 1.449e8, "C": 1.709e8, "maximum": 2.039e8, "E": 1.590e8}
 #: Roll angle with one pair in contact -> deflection [um] at 90, 150 and 300 N m.

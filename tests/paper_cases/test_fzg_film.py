@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.study.provenance import provenance
-from tribodyn.study.tooth_contact import mesh_of
+from tribodyn.study.case.provenance import provenance
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _RPM = math.pi / 30.0
 

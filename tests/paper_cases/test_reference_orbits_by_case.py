@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 import tribodyn as td
-from tribodyn.study.read import read_case
+from references.gear_pair_orbits import ACROSS, HARMONICS, MULTIPLIER, ORBITS
+from tribodyn.study import read_case
 
 _CASE = """
 title = "Reference orbit"
@@ -48,31 +49,29 @@ steps_per_mesh_cycle = 2048
 """
 
 _FIGURES = (
+    "mean_dynamic_transmission_error",
+    "peak_to_peak_dynamic_transmission_error",
     "mean_mesh_force",
     "rms_mesh_force",
     "peak_mesh_force",
-    "mean_dynamic_transmission_error",
-    "peak_to_peak_dynamic_transmission_error",
     "rms_acceleration_loa_pinion",
     "dynamic_transmission_error_harmonic_1",
     "dynamic_transmission_error_harmonic_2",
     "dynamic_transmission_error_harmonic_3",
 )
 
-#: Periodic orbits by two independent methods that agree to 3e-10, printed to seven digits.
-_PRINTED = {
-    0.0: (
-        2660.4444, 2693.7133, 5310.4822, 11.119736e-6, 14.707386e-6, 788.665,
-        3.638129e-6, 1.879799e-6, 0.070201e-6,
-    ),
-    0.1: (
-        2566.5476, 2596.5580, 5084.7270, 10.690391e-6, 13.808220e-6, 739.622,
-        3.377101e-6, 1.734764e-6, 0.070281e-6,
-    ),
-}  # fmt: skip
+#: In SI: micrometres above are metres in a summary.
+_SCALE = (1e-6, 1e-6, 1.0, 1.0, 1.0, 1.0)
 
 
-@pytest.fixture(scope="module", params=sorted(_PRINTED))
+def _printed(friction: float) -> dict[str, float]:
+    """Figures of the periodic orbit as tests/references/gear_pair_orbits.py finds them."""
+    orbit = [s * value for s, value in zip(_SCALE, ORBITS[friction], strict=True)]
+    harmonics = [1e-6 * value for value in HARMONICS[friction]]
+    return dict(zip(_FIGURES, (*orbit, *harmonics), strict=True))
+
+
+@pytest.fixture(scope="module", params=sorted(ORBITS))
 def orbit(request: pytest.FixtureRequest) -> tuple[float, Any]:
     friction = request.param
     case = read_case(_CASE).replace({"friction.coefficient": friction})
@@ -83,7 +82,7 @@ def orbit(request: pytest.FixtureRequest) -> tuple[float, Any]:
 @pytest.mark.parametrize("name", _FIGURES)
 def test_printed_figures(orbit: tuple[float, Any], name: str) -> None:
     friction, result = orbit
-    printed = _PRINTED[friction][_FIGURES.index(name)]
+    printed = _printed(friction)[name]
     # The figures are printed to seven digits, the third harmonic to five.
     digits = 1e-5 if printed > 1e-6 else 1e-5 + 5e-13 / printed
     assert result.summary()[name] == pytest.approx(printed, rel=digits)
@@ -98,12 +97,14 @@ def test_friction_figures(orbit: tuple[float, Any]) -> None:
         return
     # 48 natural oscillations across the line of action in one cycle: 2048 steps follow each with
     # 43, which leaves 2.3e-5; 4096 steps leave 5e-6.
-    assert figures["rms_acceleration_oloa_pinion"] == pytest.approx(84.362, rel=3e-5)
-    assert figures["rms_bearing_force_oloa_pinion"] == pytest.approx(124.280, rel=1e-5)
-    assert figures["rms_bearing_force_loa_pinion"] == pytest.approx(660.591, rel=1e-5)
-    assert figures["rms_friction_force"] == pytest.approx(225.238, rel=1e-5)
+    assert figures["rms_acceleration_oloa_pinion"] == pytest.approx(
+        ACROSS["acceleration"], rel=3e-5
+    )
+    assert figures["rms_bearing_force_oloa_pinion"] == pytest.approx(ACROSS["bearing_x"], rel=1e-5)
+    assert figures["rms_bearing_force_loa_pinion"] == pytest.approx(ACROSS["bearing_y"], rel=1e-5)
+    assert figures["rms_friction_force"] == pytest.approx(ACROSS["friction"], rel=1e-5)
     multiplier = abs(result.response.floquet_multipliers[0])
-    assert multiplier == pytest.approx(0.000949, abs=5e-7)
+    assert multiplier == pytest.approx(MULTIPLIER, abs=5e-7)
 
 
 def test_orbit_is_certified(orbit: tuple[float, Any]) -> None:

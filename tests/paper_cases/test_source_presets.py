@@ -96,9 +96,10 @@ def test_fifth_harmonic_is_a_coincidence(results):
     assert np.min(np.abs(modes.frequency / (5.0 * meshing) - 1.0)) < 0.0035
 
 
+@pytest.mark.regression
 def test_local_friction_of_the_rig_has_the_measured_mean():
     result = computed("fzg-12dof", {"friction.law": "xu-2007"})
-    # the measured one is 0.035, the law gives 0.0320 weighted with load and sliding
+    # the measured one is 0.035; 0.032, weighted with load and sliding, is our own figure
     assert result.summary()["mean_friction_coefficient"] == pytest.approx(0.032, abs=0.006)
 
 
@@ -115,7 +116,12 @@ def test_friction_varies_and_vanishes_at_the_pitch_point(results):
     plain = computed("time-varying-friction", {"friction.law": "none"}).summary()
     with_friction = results["time-varying-friction"].summary()
     assert abs(with_friction["rms_mesh_force"] / plain["rms_mesh_force"] - 1.0) < 0.01
-    assert plain["rms_mesh_force"] == pytest.approx(283.0, abs=2.0)
+
+
+@pytest.mark.regression
+def test_force_without_friction_is_what_it_was():
+    plain = computed("time-varying-friction", {"friction.law": "none"}).summary()
+    assert plain["rms_mesh_force"] == pytest.approx(283.0, abs=2.0)  # our own figure
 
 
 def test_chaos_over_the_stiffness_is_made_by_the_step():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from known_systems import hysteresis_system, reference_system
+from references.backlash_orbits import HIGH, LOW
 from tribodyn.analysis import basins, bifurcation, parameter_map, phase_portrait
 from tribodyn.dynamics import Contact, System, continuation, simulate, steady_state
 from tribodyn.dynamics.equations.compiled import compile_for
@@ -115,8 +116,8 @@ def test_an_interruption_keeps_what_is_finished(kind):
 
 def test_hysteresis_has_two_attractors(plane):
     large, small = plane.attractors
-    assert large.rms == pytest.approx(0.667183, abs=2e-6)
-    assert small.rms == pytest.approx(0.310423, abs=2e-6)
+    assert large.rms == pytest.approx(HIGH, abs=2e-6)
+    assert small.rms == pytest.approx(LOW, abs=2e-6)
     assert [each.period for each in plane.attractors] == [1, 1]
     assert large.largest_multiplier == pytest.approx(0.699773, abs=1e-5)
     assert large.stable

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from known_systems import hysteresis_system, pairs_in_contact, reference_system
+from references.backlash_orbits import HIGH, LOW
 from tribodyn.analysis import bifurcation, poincare
 from tribodyn.dynamics import Contact, System, steady_state
 from tribodyn.dynamics.equations.step_limit import LIMIT
@@ -34,8 +35,8 @@ def hysteresis():
 def test_sweeps_up_and_down_differ_between_the_jumps(hysteresis):
     up, down = hysteresis.rms
     assert hysteresis.branches == ("up", "down")
-    assert up[2] == pytest.approx(0.310423, abs=1e-6)
-    assert down[2] == pytest.approx(0.667183, abs=1e-6)
+    assert up[2] == pytest.approx(LOW, abs=1e-6)
+    assert down[2] == pytest.approx(HIGH, abs=1e-6)
     differ = np.abs(up - down) > 1e-3
     assert differ.tolist() == [False, True, True, True, False]
 
@@ -181,7 +182,7 @@ def test_bad_input_is_refused(options, words):
 def test_diagram_has_units_and_a_figure(hysteresis):
     table = hysteresis.to_xarray()
     assert table["largest_exponent"].attrs["units"] == "1/s"
-    assert table["rms"].sel(branch="down").values[2] == pytest.approx(0.667183, abs=1e-6)
+    assert table["rms"].sel(branch="down").values[2] == pytest.approx(HIGH, abs=1e-6)
     figure = hysteresis.plot()
     assert figure.layout.title.text == "Two motions are possible from 0.84 to 0.9"
     assert len(figure.data) == 7

@@ -10,11 +10,16 @@ from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
 from tribodyn.gear import SpurGear
-from tribodyn.stiffness.fe2d.element import element_stiffness, plane_stress, quadratic_shapes
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
-from tribodyn.stiffness.fe2d.ring import Ring, RingSolution, sector_stiffness
-from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh, grid_elements
-from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
+from tribodyn.stiffness.fe2d.ring import (
+    Ring,
+    RingSolution,
+    element_stiffness,
+    plane_stress,
+    quadratic_shapes,
+    sector_stiffness,
+)
+from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, grid_elements, tooth_mesh
 
 NU = 0.3
 INNER, OUTER = 1.0, 2.5

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
-from tribodyn.ehl import LineContactSolution, solve_line_contact, solve_line_contact_moes
-from tribodyn.ehl.frequency import film_compliance, frequency_response
-from tribodyn.ehl.transient import solve_transient_line_contact
+from tribodyn.ehl import (
+    LineContactSolution,
+    solve_line_contact,
+    solve_line_contact_moes,
+    solve_transient_line_contact,
+)
+from tribodyn.ehl.stiffness.frequency import film_compliance, frequency_response
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
 

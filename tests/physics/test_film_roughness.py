@@ -5,10 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.ehl import solve_line_contact
-from tribodyn.ehl.roughness import RoughnessProfile
-from tribodyn.ehl.transient import solve_transient_line_contact
-from tribodyn.ehl.transient_result import TransientLineContact
+from tribodyn.ehl import (
+    RoughnessProfile,
+    TransientLineContact,
+    solve_line_contact,
+    solve_transient_line_contact,
+)
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.lubricant import Lubricant
 

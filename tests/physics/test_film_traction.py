@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from plain.film import PlainContact, plain_oil
+from plain.film_newton import solve_plain
 from tribodyn.contact import hertz_line
 from tribodyn.ehl import (
     FilmState,
@@ -12,8 +14,6 @@ from tribodyn.ehl import (
     newtonian_shear_stress,
     ree_eyring_shear_stress,
 )
-from tribodyn.ehl.plain import PlainContact, plain_oil
-from tribodyn.ehl.plain_newton import solve_plain
 from tribodyn.lubricant import Lubricant
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)

@@ -5,9 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.ehl import solve_line_contact
-from tribodyn.ehl.transient import solve_transient_line_contact
-from tribodyn.ehl.transient_result import TransientLineContact
+from tribodyn.ehl import TransientLineContact, solve_line_contact, solve_transient_line_contact
 from tribodyn.errors import ComputationError
 from tribodyn.lubricant import Lubricant
 

@@ -7,8 +7,11 @@ import pytest
 from scipy.special import k0e
 
 from tribodyn.ehl import blok_flash_temperature
-from tribodyn.ehl.film_temperature import film_temperature_rise, film_thermal_resistance
-from tribodyn.ehl.flash_temperature import FLASH_FACTORS
+from tribodyn.ehl.traction.film_temperature import (
+    FLASH_FACTORS,
+    film_temperature_rise,
+    film_thermal_resistance,
+)
 from tribodyn.errors import ComputationError, InputError
 
 CONDUCTIVITY, CAPACITY = 46.0, 3.8e6  # steel: W/(m K), J/(m^3 K)

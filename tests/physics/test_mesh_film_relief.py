@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.ehl import solve_line_contact
-from tribodyn.ehl.batch import solve_line_contacts
+from tribodyn.ehl import solve_line_contact, solve_line_contacts
 from tribodyn.errors import ModelWarning
 from tribodyn.gear import FlankModification, Material, SpurPair, spur_pair
 from tribodyn.lubricant import Lubricant

@@ -208,7 +208,7 @@ def test_a_nearly_unloaded_entry_is_solved() -> None:
 
 
 def test_a_film_that_cannot_be_solved_names_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
-    import tribodyn.ehl.batch as batch
+    import tribodyn.ehl.steady.batch as batch
 
     solve = batch.solve_case
 

@@ -10,10 +10,16 @@ import pytest
 from known_systems import EVENTS, MESH_FREQUENCY, friction_vector, reference_system
 from plain.newmark import newmark_plain
 from tribodyn.analysis import mesh_harmonics
-from tribodyn.dynamics import FZG12_MESH_FREQUENCY, Contact, System, fzg12, steady_state
+from tribodyn.dynamics import (
+    FZG12_MESH_FREQUENCY,
+    Contact,
+    LoadFriction,
+    System,
+    fzg12,
+    steady_state,
+)
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.load_friction import LoadFriction
 from tribodyn.dynamics.time.newmark import compile_newmark, march_newmark
 from tribodyn.dynamics.time.response import build_response
 

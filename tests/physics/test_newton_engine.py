@@ -9,13 +9,17 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
-from tribodyn.ehl.kernel.coarse import coarse_tangent, no_coarse
-from tribodyn.ehl.kernel.film_sum import film_plan, influence
-from tribodyn.ehl.kernel.krylov import linear_solve, newton_work, prepare
-from tribodyn.ehl.kernel.newton import newton_level
-from tribodyn.ehl.kernel.oil import oil_state
-from tribodyn.ehl.kernel.reynolds import coefficients, mobility
-from tribodyn.ehl.kernel.transfer import refine
+from tribodyn.ehl._kernel.film_sum import influence, make_grid
+from tribodyn.ehl._kernel.linear_solver import (
+    coarse_tangent,
+    linear_solve,
+    linear_work,
+    no_coarse,
+    prepare,
+)
+from tribodyn.ehl._kernel.newton import Equation, Limits, newton_level, newton_work
+from tribodyn.ehl._kernel.reynolds import coefficients, mobility, oil_state
+from tribodyn.ehl._kernel.transfer import refine
 from tribodyn.lubricant import Lubricant
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)
@@ -23,21 +27,20 @@ OIL = Lubricant(0.082, 880.0, 2.19e-8)
 
 @nb.njit
 def solve_system(n, dx, k, imposed, lam, oil, P, H, cH, cP, ratio, rhs, x):
-    K = influence(n, dx)
-    work, coarse = newton_work(n), no_coarse()
+    grid, work, coarse = make_grid(n, dx), linear_work(n), no_coarse()
+    work.by_film[:], work.by_pressure[:] = cH, cP
     if ratio > 0:
         coarse = coarse_tangent(n, dx, k, ratio, lam, 1.0, 0.0, imposed, oil, P, H)
-    good = prepare(n, dx, k, imposed, K, cH, cP, work)
-    plan = film_plan(n, K)
-    return good, linear_solve(n, dx, k, imposed, K, plan, cH, cP, 1e-11, coarse, work, rhs, x)
+    good = prepare(grid, k, imposed, work)
+    return good, linear_solve(grid, k, imposed, 1e-11, coarse, work, rhs, x)
 
 
 @nb.njit
-def solve_level(n, dx, lam, load, imposed, tail, oil, shape, limits, P, H, state):
-    K = influence(n, dx)
+def solve_level(n, dx, lam, target, imposed, tail, oil, shape, offset, free, P, H):
+    equation = Equation(lam, oil, 1.0, 0.0, np.zeros(n + 1), shape, tail, imposed, target)
     return newton_level(
-        n, dx, lam, 1.0, 0.0, load, imposed, tail, oil, shape, np.zeros(n + 1), K,
-        film_plan(n, K), limits, no_coarse(), newton_work(n), P, H, state,
+        make_grid(n, dx), equation, Limits(1e-10, 1e-9, 40, 1e-2, 0.3), offset, free, P, H,
+        np.empty(0), no_coarse(), newton_work(n),
     )  # fmt: skip
 
 
@@ -128,22 +131,22 @@ def _coefficients(grid):
 
 def test_imposed_approach_returns_the_load_that_was_imposed(contact):
     grid = contact._grid
-    limits = np.array([1e-10, 1e-9, 40.0, 1e-2, 0.3, 0.0])
-    P, H, state = grid.P.copy(), np.zeros(grid.n + 1), np.zeros(8)
-    state[0], state[1] = grid.H0, grid.free
+    P, H = grid.P.copy(), np.zeros(grid.n + 1)
     P[grid.n // 2 : grid.free] *= 0.98  # a disturbed start
-    assert solve_level(
-        grid.n, grid.dx, grid.lam, 0.0, False, grid.tail, grid.oil, grid.shape, limits, P, H, state
-    ) == 0  # fmt: skip
-    assert state[0] == grid.H0
-    assert state[5] == pytest.approx(grid.load, rel=1e-7)
+
+    def load(offset, free):
+        return solve_level(
+            grid.n, grid.dx, grid.lam, offset, False, grid.tail, grid.oil, grid.shape, offset,
+            free, P, H,
+        )  # fmt: skip
+
+    solved = load(grid.H0, grid.free)
+    assert solved.status == 0
+    assert solved.offset == grid.H0
+    assert solved.load == pytest.approx(grid.load, rel=1e-7)
     assert pytest.approx(P, abs=1e-7) == grid.P
     # pressed closer, the contact carries more
-    state[0] -= 1e-3
-    solve_level(
-        grid.n, grid.dx, grid.lam, 0.0, False, grid.tail, grid.oil, grid.shape, limits, P, H, state
-    )
-    assert state[5] > 1.0005 * grid.load
+    assert load(grid.H0 - 1e-3, solved.free).load > 1.0005 * grid.load
 
 
 def test_transfer_keeps_the_load_and_a_parabola():

@@ -1,9 +1,12 @@
-"""Reference cases D1, D2 and H1: exact periodic orbits that two methods agreed on."""
+"""Reference cases D1, D2 and H1: periodic orbits that SciPy finds on its own (tests/references)."""
 
 import numpy as np
 import pytest
 
 from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
+from references.backlash_orbits import HIGH, LOW
+from references.backlash_orbits import MULTIPLIER as BACKLASH_MULTIPLIER
+from references.gear_pair_orbits import ACROSS, HARMONICS, MULTIPLIER, ORBITS
 from tribodyn.analysis import alternating_rms, extremes, mesh_harmonics, peak_to_peak, rms
 from tribodyn.dynamics import steady_state
 
@@ -13,18 +16,11 @@ def orbit(request):
     return request.param, steady_state(reference_system(request.param), MESH_FREQUENCY, steps=4096)
 
 
-EXPECTED = {
-    0.0: (11.119736, 14.707386, 2660.4444, 2693.7133, 5310.4822, 788.665),
-    0.1: (10.690391, 13.808220, 2566.5476, 2596.5580, 5084.7270, 739.622),
-}
-HARMONICS = {0.0: (3.638129, 1.879799, 0.070201), 0.1: (3.377101, 1.734764, 0.070281)}
-
-
 def test_means_and_rms(orbit):
     friction, motion = orbit
     fine = motion.fine
     deflection, force = fine.deflection[:, 0], fine.contact_force[:, 0]
-    mean, span, mean_force, rms_force, peak, acceleration = EXPECTED[friction]
+    mean, span, mean_force, rms_force, peak, acceleration = ORBITS[friction]
     assert fine.mean(deflection) * 1e6 == pytest.approx(mean, rel=1e-6)
     assert peak_to_peak(deflection) * 1e6 == pytest.approx(span, rel=2e-6)
     assert fine.mean(force) == pytest.approx(mean_force, rel=1e-6)
@@ -44,12 +40,12 @@ def test_bearing_and_friction_forces_of_d2():
     motion = steady_state(system, MESH_FREQUENCY, steps=4096)
     fine = motion.fine
     forces = fine.position @ system.stiffness.T + fine.velocity @ system.damping.T
-    assert alternating_rms(fine, forces[:, 0]) == pytest.approx(124.280, rel=2e-6)
-    assert alternating_rms(fine, forces[:, 1]) == pytest.approx(660.591, rel=2e-6)
+    assert alternating_rms(fine, forces[:, 0]) == pytest.approx(ACROSS["bearing_x"], rel=2e-6)
+    assert alternating_rms(fine, forces[:, 1]) == pytest.approx(ACROSS["bearing_y"], rel=2e-6)
     # The force that the two supports and the inertia of the pinion take up is the friction force.
     friction = forces[:, 0] + 0.676 * fine.acceleration[:, 0]
-    assert rms(fine, friction) == pytest.approx(225.238, rel=2e-6)
-    assert abs(motion.floquet_multipliers[0]) == pytest.approx(0.000949, abs=2e-6)
+    assert rms(fine, friction) == pytest.approx(ACROSS["friction"], rel=2e-6)
+    assert abs(motion.floquet_multipliers[0]) == pytest.approx(MULTIPLIER, abs=2e-6)
 
 
 def test_without_friction_nothing_moves_across_the_line_of_action():
@@ -71,17 +67,17 @@ def _end(motion):
 
 def test_both_branches_of_the_hysteresis():
     low, high = _h1(0.88, ([1.5], [0.0])), _h1(0.88, ([2.2], [0.3]))
-    for motion, value, touches in ((low, 0.310423, False), (high, 0.667183, True)):
+    for motion, value, touches in ((low, LOW, False), (high, HIGH, True)):
         assert motion.converged
         assert motion.stable
         assert _rms(motion) == pytest.approx(value, rel=3e-6)
         assert bool(motion.fine.position.min() < 1.0) is touches
-        np.testing.assert_allclose(np.abs(motion.floquet_multipliers), 0.699773, rtol=1e-5)
+        np.testing.assert_allclose(
+            np.abs(motion.floquet_multipliers), BACKLASH_MULTIPLIER, rtol=1e-5
+        )
 
 
-@pytest.mark.parametrize(
-    ("first", "last", "value"), [(0.80, 0.88, 0.310423), (0.96, 0.88, 0.667183)]
-)
+@pytest.mark.parametrize(("first", "last", "value"), [(0.80, 0.88, LOW), (0.96, 0.88, HIGH)])
 def test_each_sweep_direction_keeps_its_branch(first, last, value):
     motion = _h1(first)
     for frequency in np.linspace(first, last, 9)[1:]:

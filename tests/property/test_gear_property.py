@@ -22,7 +22,7 @@ from tribodyn.gear import (
     spur_pair,
     tooth_outline,
 )
-from tribodyn.gear.involute import involute
+from tribodyn.gear.curves import involute
 
 FEW = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from tribodyn.ehl.formulas.dimensionless_groups import full_text
+
 __all__ = [
     "PACKAGE",
     "ROOT",
@@ -61,9 +63,15 @@ class Function:
         )
 
     @property
+    def shared(self) -> bool:
+        """Whether it is a film formula, whose arguments and their texts a decorator completes."""
+        return bool({"film_formula", "shared_arguments"} & set(self.decorators))
+
+    @property
     def docstring(self) -> str:
-        """Cleaned docstring, empty if there is none."""
-        return ast.get_docstring(self.node) or ""
+        """Cleaned docstring as a user reads it, empty if there is none."""
+        text = ast.get_docstring(self.node) or ""
+        return full_text(text) if self.shared and text else text
 
     @property
     def code_lines(self) -> int:
@@ -82,6 +90,8 @@ class Function:
     @property
     def parameters(self) -> list[str]:
         """Names of the parameters in order, without self and cls."""
+        if "film_formula" in self.decorators:
+            return list(parse_entries(self.docstring, "Parameters"))
         arguments = self.node.args
         named = [*arguments.posonlyargs, *arguments.args]
         if self.owner and "staticmethod" not in self.decorators:

@@ -11,7 +11,7 @@ from source_tree import Module, modules, parse_entries, read
 import tribodyn
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study import case as case_model
-from tribodyn.study.section import Section
+from tribodyn.study.case.section import Section
 
 CHECKS = [getattr(docstring_checks, name) for name in docstring_checks.__all__]
 

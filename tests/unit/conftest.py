@@ -1,7 +1,9 @@
-"""Results to draw: a real gear pair and mesh table with a motion whose harmonics are known."""
+"""Gears that several folders share, and results to draw: a motion whose harmonics are known."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,11 +11,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from known_pairs import pair_of
 from tribodyn.cases import load_case
 from tribodyn.dynamics import FineSamples, Response
+from tribodyn.gear import BasicRack, Material, SpurPair, spur_pair
 from tribodyn.mesh import MeshTable, build
-from tribodyn.study.case import Case
-from tribodyn.study.provenance import assumptions
+from tribodyn.study import Case
+from tribodyn.study.case.provenance import assumptions
 
 Array = NDArray[np.float64]
 
@@ -129,3 +133,33 @@ def drawable() -> Any:
 def amplitudes() -> tuple[float, ...]:
     """Peak amplitudes of the mesh harmonics of every signal of a drawable result."""
     return AMPLITUDES
+
+
+@pytest.fixture(scope="session")
+def steel() -> Material:
+    return Material()
+
+
+@pytest.fixture(scope="session")
+def fzg() -> Callable[..., SpurPair]:
+    """FZG type A with any change; its thin tip and undercut are known and not the matter here."""
+    return pair_of
+
+
+@pytest.fixture(scope="session")
+def high_contact_pair() -> SpurPair:
+    """A pair with a contact ratio between two and three."""
+    rack = BasicRack(
+        addendum_coefficient=1.4, dedendum_coefficient=1.65, tip_radius_coefficient=0.2
+    )
+    return spur_pair(
+        pinion_teeth=45,
+        wheel_teeth=60,
+        normal_module=3e-3,
+        normal_pressure_angle=math.radians(20.0),
+        pinion_face_width=30e-3,
+        pinion_bore_diameter=60e-3,
+        wheel_bore_diameter=60e-3,
+        pinion_rack=rack,
+        wheel_rack=rack,
+    )

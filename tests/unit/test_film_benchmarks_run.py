@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.ehl.plain_newton import solve_plain
+from plain.film_newton import solve_plain
 
 _FOLDER = Path(__file__).resolve().parents[2] / "benchmarks"
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from tribodyn.cases.catalogue import case_files
 from tribodyn.errors import InputError
-from tribodyn.study.case import Case
-from tribodyn.study.checks import DEFAULT_MARK
-from tribodyn.study.provenance import changed_keys
-from tribodyn.study.read import read_case, read_text
-from tribodyn.study.stated import same
-from tribodyn.study.values import Plain
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.checks import DEFAULT_MARK
+from tribodyn.study.case.provenance import changed_keys
+from tribodyn.study.case.read import read_case, read_text
+from tribodyn.study.case.stated import same
+from tribodyn.study.case.values import Plain
 
 
 def with_known_reasons(case: Case) -> Case:

@@ -11,7 +11,7 @@ from tribodyn.cases.catalogue import case_files
 from tribodyn.errors import InputError, Problem
 
 if TYPE_CHECKING:
-    from tribodyn.study.case import Case
+    from tribodyn.study.case.case import Case
 
 
 def load_case(name_or_path: str | os.PathLike[str]) -> Case:
@@ -38,7 +38,7 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     90.0
     """
     from tribodyn.cases.copies import with_known_reasons
-    from tribodyn.study.read import read_case, read_text
+    from tribodyn.study.case.read import read_case, read_text
 
     named = case_files()
     asked = os.fspath(name_or_path)

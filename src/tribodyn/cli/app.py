@@ -19,7 +19,7 @@ tribodyn --help shows all commands."""
 
 #: Command, place of its function, and one line of help.
 COMMANDS = (
-    ("cases", "tribodyn.cli.cases_command:cases", "List the built-in cases."),
+    ("cases", "tribodyn.cli.case_commands:cases", "List the built-in cases."),
     ("run", "tribodyn.cli.run_command:run", "Compute a case and write its report."),
     ("sweep", "tribodyn.cli.sweep_command:sweep", "Compute a case at many values of its keys."),
     (
@@ -27,11 +27,15 @@ COMMANDS = (
         "tribodyn.cli.bifurcation_command:bifurcation",
         "Follow the motion of a case over one value.",
     ),
-    ("check", "tribodyn.cli.check_command:check", "Check a case and show its geometry."),
-    ("new", "tribodyn.cli.new_command:new", "Write a commented case file to start from."),
-    ("explain", "tribodyn.cli.explain_command:explain", "Explain a symbol, key, model or warning."),
-    ("units", "tribodyn.cli.units_command:units", "List the units and their spellings."),
-    ("cite", "tribodyn.cli.cite_command:cite", "Print the papers behind a result."),
+    ("check", "tribodyn.cli.case_commands:check", "Check a case and show its geometry."),
+    ("new", "tribodyn.cli.case_commands:new", "Write a commented case file to start from."),
+    (
+        "explain",
+        "tribodyn.cli.explain_commands:explain",
+        "Explain a symbol, key, model or warning.",
+    ),
+    ("units", "tribodyn.cli.explain_commands:units", "List the units and their spellings."),
+    ("cite", "tribodyn.cli.explain_commands:cite", "Print the papers behind a result."),
 )
 
 

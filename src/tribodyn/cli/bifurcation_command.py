@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from tribodyn.cli.changes import changed_case
-from tribodyn.cli.ranges import RANGE, read_ranges
 from tribodyn.cli.screen import say, say_json, tell
+from tribodyn.cli.settings import RANGE, changed_case, read_ranges
 
 if TYPE_CHECKING:
     from tribodyn.nonlinear.bifurcation import Bifurcation
-    from tribodyn.study.bifurcation_findings import Findings
-    from tribodyn.study.case import Case
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.studies.bifurcation import Findings
 
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
@@ -67,7 +66,7 @@ def bifurcation(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.save import check_target
+    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
     key, (first, last, points) = _one(over)
@@ -76,9 +75,9 @@ def bifurcation(
     check_target(target, force, remedy=_REPLACE)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with progress_bar() as progress:
-        from tribodyn.study.axes import read_axes
-        from tribodyn.study.bifurcation_diagram import bifurcation as compute
-        from tribodyn.study.bifurcation_findings import Findings
+        from tribodyn.study.studies.axes import read_axes
+        from tribodyn.study.studies.bifurcation import Findings
+        from tribodyn.study.studies.bifurcation import bifurcation as compute
 
         read_axes(ready, {key: (first, last, points)}, by="bifurcation")
         found = compute(
@@ -130,7 +129,7 @@ def _check_lengths(cycles: int, transient: int) -> None:
 
 def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, force: bool) -> None:
     from tribodyn.report import write_bifurcation_report
-    from tribodyn.study.save import new_directory
+    from tribodyn.study.pipeline.save import new_directory
 
     head, rows = findings.rows()
     with new_directory(target, force=force) as place:

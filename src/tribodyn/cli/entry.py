@@ -5,17 +5,58 @@ Nothing heavy is imported up here, so that even an interruption of the first mom
 
 from __future__ import annotations
 
+import _thread
 import errno
 import os
 import re
+import signal
 import sys
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
-
-from tribodyn.cli.interrupt import interruptible
 
 if TYPE_CHECKING:
     from tribodyn.errors import Problem
+
+
+#: Time to get out of the callback before the interruption is repeated [s].
+_MOMENT = 0.05
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Repeat an interruption that was dropped inside the block.
+
+    Yields
+    ------
+    None
+    """
+    previous = sys.unraisablehook
+
+    def again(dropped: sys.UnraisableHookArgs) -> None:
+        if issubclass(dropped.exc_type, KeyboardInterrupt):
+            timer = threading.Timer(_MOMENT, _interrupt)
+            timer.daemon = True
+            timer.start()
+        else:
+            previous(dropped)
+
+    sys.unraisablehook = again
+    try:
+        yield
+    finally:
+        sys.unraisablehook = previous
+
+
+def _interrupt() -> None:
+    """Interrupt the main thread, also out of a system call."""
+    if hasattr(signal, "pthread_kill"):
+        main = threading.main_thread().ident
+        if main is not None:
+            signal.pthread_kill(main, signal.SIGINT)
+    else:
+        _thread.interrupt_main()
 
 
 #: Exit code of a command that was stopped by Ctrl-C.
@@ -137,7 +178,8 @@ def _failed(error: BaseException, as_json: bool) -> int:
     show_problems(problems)
     if as_json:
         told = [
-            {"what": p.what, "where": p.where, "why": p.why, "remedy": p.remedy} for p in problems
+            {"what": p.what, "where": str(p.where), "why": p.why, "remedy": p.remedy}
+            for p in problems
         ]
         say_json({"error": {"exit_code": code, "problems": told}})
     return code

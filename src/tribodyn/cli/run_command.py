@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.changes import changed_case
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.settings import changed_case
 
 if TYPE_CHECKING:
-    from tribodyn.study.result import Result
+    from tribodyn.study.pipeline.result import Result
 
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
@@ -44,7 +44,7 @@ def run(
     """
     from tribodyn.cli.bar import progress_bar
     from tribodyn.errors import ModelWarning
-    from tribodyn.study.save import check_target
+    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(Path(case).stem)
     ready = changed_case(case, set_ or [])
@@ -52,7 +52,7 @@ def run(
     with progress_bar() as progress, warnings.catch_warnings():
         # They are shown below, from the result.
         warnings.simplefilter("ignore", ModelWarning)
-        from tribodyn.study.pipeline import run as compute
+        from tribodyn.study.pipeline.run import run as compute
 
         result = compute(ready, progress)
         progress.start("writing the report")
@@ -67,7 +67,7 @@ def run(
 
 
 def _show(result: Result) -> None:
-    from tribodyn.study.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary import SUMMARY
 
     rows = [[n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in result.summary().items()]
     say(f"{result.case.title}\n{table(rows)}")

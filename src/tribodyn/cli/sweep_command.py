@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.changes import changed_case
-from tribodyn.cli.ranges import read_ranges
 from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.settings import changed_case, read_ranges
 
 if TYPE_CHECKING:
-    from tribodyn.study.sweep_result import Sweep
+    from tribodyn.study.studies.sweep_result import Sweep
 
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
@@ -60,14 +59,14 @@ def sweep(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.save import check_target
+    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
     ready = changed_case(case, set_ or [])
     check_target(target, force, remedy=_REPLACE)
     with progress_bar() as progress:
-        from tribodyn.study.parameter_sweep import sweep as compute
+        from tribodyn.study.studies.sweep import sweep as compute
 
         found = compute(ready, ranges, partial=True, by="sweep", progress=progress)
     if not found.complete:
@@ -90,7 +89,7 @@ def sweep(
 
 
 def _show(found: Sweep, as_json: bool) -> None:
-    from tribodyn.study.summary_names import SUMMARY
+    from tribodyn.study.pipeline.summary import SUMMARY
 
     if as_json:
         units = {axis.key: axis.unit for axis in found.axes}

@@ -1,9 +1,16 @@
-"""Where teeth touch and how they move there: path of contact, speeds, Hertz, loss factor."""
+"""Where teeth touch and how they move there: path of contact, speeds, Hertz, loss factor.
+
+| module | what it answers |
+| --- | --- |
+| `path` | where on the line of action tooth pairs are, and how their flanks move there |
+| `separation` | how far teeth are apart before and after the path of contact |
+| `hertz` | half width and pressure of a line contact |
+| `loss_factor` | sliding work over transmitted work at unit friction |
+"""
 
 from tribodyn.contact.hertz import HertzLine, effective_modulus, hertz_line
-from tribodyn.contact.kinematics import Kinematics
 from tribodyn.contact.loss_factor import equal_share, gear_loss_factor
-from tribodyn.contact.path import PathOfContact, path_of_contact
+from tribodyn.contact.path import Kinematics, PathOfContact, path_of_contact
 from tribodyn.contact.separation import ExtendedContact, extended_contact
 
 __all__ = [

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tribodyn.contact.path import PathOfContact, path_of_contact
-from tribodyn.errors import ComputationError, Problem
+from tribodyn.errors import Argument, ComputationError
 from tribodyn.gear import SpurPair
 from tribodyn.types import Array
 
@@ -103,11 +103,9 @@ def gear_loss_factor(pair: SpurPair, share: Callable[[Array], Array] | None = No
     values = equal_share(contact, path) if share is None else np.asarray(share(path), dtype=float)
     if not np.all(np.isfinite(values)):
         raise ComputationError(
-            Problem(
-                what="the load share is not finite on the path of contact",
-                where="argument share",
-                remedy="Return a finite share for every path between A and E",
-            )
+            "the load share is not finite on the path of contact",
+            where=Argument("share"),
+            remedy="Return a finite share for every path between A and E",
         )
     motion = contact.kinematics(path, 1.0)
     return float(weight @ (values * np.abs(motion.sliding_speed))) / pair.pinion.base_radius

@@ -15,10 +15,47 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.contact.kinematics import Kinematics
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.gear import SpurPair
 from tribodyn.types import Array, Mask
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Motion of the flanks at positions on the line of action; all arrays have one shape.
+
+    Parameters
+    ----------
+    pinion_curvature_radius : array
+        Radius of curvature of the pinion's flank [m].
+    wheel_curvature_radius : array
+        Radius of curvature of the wheel's flank [m].
+    equivalent_radius : array
+        Product over sum of the two radii [m].
+    pinion_surface_speed : array
+        Speed of the contact point along the pinion's flank, omega_pinion rho_pinion [m/s].
+    wheel_surface_speed : array
+        The same of the wheel, omega_wheel rho_wheel [m/s].
+    sliding_speed : array
+        Pinion less wheel surface speed [m/s]; exactly zero at the pitch point.
+    entrainment_speed : array
+        Half the sum of the surface speeds [m/s].
+    slide_to_roll_ratio : array
+        Sliding speed over entrainment speed.
+    sliding_direction : array
+        Sign of the sliding speed: -1, 0 or 1.
+    """
+
+    pinion_curvature_radius: Array
+    wheel_curvature_radius: Array
+    equivalent_radius: Array
+    pinion_surface_speed: Array
+    wheel_surface_speed: Array
+    sliding_speed: Array
+    entrainment_speed: Array
+    slide_to_roll_ratio: Array
+    sliding_direction: Array
+
 
 #: Distance over the base pitch, or difference of mesh phases, that counts as rounding.
 _ROUNDING = 1e-12
@@ -102,11 +139,11 @@ class PathOfContact:
         """
         ratio = self.contact_ratio
         pitch_point = self.direction * (self.C - self.A) / self.pair.base_pitch
-        found = [0.0, ratio % 1.0]
+        events = [0.0, ratio % 1.0]
         if 0.0 <= pitch_point < ratio:
-            found.append(pitch_point % 1.0)
+            events.append(pitch_point % 1.0)
         phases = [0.0]
-        for phase in sorted(found):
+        for phase in sorted(events):
             if phase - phases[-1] > _ROUNDING and 1.0 - phase > _ROUNDING:
                 phases.append(phase)
         return tuple(phases)
@@ -143,12 +180,10 @@ class PathOfContact:
             turned = turned - np.ceil(turned) + 1.0
         else:
             raise InputError(
-                Problem(
-                    what=f'side = "{side}"',
-                    where="argument side",
-                    why='an event has two sides: "left" and "right"',
-                    remedy='Write "left" or "right"',
-                )
+                f'side = "{side}"',
+                where=Argument("side"),
+                why='an event has two sides: "left" and "right"',
+                remedy='Write "left" or "right"',
             )
         travelled = turned[:, None] + np.arange(self.pairs)
         limit = self.contact_ratio + (_ROUNDING if side == "left" else -_ROUNDING)
@@ -180,12 +215,10 @@ class PathOfContact:
         sides = {None: 0.0, "left": -1.0, "right": 1.0}
         if side not in sides:
             raise InputError(
-                Problem(
-                    what=f'side = "{side}"',
-                    where="argument side",
-                    why='the pitch point has two sides: "left" and "right"',
-                    remedy='Write "left", "right" or leave it out',
-                )
+                f'side = "{side}"',
+                where=Argument("side"),
+                why='the pitch point has two sides: "left" and "right"',
+                remedy='Write "left", "right" or leave it out',
             )
         at_pitch_point = np.abs(offset) <= _ROUNDING * self.pair.base_pitch
         return np.where(at_pitch_point, self.direction * sides[side], np.sign(offset))

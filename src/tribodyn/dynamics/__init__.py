@@ -1,6 +1,7 @@
 """Lumped structures with time-varying contacts: steady states, transients, ensembles."""
 
 from tribodyn.dynamics.campbell import Campbell, Resonance, campbell
+from tribodyn.dynamics.engines import ENGINES, Engine
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
@@ -20,6 +21,7 @@ from tribodyn.dynamics.run_up_profile import SpeedProfile, speed_ramp
 from tribodyn.dynamics.run_up_result import RunUp
 from tribodyn.dynamics.shafts import Body, GearMesh, assemble, shaft_chain, torsional_stiffness
 from tribodyn.dynamics.spur6 import SPUR6_NAMES, spur6
+from tribodyn.dynamics.structures import STRUCTURES, Gearing, Structure
 from tribodyn.dynamics.time.adaptive_solution import AdaptiveSolution, solve_adaptive
 from tribodyn.dynamics.time.energy import EnergyAudit, energy_audit
 from tribodyn.dynamics.time.ensemble import Ensemble, LaneStatistics, simulate_ensemble
@@ -28,10 +30,12 @@ from tribodyn.dynamics.time.simulate import simulate
 from tribodyn.dynamics.torsional import TORSIONAL_NAMES, torsional
 
 __all__ = [
+    "ENGINES",
     "FZG12_LIGHT",
     "FZG12_MESH_FREQUENCY",
     "FZG12_NAMES",
     "SPUR6_NAMES",
+    "STRUCTURES",
     "TORSIONAL_NAMES",
     "AdaptiveSolution",
     "Body",
@@ -39,11 +43,13 @@ __all__ = [
     "Campbell",
     "Contact",
     "EnergyAudit",
+    "Engine",
     "Ensemble",
     "Entry",
     "FineSamples",
     "ForcedResponse",
     "GearMesh",
+    "Gearing",
     "Jump",
     "LaneParameters",
     "LaneStatistics",
@@ -56,6 +62,7 @@ __all__ = [
     "SpecialPoint",
     "SpeedProfile",
     "SpeedSweep",
+    "Structure",
     "System",
     "assemble",
     "campbell",

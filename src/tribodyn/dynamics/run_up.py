@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -20,7 +19,13 @@ from tribodyn.dynamics.run_up_samples import Samples
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import LaneStatistics
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, require_positive
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+    Problem,
+    quiet,
+    require_positive,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -217,9 +222,8 @@ def _begin(
     system = marcher.systems[left + round(part)]
     if start is not None:
         return read_start(system, start)
-    with warnings.catch_warnings():
+    with quiet():
         # A motion that does not repeat is as good a beginning as any other.
-        warnings.simplefilter("ignore", ModelWarning)
         orbit = steady_state(system, beat, steps=marcher.tables.steps_at(beat))
     if orbit.converged and marcher.balance is not None:
         marcher.hold(orbit.extra_force)

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from tribodyn.ehl.batch import LineContactBatch, solve_line_contacts
-from tribodyn.ehl.dowson import dowson_1968_minimum
-from tribodyn.ehl.dowson_toyoda import dowson_toyoda_central
-from tribodyn.ehl.film_state import FilmState
-from tribodyn.ehl.flash_temperature import blok_flash_temperature
-from tribodyn.ehl.groups import Groups, line_contact_groups
-from tribodyn.ehl.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.line_contact import solve_line_contact, solve_line_contact_moes
+from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
+from tribodyn.ehl.formulas.moes import moes_central, moes_dimensionless_central
+from tribodyn.ehl.formulas.power_laws import (
+    dowson_1968_minimum,
+    dowson_toyoda_central,
+    pan_hamrock_central,
+    pan_hamrock_minimum,
+)
 from tribodyn.ehl.models import FILM_MODELS, FilmModel
-from tribodyn.ehl.moes import moes_central, moes_dimensionless_central
-from tribodyn.ehl.newtonian import newtonian_shear_stress
-from tribodyn.ehl.pan_hamrock import pan_hamrock_central, pan_hamrock_minimum
-from tribodyn.ehl.ree_eyring import ree_eyring_shear_stress
 from tribodyn.ehl.roughness import RoughnessProfile
-from tribodyn.ehl.shear_models import SHEAR_MODELS
-from tribodyn.ehl.solution import LineContactSolution
-from tribodyn.ehl.traction import Traction, film_traction
-from tribodyn.ehl.transient import solve_transient_line_contact
-from tribodyn.ehl.transient_result import TransientLineContact
+from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
+from tribodyn.ehl.steady.line_contact import solve_line_contact, solve_line_contact_moes
+from tribodyn.ehl.steady.solution import LineContactSolution
+from tribodyn.ehl.traction.film_state import FilmState
+from tribodyn.ehl.traction.film_temperature import blok_flash_temperature
+from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
+from tribodyn.ehl.traction.newtonian import newtonian_shear_stress
+from tribodyn.ehl.traction.ree_eyring import ree_eyring_shear_stress
+from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.traction import Traction, film_traction
+from tribodyn.ehl.transient.transient import solve_transient_line_contact
+from tribodyn.ehl.transient.transient_result import TransientLineContact
 
 __all__ = [
     "FILM_MODELS",

@@ -2,42 +2,73 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.dowson import dowson_1968_minimum
-from tribodyn.ehl.dowson_toyoda import dowson_toyoda_central
-from tribodyn.ehl.load_exponent import moes_load_exponent
-from tribodyn.ehl.moes import moes_central
-from tribodyn.ehl.pan_hamrock import pan_hamrock_central, pan_hamrock_minimum
-from tribodyn.ehl.solved_films import Films, solved_films
+from tribodyn.ehl.formulas.moes import moes_central, moes_load_exponent
+from tribodyn.ehl.formulas.power_laws import (
+    dowson_1968_minimum,
+    dowson_toyoda_central,
+    pan_hamrock_central,
+    pan_hamrock_minimum,
+)
+from tribodyn.ehl.steady.solved_films import Films, solved_films
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.lubricant import Lubricant
+from tribodyn.model import Model, Registry, choice, integer, numbers
 from tribodyn.progress import SILENT, Progress
-from tribodyn.registry import Registry
 from tribodyn.types import Array
 
 #: Film [m] from load per width, equivalent radius, entrainment speed, dynamic viscosity,
 #: pressure-viscosity coefficient and effective modulus, in this order and in SI.
 FilmFormula = Callable[..., Array]
 
-#: Options of the solved films with their defaults.
-_SOLVED: Mapping[str, Any] = {
-    "stiffness": "none",
-    "nodes": 513,
-    "positions": 30,
-    "inlet": "flooded",
-    "domain": None,
+#: What the stiffnesses of a film are.
+_KINDS = {
+    "none": "the film is rigid",
+    "tangent": "film stiffness as the slope of the load over the central film; of the mesh force, "
+    "linear about the load",
+    "secant": "film stiffness as the sum of all nodal forces over their films",
+    "seed": "film stiffness as one source prints it, a length that doubles with every grid: shown, "
+    "not in series",
 }
+_STIFFNESS = choice(
+    "none",
+    _KINDS,
+    meaning="stiffness of the oil film; tangent and secant are in series with the teeth",
+)
+#: Options of the solved films.
+_SOLVED: Mapping[str, Any] = {
+    "stiffness": _STIFFNESS,
+    "nodes": integer(
+        513, 65, 16385, "a power of two plus one", example="513",
+        meaning="nodes of each solved contact",
+    ),
+    "positions": integer(
+        30, 8, 200, "fewer miss how the film changes, more only cost time", example="30",
+        meaning="positions on the path of contact at which the film is solved",
+    ),
+    "inlet": choice(
+        "flooded",
+        {
+            "flooded": "the inlet of the contact is full of oil",
+            "zero": "the oil begins where the domain does: a starved contact",
+        },
+        meaning="oil supply: plenty, or none before the domain begins",
+    ),
+    "domain": numbers(
+        -100.0, 10.0, "a contact is wetted over 1.5 to 20 half widths", example="-2.5, 1.5",
+        meaning="first and last position of each solved contact in Hertzian half widths",
+    ),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
-class FilmModel:
+class FilmModel(Model):
     """A film model: the formulas that it has, or the engine that solves the contact.
 
     Parameters
@@ -55,6 +86,13 @@ class FilmModel:
         arguments of the formula.
     method : str
         Engine of :func:`tribodyn.ehl.solve_line_contacts`; empty for formulas.
+    options : mapping of str to Option or default
+        Options of a formula beyond ``stiffness``, passed to it by name; afterwards the defaults of
+        all options of the model.
+    meaning : str
+        One line for whoever chooses a model.
+    papers : tuple of str
+        Keys of the bibliography of the package.
 
     Examples
     --------
@@ -70,11 +108,13 @@ class FilmModel:
     minimum: FilmFormula | None = None
     load_exponent: float | FilmFormula | None = None
     method: str = ""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    meaning: str = ""
+    papers: tuple[str, ...] = ()
 
-    @property
-    def options(self) -> Mapping[str, Any]:
-        """Options that the model knows, with their defaults."""
-        return dict(_SOLVED) if self.method else {"stiffness": "none"}
+    def __post_init__(self) -> None:
+        """Keep options and defaults apart."""
+        self.declare({**(_SOLVED if self.method else {"stiffness": _STIFFNESS}), **self.options})
 
     @property
     def stiffness_kinds(self) -> tuple[str, ...]:
@@ -122,12 +162,11 @@ class FilmModel:
         return {**self.options, **given}
 
     def _unknown(self, name: str) -> Problem:
-        near = difflib.get_close_matches(name, self.options, n=1)
         return Problem(
             what=f'there is no option "{name}"',
             where=f'film model "{self.name}"',
             why=f"Its options are: {', '.join(self.options)}",
-            remedy=f'Did you mean "{near[0]}"?' if near else "Remove it",
+            remedy=self.nearest(name) or "Remove it",
         )
 
     def films(
@@ -203,10 +242,11 @@ class FilmModel:
             lubricant.pressure_viscosity_coefficient,
             effective_modulus,
         )
-        central = None if self.central is None else self.central(*arguments)
-        minimum = None if self.minimum is None else self.minimum(*arguments)
+        own = {name: value for name, value in chosen.items() if name != "stiffness"}
+        central = None if self.central is None else self.central(*arguments, **own)
+        minimum = None if self.minimum is None else self.minimum(*arguments, **own)
         exponent = self.load_exponent
-        slope = exponent(*arguments) if callable(exponent) else exponent
+        slope = exponent(*arguments, **own) if callable(exponent) else exponent
         stiffness = None
         if central is not None and slope is not None:
             stiffness = -length * np.asarray(load_per_width) / (slope * central)
@@ -214,7 +254,7 @@ class FilmModel:
 
 
 #: The film models by name; ``none`` computes no film.
-FILM_MODELS: Registry[FilmModel] = Registry("film model", "tribodyn.film")
+FILM_MODELS: Registry[FilmModel] = Registry("film model", "tribodyn.film", FilmModel, "central")
 
 for _model in (
     FilmModel("none", "no film is computed"),
@@ -222,11 +262,17 @@ for _model in (
         "newton",
         "solved line contact: multilevel Newton-Krylov",
         method="newton",
+        meaning="oil film of solved line contacts: Reynolds equation with elastic "
+        "flanks, multilevel Newton-Krylov",
+        papers=("dowson-higginson-book", "roelands", "saad-schultz"),
     ),
     FilmModel(
         "multigrid",
         "solved line contact: full multigrid after Venner and Lubrecht",
         method="multigrid",
+        meaning="oil film of solved line contacts: Reynolds equation with elastic "
+        "flanks, full multigrid",
+        papers=("dowson-higginson-book", "roelands", "venner-lubrecht"),
     ),
     FilmModel(
         "dowson-higginson",
@@ -234,6 +280,8 @@ for _model in (
         central=dowson_toyoda_central,
         minimum=dowson_1968_minimum,
         load_exponent=-0.10,
+        meaning="minimum and central oil film of line contacts after Dowson, Higginson and Toyoda",
+        papers=("dowson", "dowson-toyoda"),
     ),
     FilmModel(
         "pan-hamrock",
@@ -241,12 +289,16 @@ for _model in (
         central=pan_hamrock_central,
         minimum=pan_hamrock_minimum,
         load_exponent=-0.166,
+        meaning="minimum and central oil film of line contacts after Pan and Hamrock",
+        papers=("pan-hamrock",),
     ),
     FilmModel(
         "moes",
         "central film: Moes (1965, 2000)",
         central=moes_central,
         load_exponent=moes_load_exponent,
+        meaning="central oil film of line contacts over all regimes after Moes",
+        papers=("moes",),
     ),
 ):
     FILM_MODELS.register(_model.name)(_model)

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, Problem, require_one_of, require_positive, warn
 from tribodyn.types import Array
 
 #: What lies beyond the ends of a profile.
@@ -58,14 +58,7 @@ class RoughnessProfile:
         height = np.array(self.height, dtype=float).reshape(-1)
         object.__setattr__(self, "position", position)
         object.__setattr__(self, "height", height)
-        if self.beyond not in BEYOND:
-            raise InputError(
-                Problem(
-                    what=f'beyond = "{self.beyond}"',
-                    where="argument beyond",
-                    why=f"Known: {', '.join(BEYOND)}",
-                )
-            )
+        require_one_of("beyond", self.beyond, BEYOND)
         if height.size < 8 or position.size != height.size:
             raise InputError(
                 Problem(
@@ -280,3 +273,22 @@ class RoughnessProfile:
                     '"periodic" or "level"',
                 )
             )
+
+
+#: Grid points that a wavelength needs, and the share of the mean square that may lie below.
+_POINTS, _SHARE = 16, 0.02
+
+
+def warn_if_unresolved(profile: RoughnessProfile, spacing: float, stacklevel: int = 2) -> None:
+    """Warn where a grid does not resolve the waves of a profile."""
+    shortest = _POINTS * spacing
+    share = profile.short_wave_share(shortest)
+    if share > _SHARE:
+        warn(
+            "roughness-resolution",
+            f"{share:.1%} of the mean square roughness lies in waves shorter than "
+            f"{shortest * 1e6:.3g} um, which have fewer than {_POINTS} nodes a wavelength at a "
+            f"spacing of {spacing * 1e6:.3g} um. Take more nodes, or profile.filtered("
+            f"{shortest:.2g})",
+            stacklevel=stacklevel + 1,
+        )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -11,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-from tribodyn.registry import Registry
+from tribodyn.model import Model, Registry
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.ehl.film_state import FilmState
+    from tribodyn.ehl.traction.film_state import FilmState
 
 
 _POSITIVE = (
@@ -135,7 +134,7 @@ class TribologicalContact:
 
 
 @dataclass(frozen=True)
-class FrictionLaw:
+class FrictionLaw(Model):
     """A friction law: called with contacts and options, gives friction coefficients.
 
     Parameters
@@ -146,10 +145,17 @@ class FrictionLaw:
         Paper behind the law.
     function : callable
         ``function(contact, **options)``.
-    options : mapping of str to default
-        Options that the law knows; ``None`` where the user must give a value.
+    options : mapping of str to Option or default
+        Options that the law knows; afterwards their defaults, ``None`` where the user must give a
+        value. What else is known of them stands in ``declared``.
     needs_film : bool
         Whether the contacts must have their solved ``film``.
+    needs_oil : bool
+        Whether it asks for viscosity or roughness; a case then needs both.
+    meaning : str
+        One line for whoever chooses a law.
+    papers : tuple of str
+        Keys of the bibliography of the package.
 
     Examples
     --------
@@ -162,6 +168,13 @@ class FrictionLaw:
     function: Callable[..., Array] = field(repr=False)
     options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     needs_film: bool = False
+    needs_oil: bool = True
+    meaning: str = ""
+    papers: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Keep options and defaults apart."""
+        self.declare(self.options)
 
     def __call__(self, contact: TribologicalContact, **options: Any) -> Array:
         """Friction coefficient of every contact, never negative.
@@ -224,14 +237,13 @@ class FrictionLaw:
 
     def _unknown(self, name: str) -> Problem:
         """Say that an option is unknown, naming the nearest."""
-        near = difflib.get_close_matches(name, self.options, n=1)
         return Problem(
             what=f'unknown option "{name}"',
             where=f'friction law "{self.name}"',
             why=f"Its options: {', '.join(self.options) or 'none'}",
-            remedy=f'Did you mean "{near[0]}"?' if near else "",
+            remedy=self.nearest(name),
         )
 
 
 #: The friction laws by name, open to third parties through the entry points of this group.
-LAWS: Registry[FrictionLaw] = Registry("friction law", "tribodyn.friction")
+LAWS: Registry[FrictionLaw] = Registry("friction law", "tribodyn.friction", FrictionLaw)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
-from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
-from tribodyn.registry import Registry
+from tribodyn.friction.base import LAWS, TribologicalContact
+from tribodyn.model import Registry, choice, number
 from tribodyn.types import Array
 
 #: Floor of the sliding speed [m/s]. The formula grows without bound as sliding stops, though only
@@ -168,6 +166,39 @@ def _warn_of_slow(coefficient: Array, rough: Array, entrainment_speed: ArrayLike
         )
 
 
+_OPTIONS = {
+    "variant": choice(
+        "benedict-kelly",
+        {
+            "benedict-kelly": "friction coefficient of the mixed film, fitted to disc tests: falls "
+            "with the logarithm of the speeds",
+            "he-singh": "variant of the Benedict-Kelly law with the factor 0.0137 in place of "
+            "0.0127",
+        },
+        meaning="published form of the Benedict-Kelly law",
+    ),
+    "rolling_speed": choice(
+        "mean", ("mean", "sum"), meaning="rolling speed of the Benedict-Kelly law: half sum or sum"
+    ),
+    "minimum_sliding_speed": number(
+        MINIMUM_SLIDING_SPEED,
+        1e-9,
+        10.0,
+        "guards against a wrong unit",
+        of="sliding_speed",
+        meaning="floor that keeps the law finite",
+        example='"0.001 m/s"',
+    ),
+}
+
+
+@LAWS.define(
+    "benedict-kelly",
+    source="Benedict and Kelly, ASLE Trans. 4 (1961)",
+    options=_OPTIONS,
+    meaning=_OPTIONS["variant"].meanings["benedict-kelly"],
+    papers=("benedict-kelley",),
+)
 def _law(
     contact: TribologicalContact, *, variant: str, rolling_speed: str, minimum_sliding_speed: float
 ) -> Array:
@@ -181,19 +212,3 @@ def _law(
         rolling_speed=rolling_speed,
         minimum_sliding_speed=minimum_sliding_speed,
     )
-
-
-LAWS.register("benedict-kelly")(
-    FrictionLaw(
-        "benedict-kelly",
-        "Benedict and Kelly, ASLE Trans. 4 (1961)",
-        _law,
-        MappingProxyType(
-            {
-                "variant": "benedict-kelly",
-                "rolling_speed": "mean",
-                "minimum_sliding_speed": MINIMUM_SLIDING_SPEED,
-            }
-        ),
-    )
-)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
-
 import numpy as np
 
 from tribodyn.errors import require_between
-from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.friction.base import LAWS, TribologicalContact
+from tribodyn.model import REQUIRED, number
 from tribodyn.types import Array
 
 
@@ -43,10 +42,17 @@ def constant(coefficient: float, shape: tuple[int, ...] = ()) -> Array:
     return np.full(shape, float(coefficient))[()]
 
 
+_COEFFICIENT = number(
+    REQUIRED, 0.0, 1.0, "lubricated steel lies below 0.2", of="friction_coefficient"
+)
+
+
+@LAWS.define(
+    "constant",
+    source="Coulomb (1781)",
+    options={"coefficient": _COEFFICIENT},
+    needs_oil=False,
+    meaning="one friction coefficient everywhere",
+)
 def _law(contact: TribologicalContact, *, coefficient: float) -> Array:
     return constant(coefficient, np.shape(contact.load_per_width))
-
-
-LAWS.register("constant")(
-    FrictionLaw("constant", "Coulomb (1781)", _law, MappingProxyType({"coefficient": None}))
-)

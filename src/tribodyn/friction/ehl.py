@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
-
 import numpy as np
 
-from tribodyn.ehl.film_state import FilmState
-from tribodyn.ehl.film_temperature import film_temperature_rise, film_thermal_resistance
-from tribodyn.ehl.heated_viscosity import thermal_oil
-from tribodyn.ehl.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.ree_eyring import EYRING_STRESS
-from tribodyn.ehl.shear_models import SHEAR_MODELS
-from tribodyn.ehl.traction import FilmShear
+from tribodyn.ehl.traction.film_state import FilmState
+from tribodyn.ehl.traction.film_temperature import (
+    film_temperature_rise,
+    film_thermal_resistance,
+    thermal_oil,
+)
+from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
+from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
+from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.traction import FilmShear
 from tribodyn.errors import InputError, Problem, require_positive, warn
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.model import choice, flag, number
 from tribodyn.types import Array
 
 _GREATEST = 0.2  # friction coefficient that lubricated steel hardly exceeds
@@ -163,20 +165,31 @@ def _warn_of_solid(coefficient: Array, shear_model: str) -> None:
         )
 
 
+_OPTIONS = {
+    "shear_model": choice(
+        "ree-eyring",
+        SHEAR_MODELS.names,
+        meanings={name: SHEAR_MODELS[name].meaning for name in SHEAR_MODELS},
+        meaning="how the oil film shears under the solved pressure",
+    ),
+    "eyring_stress": number(
+        EYRING_STRESS, 1e5, 1e8, "oils lie between 2 and 10 MPa", of="eyring_stress"
+    ),
+    "inlet_heating": flag(False, meaning="thin the film by the heat that shear makes in the inlet"),
+    "flash_temperature": flag(
+        False, meaning="take the viscosity at the mean temperature of the film"
+    ),
+    "rolling": flag(False, meaning="add the rolling traction to the sliding one"),
+}
+
 LAWS.register("ehl")(
     FrictionLaw(
         "ehl",
         "Johnson and Tevaarwerk, Proc. R. Soc. A 356 (1977); Conry, Wang and Cusano (1987)",
         ehl,
-        MappingProxyType(
-            {
-                "shear_model": "ree-eyring",
-                "eyring_stress": EYRING_STRESS,
-                "inlet_heating": False,
-                "flash_temperature": False,
-                "rolling": False,
-            }
-        ),
+        _OPTIONS,
         needs_film=True,
+        meaning="friction of the solved oil film: its shear stress summed over the contact",
+        papers=("johnson-tevaarwerk", "conry-wang-cusano"),
     )
 )

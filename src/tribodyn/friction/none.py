@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.types import Array
 
 
@@ -31,8 +31,6 @@ def none(shape: tuple[int, ...] = ()) -> Array:
     return np.zeros(shape)[()]
 
 
+@LAWS.define("none", source="no friction", needs_oil=False)
 def _law(contact: TribologicalContact) -> Array:
     return none(np.shape(contact.load_per_width))
-
-
-LAWS.register("none")(FrictionLaw("none", "no friction", _law))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, Problem, require_between, require_positive
-from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.types import Array
 
@@ -142,6 +142,12 @@ def _require_plausible(coefficient: Array, roughness: float) -> None:
     )
 
 
+@LAWS.define(
+    "xu-2007",
+    source=_SOURCE,
+    meaning="regression of the friction coefficient to computed elastohydrodynamic contacts",
+    papers=("xu",),
+)
 def _law(contact: TribologicalContact) -> Array:
     return xu_2007(
         contact.slide_to_roll_ratio,
@@ -151,6 +157,3 @@ def _law(contact: TribologicalContact) -> Array:
         contact.entrainment_speed,
         contact.equivalent_radius,
     )
-
-
-LAWS.register("xu-2007")(FrictionLaw("xu-2007", _SOURCE, _law))

@@ -152,6 +152,6 @@ def run_out_gap(pair: SpurPair, pinion_rotation: ArrayLike) -> Array:
     gap = np.zeros(turned.shape)
     for gear in (pair.pinion, pair.wheel):
         given = gear.modification
-        own = turned * (pair.pinion.teeth / gear.teeth) - given.run_out_phase
-        gap = gap - 0.5 * given.run_out * np.cos(own)
+        angle = turned * (pair.pinion.teeth / gear.teeth) - given.run_out_phase
+        gap = gap - 0.5 * given.run_out * np.cos(angle)
     return gap

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.gear.flank_range import FlankRange, default_relief_length, flank_ranges
+from tribodyn.gear.mesh_geometry import FlankRange, default_relief_length, flank_ranges
 from tribodyn.gear.modification import FlankModification
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.spur_pair import SpurPair

@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from tribodyn.errors import InputError
-from tribodyn.gear.modification_checks import modification_value_problems
-from tribodyn.gear.modification_map import ProfileMap
+from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.gear.profile_map import LARGEST_AMOUNT, ProfileMap
 
-_LISTS = ("single_pitch_deviation", "cumulative_pitch_deviation", "wear_depth")
+#: How a relief may fall to zero.
+SHAPES = ("linear", "parabolic")
+#: Run-out beyond which a unit is wrong [m].
+LARGEST_RUN_OUT = 1e-3
+
+#: Sum of the single pitch deviations round a gear that is rounding of their figures [m].
+_CLOSURE = 1e-6
+_PITCHES = ("single_pitch_deviation", "cumulative_pitch_deviation")
+#: Limits of the amounts: material that is taken away, and what may be missing or in excess [m].
+_LIMITS = {
+    **dict.fromkeys(("tip_relief", "root_relief", "wear_depth"), (0.0, LARGEST_AMOUNT)),
+    **dict.fromkeys(
+        ("profile_crowning", "profile_slope", "crowning", "lead_slope", *_PITCHES),
+        (-LARGEST_AMOUNT, LARGEST_AMOUNT),
+    ),
+    "run_out": (0.0, LARGEST_RUN_OUT),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,13 +110,22 @@ class FlankModification:
     profile_map: ProfileMap | None = None
 
     def __post_init__(self) -> None:
-        for name in _LISTS:
+        for name in (*_PITCHES, "wear_depth"):
             value = getattr(self, name)
             if not isinstance(value, (str, float, int)):
                 object.__setattr__(self, name, _numbers(value))
         if self.wear_depth == ():
             object.__setattr__(self, "wear_depth", 0.0)
-        problems = modification_value_problems(self)
+        problems = [
+            problem
+            for name, limits in _LIMITS.items()
+            for problem in amount_problems(name, getattr(self, name), *limits)
+        ]
+        if not math.isfinite(self.run_out_phase):
+            what, why = f"run_out_phase = {self.run_out_phase}", "An angle is finite"
+            problems.append(Problem(what, Argument("run_out_phase"), why, "Give it in radians"))
+        problems += self._relief_problems("tip_relief") + self._relief_problems("root_relief")
+        problems = problems or self._pitch_problems()
         if problems:
             raise InputError(problems)
 
@@ -128,11 +153,72 @@ class FlankModification:
         shape = self.changes_profile or self.changes_lead
         return shape or self.changes_pitch or self.run_out != 0.0
 
+    def tooth_problems(self, teeth: int) -> list[Problem]:
+        """Find lists that do not belong to a gear of this number of teeth.
+
+        Parameters
+        ----------
+        teeth : int
+            Number of teeth.
+
+        Returns
+        -------
+        list of Problem
+        """
+        return [
+            Problem(
+                what=f"{name} has {len(getattr(self, name))} entries",
+                where=Argument(f"modification.{name}"),
+                why=f"The gear has {teeth} teeth, and each tooth has its own",
+                remedy=f"Give {teeth} values",
+            )
+            for name in _PITCHES
+            if getattr(self, name) and len(getattr(self, name)) != teeth
+        ]
+
+    def _relief_problems(self, name: str) -> list[Problem]:
+        problems = []
+        length, shape = getattr(self, f"{name}_length"), getattr(self, f"{name}_shape")
+        if length is not None and not (math.isfinite(length) and length > 0.0):
+            what, where = f"{name}_length = {length * 1e3:.6g} mm", Argument(f"{name}_length")
+            why = "A length is finite and greater than zero"
+            problems.append(Problem(what, where, why, f"Set {name} to zero for no relief"))
+        if shape not in SHAPES:
+            what, where = f'{name}_shape = "{shape}"', Argument(f"{name}_shape")
+            why = f"Allowed: {', '.join(SHAPES)}"
+            problems.append(Problem(what, where, why, "Choose one of these"))
+        return problems
+
+    def _pitch_problems(self) -> list[Problem]:
+        single, where = self.single_pitch_deviation, Argument("single_pitch_deviation")
+        if single and self.cumulative_pitch_deviation:
+            what = "single_pitch_deviation and cumulative_pitch_deviation are both given"
+            why, remedy = "They are two ways of saying the same thing", "Keep one of them"
+        elif abs(sum(single)) > _CLOSURE:
+            what = f"the single pitch deviations sum to {sum(single) * 1e6:.6g} um"
+            why = "Round the gear all pitches together make one turn, so that they sum to zero"
+            remedy = "Subtract their mean, or give cumulative_pitch_deviation"
+        else:
+            return []
+        return [Problem(what, where, why, remedy)]
+
     def __repr__(self) -> str:
         """What was given, with units."""
         given = [(field.name, getattr(self, field.name)) for field in fields(self)
                  if getattr(self, field.name) != field.default]  # fmt: skip
         return f"FlankModification({', '.join(_shown(name, value) for name, value in given)})"
+
+
+def amount_problems(name: str, value: object, low: float, high: float) -> list[Problem]:
+    """One problem for the first value that is no number between the limits."""
+    for item in value if isinstance(value, tuple) else (value,):
+        number = isinstance(item, (int, float))
+        if number and math.isfinite(item) and low <= item <= high:
+            continue
+        shown = f"{item * 1e6:.6g} um" if number else repr(item)
+        why = f"{name} must be finite and from {low * 1e6:g} to {high * 1e6:g} um"
+        return [Problem(f"{name} = {shown}", Argument(name), why, "Check value and unit")]
+    return []
 
 
 def _numbers(values: Sequence[float]) -> tuple[Any, ...]:

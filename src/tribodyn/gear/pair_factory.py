@@ -3,23 +3,77 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields, replace
+from typing import Any, NamedTuple
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
-from tribodyn.gear.drawing import GearDrawing
-from tribodyn.gear.gear_checks import shape_problems
-from tribodyn.gear.mesh_geometry import MeshGeometry
+from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
+from tribodyn.gear.mesh_geometry import (
+    MeshGeometry,
+    tip_shortening_coefficient,
+    zero_backlash_center_distance,
+)
 from tribodyn.gear.modification import FlankModification
-from tribodyn.gear.modification_checks import misalignment_problems
-from tribodyn.gear.pair_checks import (
+from tribodyn.gear.rack import BasicRack
+from tribodyn.gear.spur_gear import GearData, SpurGear, shape_problems
+from tribodyn.gear.spur_pair import (
     ROUNDING_WARNING,
+    SpurPair,
     fitting_center_distance,
     match_problems,
     mesh_problems,
+    misalignment_problems,
 )
-from tribodyn.gear.pair_geometry import tip_shortening_coefficient, zero_backlash_center_distance
-from tribodyn.gear.rack import BasicRack
-from tribodyn.gear.spur_pair import SpurPair
+
+#: Stands in for a tip diameter that is not known yet; any positive value will do.
+_UNKNOWN_TIP = 1.0
+#: Arguments that both gears have in common.
+_SHARED = ("normal_module", "normal_pressure_angle")
+
+
+class _Drawing(NamedTuple):
+    """Figures of one gear as they were given, before the missing ones are found."""
+
+    name: str  #: ``"pinion"`` or ``"wheel"``
+    figures: dict[str, Any]  #: fields of :class:`GearData`; ``None`` is what was not given
+
+    def data(self, tip_diameter: float = _UNKNOWN_TIP, tooth_thinning: float = 0.0) -> GearData:
+        """Gear with the figures that were given, and these for what was not."""
+        missing = {
+            name: value
+            for name, value in (("tip_diameter", tip_diameter), ("tooth_thinning", tooth_thinning))
+            if self.figures[name] is None
+        }
+        return GearData(**{**self.figures, **missing})
+
+    def named(self, problems: Iterable[Problem]) -> list[Problem]:
+        """Name the gear in the arguments of problems."""
+        return [
+            replace(problem, where=replace(place, gear=self.name))
+            if isinstance(place := problem.where, Argument) and place.name not in _SHARED
+            else problem
+            for problem in problems
+        ]
+
+    def problems(self) -> list[Problem]:
+        """Find the given values that are out of range."""
+        return self.named(_problems_of(self.data))
+
+
+@dataclass(frozen=True)
+class _Mesh(MeshGeometry):
+    """Both gears completed, not yet checked as gears that can be made."""
+
+    pinion: GearData
+    wheel: GearData
+
+
+def _problems_of(build: Callable[[], object]) -> tuple[Problem, ...]:
+    try:
+        build()
+    except InputError as error:
+        return error.problems
+    return ()
 
 
 def _raise_if_any(problems: Iterable[Problem]) -> None:
@@ -28,40 +82,71 @@ def _raise_if_any(problems: Iterable[Problem]) -> None:
         raise InputError(distinct)
 
 
-def _play_problems(
-    drawings: tuple[GearDrawing, GearDrawing], backlash: float | None
-) -> list[Problem]:
-    """The play may be asked for as such or through the thinning, not both."""
-    if backlash is None:
-        return []
-    try:
-        require_between("backlash", backlash, 0.0, 1.0, "m")
-    except InputError as error:
-        return list(error.problems)
-    return [
-        Problem(
-            what=f"backlash = {backlash * 1e3:.6g} mm and {drawing.name}_tooth_thinning = "
-            f"{drawing.tooth_thinning * 1e3:.6g} mm",
-            where="argument backlash",
-            why="Both set the play between the flanks",
-            remedy="Give one of them",
+class _Layout(NamedTuple):
+    """Two drawings and how they stand to each other."""
+
+    drawings: tuple[_Drawing, _Drawing]
+    center_distance: float | None
+    backlash: float | None
+
+    def problems(self) -> list[Problem]:
+        """Find the values that are out of range, or that say the same twice."""
+        problems = [problem for drawing in self.drawings for problem in drawing.problems()]
+        problems += self._play_problems()
+        if self.center_distance is not None:
+            problems += _problems_of(
+                lambda: require_positive("center_distance", self.center_distance, "m")
+            )
+        return problems
+
+    def _play_problems(self) -> list[Problem]:
+        """The play may be asked for as such or through the thinning, not both."""
+        if self.backlash is None:
+            return []
+        wrong = _problems_of(lambda: require_between("backlash", self.backlash, 0.0, 1.0, "m"))
+        return list(wrong) or [
+            Problem(
+                what=f"backlash = {self.backlash * 1e3:.6g} mm and {name}_tooth_thinning = "
+                f"{figures['tooth_thinning'] * 1e3:.6g} mm",
+                where=Argument("backlash"),
+                why="Both set the play between the flanks",
+                remedy="Give one of them",
+            )
+            for name, figures in self.drawings
+            if figures["tooth_thinning"] is not None
+        ]
+
+    def mesh(self) -> _Mesh:
+        """Complete the two gears: centre distance, then tips, then thinning."""
+        gears = [drawing.data() for drawing in self.drawings]
+        teeth = sum(gear.teeth for gear in gears)
+        shifts = sum(gear.profile_shift_coefficient for gear in gears)
+        module, angle = gears[0].normal_module, gears[0].normal_pressure_angle
+        distance = self.center_distance
+        if distance is None:
+            distance = zero_backlash_center_distance(teeth, module, angle, shifts)
+        # Without a pressure angle the distance itself is the fault, and no reason to shorten teeth.
+        possible = distance > 0.5 * teeth * module * math.cos(angle)
+        shortening = (
+            tip_shortening_coefficient(teeth, module, shifts, distance) if possible else 0.0
         )
-        for drawing in drawings
-        if drawing.tooth_thinning is not None
-    ]
+        tips = [_tip_diameter(gear, shortening) for gear in gears]
+
+        def completed(thinning: float) -> _Mesh:
+            pinion, wheel = (
+                drawing.data(tip, thinning)
+                for drawing, tip in zip(self.drawings, tips, strict=True)
+            )
+            return _Mesh(pinion, wheel, distance)
+
+        mesh = completed(0.0)
+        return mesh if self.backlash is None else completed(_thinning_for(self.backlash, mesh))
 
 
-def _value_problems(
-    drawings: tuple[GearDrawing, GearDrawing], center_distance: float | None, backlash: float | None
-) -> list[Problem]:
-    problems = [problem for drawing in drawings for problem in drawing.value_problems()]
-    problems += _play_problems(drawings, backlash)
-    if center_distance is not None:
-        try:
-            require_positive("center_distance", center_distance, "m")
-        except InputError as error:
-            problems += error.problems
-    return problems
+def _tip_diameter(gear: GearData, tip_shortening_coefficient: float) -> float:
+    """Tip diameter that the rack's addendum gives."""
+    addendum = gear.rack.addendum_coefficient + gear.profile_shift_coefficient
+    return gear.normal_module * (gear.teeth + 2.0 * (addendum - tip_shortening_coefficient))
 
 
 def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
@@ -71,64 +156,30 @@ def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
     play, module = mesh.geometric_backlash, mesh.pinion.normal_module
     if backlash < play - ROUNDING_WARNING * module:
         raise InputError(
-            Problem(
-                what=f"backlash = {backlash * 1e3:.6g} mm",
-                where="argument backlash",
-                why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
-                f"mm leave {play * 1e3:.6g} mm already",
-                remedy="Leave the backlash out, or reduce the centre distance",
-            )
+            f"backlash = {backlash * 1e3:.6g} mm",
+            where=Argument("backlash"),
+            why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
+            f"mm leave {play * 1e3:.6g} mm already",
+            remedy="Leave the backlash out, or reduce the centre distance",
         )
     return max(0.5 * (backlash - play), 0.0)
 
 
-def _forms(
-    drawings: tuple[GearDrawing, GearDrawing], center_distance: float | None, backlash: float | None
-) -> MeshGeometry:
-    """Complete the two forms: centre distance, then tips, then thinning."""
-    teeth = sum(drawing.teeth for drawing in drawings)
-    shifts = sum(drawing.profile_shift_coefficient for drawing in drawings)
-    module, angle = drawings[0].normal_module, drawings[0].normal_pressure_angle
-    distance = center_distance
-    if distance is None:
-        distance = zero_backlash_center_distance(teeth, module, angle, shifts)
-    # Without a pressure angle the distance itself is the fault, and no reason to shorten teeth.
-    possible = distance > 0.5 * teeth * module * math.cos(angle)
-    shortening = tip_shortening_coefficient(teeth, module, shifts, distance) if possible else 0.0
-    tips = [drawing.completed_tip_diameter(shortening) for drawing in drawings]
-
-    def mesh(thinnings: Iterable[float]) -> MeshGeometry:
-        pinion, wheel = (
-            drawing.tooth_form(tip, thinning)
-            for drawing, tip, thinning in zip(drawings, tips, thinnings, strict=True)
-        )
-        return MeshGeometry(pinion, wheel, distance)
-
-    if backlash is None:
-        return mesh(drawing.tooth_thinning or 0.0 for drawing in drawings)
-    return mesh([_thinning_for(backlash, mesh((0.0, 0.0)))] * 2)
-
-
-def _checked(
-    drawings: tuple[GearDrawing, GearDrawing],
-    center_distance: float | None,
-    backlash: float | None,
-    driver: str,
-    misalignment: float,
-) -> SpurPair:
+def _checked(layout: _Layout, driver: str, misalignment: float) -> SpurPair:
     """Pair from two drawings, or one error with all that is wrong."""
-    values = _value_problems(drawings, center_distance, backlash)
-    _raise_if_any([*values, *misalignment_problems(misalignment)])
-    mesh = _forms(drawings, center_distance, backlash)
+    _raise_if_any([*layout.problems(), *misalignment_problems(misalignment)])
+    mesh = layout.mesh()
     problems = match_problems(mesh.pinion, mesh.wheel, driver)
     fitting = fitting_center_distance(mesh)
     # A centre distance that is too small also spoils the tips: they are looked at where it fits.
-    shaped = mesh if fitting is None else _forms(drawings, fitting, backlash)
-    for drawing, form in zip(drawings, (shaped.pinion, shaped.wheel), strict=True):
-        problems += drawing.named(shape_problems(form, drawing.bore_diameter))
+    shaped = mesh if fitting is None else layout._replace(center_distance=fitting).mesh()
+    for drawing, gear in zip(layout.drawings, (shaped.pinion, shaped.wheel), strict=True):
+        problems += drawing.named(shape_problems(gear))
     _raise_if_any([*mesh_problems(mesh), *problems])
-    pinion = drawings[0].spur_gear(mesh.pinion)
-    wheel = drawings[1].spur_gear(mesh.wheel)
+    pinion, wheel = (
+        SpurGear(**{field.name: getattr(gear, field.name) for field in fields(gear)})
+        for gear in (mesh.pinion, mesh.wheel)
+    )
     return SpurPair(pinion, wheel, mesh.center_distance, driver, misalignment)
 
 
@@ -230,34 +281,33 @@ def spur_pair(
     >>> round(pair.pinion.tip_diameter * 1e3, 3), round(pair.transverse_contact_ratio, 6)
     (88.593, 1.326952)
     """
-    pinion = GearDrawing(
-        name="pinion",
-        teeth=pinion_teeth,
-        normal_module=normal_module,
-        normal_pressure_angle=normal_pressure_angle,
-        profile_shift_coefficient=pinion_profile_shift_coefficient,
-        rack=pinion_rack or BasicRack(),
-        tip_diameter=pinion_tip_diameter,
-        tooth_thinning=pinion_tooth_thinning,
-        face_width=pinion_face_width,
-        bore_diameter=pinion_bore_diameter,
-        mass=pinion_mass,
-        moment_of_inertia=pinion_moment_of_inertia,
-        modification=pinion_modification or FlankModification(),
-    )
-    wheel = GearDrawing(
-        name="wheel",
-        teeth=wheel_teeth,
-        normal_module=normal_module,
-        normal_pressure_angle=normal_pressure_angle,
-        profile_shift_coefficient=wheel_profile_shift_coefficient,
-        rack=wheel_rack or BasicRack(),
-        tip_diameter=wheel_tip_diameter,
-        tooth_thinning=wheel_tooth_thinning,
-        face_width=pinion_face_width if wheel_face_width is None else wheel_face_width,
-        bore_diameter=wheel_bore_diameter,
-        mass=wheel_mass,
-        moment_of_inertia=wheel_moment_of_inertia,
-        modification=wheel_modification or FlankModification(),
-    )
-    return _checked((pinion, wheel), center_distance, backlash, driver, misalignment)
+    pinion = {
+        "normal_module": normal_module,
+        "normal_pressure_angle": normal_pressure_angle,
+        "teeth": pinion_teeth,
+        "profile_shift_coefficient": pinion_profile_shift_coefficient,
+        "rack": pinion_rack or BasicRack(),
+        "tip_diameter": pinion_tip_diameter,
+        "tooth_thinning": pinion_tooth_thinning,
+        "face_width": pinion_face_width,
+        "bore_diameter": pinion_bore_diameter,
+        "mass": pinion_mass,
+        "moment_of_inertia": pinion_moment_of_inertia,
+        "modification": pinion_modification or FlankModification(),
+    }
+    wheel = {
+        "normal_module": normal_module,
+        "normal_pressure_angle": normal_pressure_angle,
+        "teeth": wheel_teeth,
+        "profile_shift_coefficient": wheel_profile_shift_coefficient,
+        "rack": wheel_rack or BasicRack(),
+        "tip_diameter": wheel_tip_diameter,
+        "tooth_thinning": wheel_tooth_thinning,
+        "face_width": pinion_face_width if wheel_face_width is None else wheel_face_width,
+        "bore_diameter": wheel_bore_diameter,
+        "mass": wheel_mass,
+        "moment_of_inertia": wheel_moment_of_inertia,
+        "modification": wheel_modification or FlankModification(),
+    }
+    drawings = _Drawing("pinion", pinion), _Drawing("wheel", wheel)
+    return _checked(_Layout(drawings, center_distance, backlash), driver, misalignment)

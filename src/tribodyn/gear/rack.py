@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class BasicRack:
         problems = [
             Problem(
                 what=f"{name} = {value:.6g}",
-                where=f"argument {name}",
+                where=Argument(name),
                 why="It must be finite and " + ("not negative" if zero else "greater than zero"),
                 remedy="ISO 53 profile A has 1.0, 1.25 and 0.38",
             )
@@ -102,3 +102,40 @@ class BasicRack:
         """
         largest = self.largest_tip_radius_coefficient(pressure_angle)
         return min(self.tip_radius_coefficient, largest)
+
+    def shape_problems(self, pressure_angle: float) -> list[Problem]:
+        """Find why a rack of this pressure angle has no tip line, or no flank below its round.
+
+        Parameters
+        ----------
+        pressure_angle : float
+            Pressure angle of the rack [rad].
+
+        Returns
+        -------
+        list of Problem
+        """
+        if self.tip_half_width_coefficient(pressure_angle) <= 0.0:
+            limit = math.pi / 4.0 / math.tan(pressure_angle)
+            return [
+                Problem(
+                    what=f"dedendum_coefficient = {self.dedendum_coefficient:.6g}",
+                    where=Argument("rack"),
+                    why=f"The flanks of the rack meet at a depth of {limit:.6g} modules",
+                    remedy="Reduce the dedendum or the pressure angle",
+                )
+            ]
+        height = self.fitting_tip_radius_coefficient(pressure_angle) * (
+            1.0 - math.sin(pressure_angle)
+        )
+        if height <= self.dedendum_coefficient:
+            return []
+        return [
+            Problem(
+                what=f"tip_radius_coefficient = {self.tip_radius_coefficient:.6g}",
+                where=Argument("rack"),
+                why=f"The tip round is {height:.6g} modules high, more than the dedendum "
+                f"of {self.dedendum_coefficient:.6g} modules",
+                remedy="Reduce the tip radius",
+            )
+        ]

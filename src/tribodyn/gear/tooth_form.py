@@ -1,7 +1,7 @@
 """The form of a tooth as the rack cuts it: circles, thickness, flank and fillet.
 
 A tooth form says what would be cut, even if nobody could use it; :class:`tribodyn.gear.SpurGear`
-is a tooth form that passed the checks of `gear_checks`.
+is a tooth form that can be made.
 """
 
 from __future__ import annotations
@@ -10,12 +10,49 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from tribodyn.errors import InputError, Problem
-from tribodyn.gear.form_circle import form_point
-from tribodyn.gear.involute import involute
+from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.gear.curves import Trochoid, form_point, involute
 from tribodyn.gear.rack import BasicRack
-from tribodyn.gear.trochoid import Trochoid
-from tribodyn.gear.value_checks import form_value_problems
+
+#: Units of the messages: name, and what a value in SI is multiplied by.
+MILLIMETRES, DEGREES, PURE = ("mm", 1e3), ("deg", math.degrees(1.0)), ("", 1.0)
+
+
+def range_problems(
+    name: str,
+    value: float,
+    low: float = 0.0,
+    high: float = math.inf,
+    *,
+    unit: tuple[str, float] = MILLIMETRES,
+    open_low: bool = False,
+) -> list[Problem]:
+    """One problem if ``value`` is not a finite number between the limits."""
+    number = isinstance(value, (int, float)) or hasattr(value, "__float__")
+    inside = number and math.isfinite(value) and (value > low if open_low else value >= low)
+    if inside and value <= high:
+        return []
+    symbol, factor = unit
+    shown = f"{float(value) * factor:.6g} {symbol}".rstrip() if number else repr(value)
+    bound = f"{'greater than' if open_low else 'at least'} {low * factor:g}"
+    if high < math.inf:
+        bound += f" and at most {high * factor:g}"
+    why = f"{name} must be finite, {bound} {symbol}".rstrip()
+    return [Problem(f"{name} = {shown}", Argument(name), why, "Check the value and its unit")]
+
+
+def _teeth_problems(teeth: int) -> list[Problem]:
+    problems = range_problems("teeth", teeth, 5, 500, unit=PURE)
+    if problems or teeth == int(teeth):
+        return problems
+    return [
+        Problem(
+            what=f"teeth = {teeth:g}",
+            where=Argument("teeth"),
+            why="A gear has a whole number of teeth",
+            remedy=f"Use {math.floor(teeth + 0.5)}",
+        )
+    ]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +115,31 @@ class ToothForm:
         list of Problem
             Empty when the form can be computed.
         """
-        return form_value_problems(self)
+        slack, shift = 1e-12, self.profile_shift_coefficient
+        limits = math.radians(10.0) - slack, math.radians(30.0) + slack
+        angle = self.normal_pressure_angle
+        problems = [
+            *_teeth_problems(self.teeth),
+            *range_problems("normal_module", self.normal_module, open_low=True),
+            *range_problems("normal_pressure_angle", angle, *limits, unit=DEGREES),
+            *range_problems("profile_shift_coefficient", shift, -10.0, 10.0, unit=PURE),
+            *range_problems("tip_diameter", self.tip_diameter, open_low=True),
+            *range_problems("tooth_thinning", self.tooth_thinning),
+        ]
+        return problems or [*self.rack.shape_problems(angle), *self._root_problems()]
+
+    def _root_problems(self) -> list[Problem]:
+        if self.root_radius > 0.0:
+            return []
+        return [
+            Problem(
+                what=f"profile_shift_coefficient = {self.profile_shift_coefficient:.6g}",
+                where=Argument("profile_shift_coefficient"),
+                why="The rack would cut through the axis: root radius "
+                f"{self.root_radius * 1e3:.6g} mm",
+                remedy="Increase the shift or the number of teeth",
+            )
+        ]
 
     @property
     def generating_shift_coefficient(self) -> float:
@@ -161,12 +222,10 @@ class ToothForm:
         base = self.base_radius
         if not radius >= base * (1.0 - 1e-12):
             raise InputError(
-                Problem(
-                    what=f"radius = {radius * 1e3:.6g} mm",
-                    where="argument radius",
-                    why=f"The involute begins at the base radius {base * 1e3:.6g} mm",
-                    remedy="Use half_tooth for points of the fillet",
-                )
+                f"radius = {radius * 1e3:.6g} mm",
+                where=Argument("radius"),
+                why=f"The involute begins at the base radius {base * 1e3:.6g} mm",
+                remedy="Use half_tooth for points of the fillet",
             )
         return math.sqrt(max((radius - base) * (radius + base), 0.0)) / base
 

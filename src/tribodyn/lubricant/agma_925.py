@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tribodyn.errors import require_positive
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 #: Base oil -> (factor, exponent) of ``alpha = factor * eta^exponent`` [mm^2/N, mPa*s].
 BASE_OILS: Registry[tuple[float, float]] = Registry("base oil")

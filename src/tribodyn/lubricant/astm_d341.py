@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, require_between, require_positive
 
 #: One measured point: temperature [K] and kinematic viscosity [m^2/s].
 TemperaturePoint = tuple[float, float]
@@ -31,13 +31,11 @@ def _require_oil(points: tuple[TemperaturePoint, TemperaturePoint]) -> None:
     (cold, thick), (warm, thin) = points
     if cold >= warm or thick <= thin:
         raise InputError(
-            Problem(
-                what=f"points {cold:g} K, {thick:.4g} m^2/s and {warm:g} K, {thin:.4g} m^2/s",
-                where="argument points",
-                why="two different temperatures in rising order, with falling viscosity, are "
-                "needed for a line over temperature",
-                remedy="Give the colder point first",
-            )
+            f"points {cold:g} K, {thick:.4g} m^2/s and {warm:g} K, {thin:.4g} m^2/s",
+            where=Argument("points"),
+            why="two different temperatures in rising order, with falling viscosity, are "
+            "needed for a line over temperature",
+            remedy="Give the colder point first",
         )
 
 
@@ -47,14 +45,12 @@ def _require_inside(temperature: float, cold: float, warm: float) -> None:
         return
     low, high = cold - _ABSOLUTE_ZERO, warm - _ABSOLUTE_ZERO
     raise InputError(
-        Problem(
-            what=f"temperature = {temperature - _ABSOLUTE_ZERO:g} degC",
-            where="argument temperature",
-            why=f"the viscosity is known at {low:g} and {high:g} degC, and the line through "
-            f"these points is not trusted more than {MARGIN:g} K beyond them",
-            remedy=f"Stay between {low - MARGIN:g} and {high + MARGIN:g} degC, "
-            "or give the properties at the working temperature",
-        )
+        f"temperature = {temperature - _ABSOLUTE_ZERO:g} degC",
+        where=Argument("temperature"),
+        why=f"the viscosity is known at {low:g} and {high:g} degC, and the line through "
+        f"these points is not trusted more than {MARGIN:g} K beyond them",
+        remedy=f"Stay between {low - MARGIN:g} and {high + MARGIN:g} degC, "
+        "or give the properties at the working temperature",
     )
 
 

@@ -1,13 +1,30 @@
-"""Viscosity under pressure: the exponential law of Barus."""
+"""Viscosity under pressure: the exponential law of Barus, and the limit of every such law."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import require_between, require_positive
-from tribodyn.lubricant.growth import exponential_growth
+from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.types import Array
+
+#: exp(700) is the last decade that a double holds; no liquid comes near it.
+_LARGEST_EXPONENT = 700.0
+
+
+def exponential_growth(exponent: ArrayLike, pressure: ArrayLike, law: str) -> Array:
+    """Factor exp(exponent) by which pressure raises the viscosity."""
+    exponents = np.asarray(exponent, dtype=float)
+    if np.any(exponents > _LARGEST_EXPONENT):
+        raise InputError(
+            f"pressure = {np.max(pressure):.6g} Pa",
+            where=Argument("pressure"),
+            why=f"the {law} law raises the viscosity there by more than exp(700), "
+            "far beyond any liquid",
+            remedy="Check the unit of the pressure (Pa) and of the pressure-viscosity "
+            "coefficient (1/Pa), or use the Roelands law",
+        )
+    return np.asarray(np.exp(exponents))[()]
 
 
 def barus_viscosity(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError
 from tribodyn.lubricant.oil import Lubricant
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 
 #: Temperatures closer than this [K] are the same.
 _SAME_TEMPERATURE = 0.01
@@ -111,14 +111,12 @@ def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> L
     known = float(record["temperature"]["value"])
     if temperature is not None and not abs(temperature - known) <= _SAME_TEMPERATURE:
         raise InputError(
-            Problem(
-                what=f'"{name}" at {temperature - 273.15:g} degC',
-                where="argument temperature",
-                why=f"the properties of this oil are known at {known - 273.15:g} degC only",
-                remedy=f"Leave the temperature out or give {known:g} K ({known - 273.15:g} "
-                "degC), or give dynamic_viscosity, density and pressure_viscosity_coefficient "
-                "at your temperature",
-            )
+            f'"{name}" at {temperature - 273.15:g} degC',
+            where=Argument("temperature"),
+            why=f"the properties of this oil are known at {known - 273.15:g} degC only",
+            remedy=f"Leave the temperature out or give {known:g} K ({known - 273.15:g} "
+            "degC), or give dynamic_viscosity, density and pressure_viscosity_coefficient "
+            "at your temperature",
         )
     return Lubricant(
         float(record["dynamic_viscosity"]["value"]),

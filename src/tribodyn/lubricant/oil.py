@@ -7,18 +7,23 @@ from dataclasses import KW_ONLY, dataclass, field
 
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.lubricant.agma_925 import agma_925_coefficient
 from tribodyn.lubricant.astm_d341 import TemperaturePoint, walther_slope, walther_viscosity
 from tribodyn.lubricant.barus import barus_viscosity
-from tribodyn.lubricant.dowson_higginson import dowson_higginson_density
-from tribodyn.lubricant.iso_15144 import DENSITY_FALL, density_at_temperature
+from tribodyn.lubricant.density import (
+    DENSITY_FALL,
+    density_at_temperature,
+    dowson_higginson_density,
+)
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
-from tribodyn.registry import Registry
+from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: Pressure laws by name, each ``law(pressure, dynamic_viscosity, coefficient)``.
-VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry("viscosity law")
+VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry(
+    "viscosity law", "tribodyn.viscosity"
+)
 VISCOSITY_LAWS.register("roelands")(roelands_viscosity)
 VISCOSITY_LAWS.register("barus")(barus_viscosity)
 
@@ -271,10 +276,8 @@ def _coefficient(
         )
         return estimate, (remark,)
     raise InputError(
-        Problem(
-            what=f"pressure_viscosity_coefficient = {given} and base_oil = {base_oil}",
-            where="arguments pressure_viscosity_coefficient and base_oil",
-            why="exactly one of the two determines how the viscosity rises with pressure",
-            remedy="Give a measured coefficient, or the base oil for an estimate",
-        )
+        f"pressure_viscosity_coefficient = {given} and base_oil = {base_oil}",
+        where="arguments pressure_viscosity_coefficient and base_oil",
+        why="exactly one of the two determines how the viscosity rises with pressure",
+        remedy="Give a measured coefficient, or the base oil for an estimate",
     )

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
-from tribodyn.lubricant.growth import exponential_growth
+from tribodyn.errors import Argument, InputError, require_between, require_positive
+from tribodyn.lubricant.barus import exponential_growth
 from tribodyn.types import Array
 
 #: Reference pressure of the law [Pa].
@@ -24,12 +24,10 @@ def _log_viscosity_ratio(dynamic_viscosity: float) -> float:
     ratio = math.log(dynamic_viscosity) + _LOG_POLE
     if ratio <= 0.0:
         raise InputError(
-            Problem(
-                what=f"dynamic_viscosity = {dynamic_viscosity:.6g} Pa*s",
-                where="argument dynamic_viscosity",
-                why=f"the Roelands law needs more than exp(-{_LOG_POLE}) = 6.32e-5 Pa*s",
-                remedy="Check the unit: 82 mPa*s is 0.082 Pa*s",
-            )
+            f"dynamic_viscosity = {dynamic_viscosity:.6g} Pa*s",
+            where=Argument("dynamic_viscosity"),
+            why=f"the Roelands law needs more than exp(-{_LOG_POLE}) = 6.32e-5 Pa*s",
+            remedy="Check the unit: 82 mPa*s is 0.082 Pa*s",
         )
     return ratio
 

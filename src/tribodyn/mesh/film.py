@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.friction import TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant

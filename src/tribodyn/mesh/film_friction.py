@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
-from tribodyn.ehl.film_state import FilmState
+from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.mesh.path_film import SolvedPath
 from tribodyn.mesh.positions import lobatto_points, lobatto_polynomial

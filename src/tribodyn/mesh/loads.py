@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.errors import warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle

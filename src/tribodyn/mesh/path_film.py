@@ -8,7 +8,6 @@ formula follows every change of load, radius and speed.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -16,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import PathOfContact
-from tribodyn.ehl.solved_films import Films
-from tribodyn.errors import ModelWarning
+from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.errors import quiet
 from tribodyn.mesh.film_places import film_places
 from tribodyn.mesh.film_refinement import PathLoads, Refinement
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
@@ -97,9 +96,8 @@ class PathFilm:
 
     def _solve_more(self, contacts: Index, loads: PathLoads, progress: Progress) -> Places:
         touching, zone = self.touching.some(contacts), self.zone[contacts]
-        with warnings.catch_warnings():
+        with quiet("seed-film-stiffness"):
             # The positions have said it already.
-            warnings.filterwarnings("ignore", r"\[seed-film-stiffness\]", ModelWarning)
             return self._solve(touching, zone, loads.of_contacts[contacts], progress)[1]
 
     def _solve(

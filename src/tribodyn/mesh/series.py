@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, ModelWarning, Problem
+from tribodyn.errors import ComputationError, Problem, quiet
 from tribodyn.mesh.path_film import FilmAt
 from tribodyn.mesh.solved_places import ALL, PRESSURE, STIFFNESS
 from tribodyn.mesh.teeth import Carried, Teeth
@@ -136,9 +135,8 @@ def _still_moving(change: Array, where: Callable[[int, int], str]) -> Computatio
 
 def _film_stiffness(in_contact: Mask, load_per_width: Array, film_at: FilmAt) -> Array:
     """Stiffness of the films, zero where the pair is not in contact."""
-    with warnings.catch_warnings():
+    with quiet():
         # What a formula has to say, it says of the load share that is found.
-        warnings.simplefilter("ignore", ModelWarning)
         film = film_at(load_per_width[in_contact]).film_stiffness
     stiffness = np.zeros(load_per_width.shape)
     stiffness[in_contact] = np.asarray(film)

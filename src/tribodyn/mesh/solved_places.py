@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.mesh.positions import PathPositions
 from tribodyn.mesh.touching import Touching
 from tribodyn.types import Array, Index, Mask

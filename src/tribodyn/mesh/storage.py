@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import warnings
 from dataclasses import asdict, fields
 from os import PathLike
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, ModelWarning, OutputExistsError, Problem
+from tribodyn.errors import InputError, OutputExistsError, Problem, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.mesh.table import MeshTable
@@ -144,9 +143,8 @@ def _write_pair(pair: SpurPair) -> str:
 
 def _read_pair(text: str) -> SpurPair:
     values = json.loads(text)
-    with warnings.catch_warnings():
+    with quiet():
         # Whoever made the table has seen what there was to say about these gears.
-        warnings.simplefilter("ignore", ModelWarning)
         for name in ("pinion", "wheel"):
             rack = BasicRack(**values[name].pop("rack"))
             modification = _read_modification(values[name].pop("modification", {}))

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line
 from tribodyn.ehl import FILM_MODELS, moes_central
-from tribodyn.ehl.solved_films import Films
+from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import MeshCycle

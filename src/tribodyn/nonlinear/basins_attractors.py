@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.orbits.steady_state import steady_state
-from tribodyn.errors import ComputationError, InputError, ModelWarning
+from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.survey import Survey, follow, measure
 from tribodyn.record import Parts, Record, fact, quantity, record
@@ -206,8 +205,7 @@ def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
         return float("nan")
     try:
         # An orbit that is not found is told by NaN; at rest its relative error means nothing.
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ModelWarning)
+        with quiet():
             orbit = steady_state(
                 motions.compiled.system,
                 float(motions.frequency[0]),

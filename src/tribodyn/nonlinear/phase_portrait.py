@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from tribodyn.dynamics.equations.system import System
@@ -12,9 +10,6 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.nonlinear.poincare import poincare
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    pass
 
 
 @record

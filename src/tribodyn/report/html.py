@@ -12,7 +12,7 @@ from tribodyn.report.friction_loop import compared_friction
 from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.reporting import report_of
-from tribodyn.study.save import write_file
+from tribodyn.study.pipeline.save import write_file
 
 _HERE = Path(__file__).parent
 

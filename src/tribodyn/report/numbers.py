@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.look.labels import readable
-from tribodyn.study.summary_names import SUMMARY
+from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.units import convert
 
 #: Summary figures shown on cards at the top, most wanted first.

@@ -13,9 +13,9 @@ from tribodyn.report.html import plotly_script, template, text_of
 from tribodyn.report.numbers import in_words
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.reporting import report_of
-from tribodyn.study.provenance import assumptions
-from tribodyn.study.save import write_file
-from tribodyn.study.summary_names import SUMMARY
+from tribodyn.study.case.provenance import assumptions
+from tribodyn.study.pipeline.save import write_file
+from tribodyn.study.pipeline.summary import SUMMARY
 
 #: Figures of the summary that the report of a sweep draws and tabulates, where they occur.
 SWEEP_FIGURES = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.signal import ShortTimeFFT
 
 from tribodyn.errors import require_between, require_positive
 from tribodyn.record import Record, fact, quantity, record
@@ -131,8 +132,6 @@ def spectrogram(
     >>> round(float(made.frequency[line]), 6), round(float(made.amplitude[line].max()), 6)
     (125.0, 3.0)
     """
-    from scipy.signal import ShortTimeFFT
-
     values = checked_signal(signal, 16)
     require_positive("sampling_rate", sampling_rate, "Hz")
     length = round(np.sqrt(8.0 * values.size)) if block_length is None else block_length

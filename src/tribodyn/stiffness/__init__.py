@@ -1,14 +1,15 @@
-"""How stiff a tooth pair is: one model per file, picked by name from :data:`MODELS`."""
+"""How stiff a tooth pair is, and who carries what in a mesh under load.
 
-from tribodyn.stiffness.fourier import fourier_mesh_stiffness
-from tribodyn.stiffness.harris import HarrisMap, transmission_error_over_torque
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.iso6336 import (
-    iso6336_mesh_stiffness,
-    iso6336_pair_stiffness,
-    iso6336_single_stiffness,
-)
-from tribodyn.stiffness.load_point import LoadPoint, load_point
+| module | what it answers |
+| --- | --- |
+| `model` | what a stiffness model is; models are picked by name from :data:`MODELS` |
+| `models` | the models of the literature, one in each file |
+| `teeth` | how one gear gives way under a load on a tooth, in closed formulas |
+| `fe2d` | the same from finite elements of the whole gear |
+| `loaded` | load sharing, transmission error and stiffness of a mesh under load |
+| `tip_relief` | transmission error over torque, and the best tip relief |
+"""
+
 from tribodyn.stiffness.loaded import (
     ContactProblem,
     LoadedContact,
@@ -16,21 +17,35 @@ from tribodyn.stiffness.loaded import (
     mesh_problem,
 )
 from tribodyn.stiffness.model import MODELS, StiffnessModel
-from tribodyn.stiffness.potential_energy import (
+from tribodyn.stiffness.models.fourier import fourier_mesh_stiffness
+from tribodyn.stiffness.models.iso6336 import (
+    iso6336_mesh_stiffness,
+    iso6336_pair_stiffness,
+    iso6336_single_stiffness,
+)
+from tribodyn.stiffness.models.potential_energy import (
     potential_energy_influence,
     potential_energy_stiffness,
     single_pair_stiffness,
 )
-from tribodyn.stiffness.rectangular import rectangular_stiffness
-from tribodyn.stiffness.sainsot import sainsot_coefficients, sainsot_compliance
-from tribodyn.stiffness.table import tabulated_stiffness
-from tribodyn.stiffness.tip_relief import optimize_tip_relief
-from tribodyn.stiffness.tip_relief_mesh import with_tip_relief
-from tribodyn.stiffness.tip_relief_result import TipReliefOptimum
-from tribodyn.stiffness.tooth_bending import ToothBendingCompliance, tooth_bending_compliance
-from tribodyn.stiffness.tooth_compliance import ToothCompliance, tooth_compliance
-from tribodyn.stiffness.weber_banaschek import weber_banaschek_compression
-from tribodyn.stiffness.wind_up import wind_up_compliance
+from tribodyn.stiffness.models.rectangular import rectangular_stiffness
+from tribodyn.stiffness.models.table import tabulated_stiffness
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.load_point import LoadPoint, load_point
+from tribodyn.stiffness.teeth.sainsot import (
+    sainsot_coefficients,
+    sainsot_compliance,
+    wind_up_compliance,
+)
+from tribodyn.stiffness.teeth.tooth_bending import (
+    ToothBendingCompliance,
+    tooth_bending_compliance,
+)
+from tribodyn.stiffness.teeth.tooth_compliance import ToothCompliance, tooth_compliance
+from tribodyn.stiffness.teeth.weber import weber_banaschek_compression
+from tribodyn.stiffness.tip_relief.harris import HarrisMap, transmission_error_over_torque
+from tribodyn.stiffness.tip_relief.result import TipReliefOptimum
+from tribodyn.stiffness.tip_relief.search import optimize_tip_relief, with_tip_relief
 
 __all__ = [
     "MODELS",

@@ -6,22 +6,32 @@ question in the same form, so the mesh table does not know which one it asks.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurPair
-from tribodyn.registry import Registry
-from tribodyn.stiffness.influence import GearInfluence
+from tribodyn.model import Model, Registry, choice
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 
+class MeshState(NamedTuple):
+    """What a model is asked about: the positional arguments of :class:`StiffnessModel`."""
+
+    pair: SpurPair
+    material: Material
+    path: Array  #: distance of each contact from the pinion's base tangent point (n, pairs) [m]
+    in_contact: Mask
+    phase: Array  #: (n,)
+    normal_force: float  #: of all pairs together [N]
+
+
 @dataclass(frozen=True)
-class StiffnessModel:
+class StiffnessModel(Model):
     """One named model of tooth pair stiffness.
 
     Parameters
@@ -30,22 +40,35 @@ class StiffnessModel:
         Name in case files.
     function : callable
         ``function(pair, material, path, in_contact, phase, normal_force, /, **options)``.
-    options : mapping of str to object
-        Accepted options with their defaults; ``None`` where the user must give a value, or one
-        of several values.
+    options : mapping of str to Option or default
+        Accepted options; afterwards their defaults, ``None`` where the user must give a value, or
+        one of several values. What else is known of them stands in ``declared``.
     influence : callable, optional
         ``influence(gear, material, *, reference)``: the structure of one gear, of models that
         know it; these carry contacts anywhere on the flank, and deviations of the flanks.
     coupled : bool
         Whether pairs act on each other through the gear bodies; such a model is always solved
         by the loaded tooth contact.
+    source : str
+        Paper behind the model.
+    meaning : str
+        One line for whoever chooses a model.
+    papers : tuple of str
+        Keys of the bibliography of the package.
     """
 
     name: str
     function: Callable[..., Array]
-    options: Mapping[str, Any]
+    options: Mapping[str, Any] = field(default_factory=dict)
     influence: Callable[..., GearInfluence] | None = None
     coupled: bool = False
+    source: str = ""
+    meaning: str = ""
+    papers: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Keep options and defaults apart."""
+        self.declare(self.options)
 
     def __call__(
         self,
@@ -96,17 +119,29 @@ class StiffnessModel:
         )
 
     def _unknown(self, name: str) -> Problem:
-        near = difflib.get_close_matches(name, self.options, n=1)
         known = ", ".join(self.options)
         return Problem(
             what=f'the stiffness model "{self.name}" has no option "{name}"',
-            where=f"stiffness option {name}",
+            where=ModelOption("stiffness", name=name),
             why=f"Its options are: {known}",
-            remedy=f'Did you mean "{near[0]}"?' if near else "",
+            remedy=self.nearest(name),
         )
 
 
-MODELS: Registry[StiffnessModel] = Registry("stiffness model", "tribodyn.stiffness")
+MODELS: Registry[StiffnessModel] = Registry("stiffness model", "tribodyn.stiffness", StiffnessModel)
+
+
+def reference_option(default: str) -> Any:
+    """Option of models that know the body of a gear."""
+    return choice(
+        default,
+        {
+            "bore": "deflection is measured against the bore, the wind-up of the gear body "
+            "included",
+            "rim": "deflection is measured against the body under the teeth",
+        },
+        meaning="body against which deflection is measured",
+    )
 
 
 def share_equally(total: Array, in_contact: Mask) -> Array:
@@ -122,11 +157,9 @@ def usable_stiffness(found: Array, in_contact: Mask, model: str) -> Array:
     )
     if not sound:
         raise ComputationError(
-            Problem(
-                what=f'the stiffness model "{model}" gave no usable pair stiffness',
-                where="stiffness of the tooth pairs",
-                why="It must be finite and positive where a pair is in contact, zero elsewhere",
-                remedy="Check the options of the model, or choose another",
-            )
+            f'the stiffness model "{model}" gave no usable pair stiffness',
+            where="stiffness of the tooth pairs",
+            why="It must be finite and positive where a pair is in contact, zero elsewhere",
+            remedy="Check the options of the model, or choose another",
         )
     return stiffness

@@ -6,22 +6,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribodyn.study.bifurcation_diagram import bifurcation
-    from tribodyn.study.case import Case
-    from tribodyn.study.films import film_over_operation
-    from tribodyn.study.parameter_sweep import sweep
-    from tribodyn.study.pipeline import run
-    from tribodyn.study.read import read_case
-    from tribodyn.study.result import Result
-    from tribodyn.study.run_up_study import run_up
-    from tribodyn.study.static_studies import (
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.read import read_case
+    from tribodyn.study.pipeline.loaded_teeth import loaded_contact
+    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.run import run
+    from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
+    from tribodyn.study.studies.bifurcation import bifurcation
+    from tribodyn.study.studies.run_up import run_up
+    from tribodyn.study.studies.static import (
         comprehensive_stiffness,
+        film_over_operation,
         harris_map,
         optimize_tip_relief,
     )
-    from tribodyn.study.summary_names import SUMMARY
-    from tribodyn.study.sweep_result import Sweep
-    from tribodyn.study.transmission_error import loaded_contact
+    from tribodyn.study.studies.sweep import sweep
+    from tribodyn.study.studies.sweep_result import Sweep
 
 __all__ = [
     "SUMMARY",
@@ -37,24 +37,26 @@ __all__ = [
     "read_case",
     "run",
     "run_up",
+    "summary_figure",
     "sweep",
 ]
 
 _HOMES = {
-    "Case": "case",
-    "bifurcation": "bifurcation_diagram",
-    "comprehensive_stiffness": "static_studies",
-    "film_over_operation": "films",
-    "harris_map": "static_studies",
-    "loaded_contact": "transmission_error",
-    "optimize_tip_relief": "static_studies",
-    "read_case": "read",
-    "run": "pipeline",
-    "run_up": "run_up_study",
-    "Result": "result",
-    "SUMMARY": "summary_names",
-    "Sweep": "sweep_result",
-    "sweep": "parameter_sweep",
+    "Case": "case.case",
+    "bifurcation": "studies.bifurcation",
+    "comprehensive_stiffness": "studies.static",
+    "film_over_operation": "studies.static",
+    "harris_map": "studies.static",
+    "loaded_contact": "pipeline.loaded_teeth",
+    "optimize_tip_relief": "studies.static",
+    "read_case": "case.read",
+    "run": "pipeline.run",
+    "run_up": "studies.run_up",
+    "Result": "pipeline.result",
+    "SUMMARY": "pipeline.summary",
+    "summary_figure": "pipeline.summary",
+    "Sweep": "studies.sweep_result",
+    "sweep": "studies.sweep",
 }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import FILM_MODELS, moes_central
-from tribodyn.ehl.load_exponent import moes_load_exponent
+from tribodyn.ehl.formulas.moes import moes_load_exponent
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
 

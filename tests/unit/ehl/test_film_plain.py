@@ -8,12 +8,11 @@ import numba as nb
 import numpy as np
 import pytest
 
+from plain.film import PlainContact, PlainOil, plain_oil
+from plain.film_newton import dry_start, solve_plain
 from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
-from tribodyn.ehl.kernel import film_sum as sums
-from tribodyn.ehl.kernel import oil as oils
-from tribodyn.ehl.kernel import reynolds
-from tribodyn.ehl.plain import PlainContact, PlainOil, plain_oil
-from tribodyn.ehl.plain_newton import dry_start, solve_plain
+from tribodyn.ehl._kernel import film_sum as sums
+from tribodyn.ehl._kernel import reynolds
 from tribodyn.errors import ComputationError
 from tribodyn.lubricant import (
     barus_viscosity,
@@ -35,7 +34,7 @@ def _film_sum(n, kernel, P):
 @nb.njit
 def _oil(n, P, oil):
     lneta, dlneta, rho, drho = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oils.oil_state(n, P, oil, lneta, dlneta, rho, drho)
+    reynolds.oil_state(n, P, oil, lneta, dlneta, rho, drho)
     return lneta, dlneta, rho, drho
 
 

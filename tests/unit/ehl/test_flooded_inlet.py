@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tribodyn.ehl.domain import inlet_tail
-from tribodyn.ehl.kernel.flooded_inlet import flooded_inlet
+from tribodyn.ehl._kernel.inlet import flooded_inlet
+from tribodyn.ehl.steady.grid import inlet_tail
 
 
 def test_equals_the_inlet_of_the_steady_solver() -> None:

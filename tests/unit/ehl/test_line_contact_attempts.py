@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tribodyn.ehl import attempts, solve_line_contact_moes
-from tribodyn.ehl.attempts import ENGINES, solve_problem
-from tribodyn.ehl.contact_case import moes_case
-from tribodyn.ehl.continuation import continue_to
-from tribodyn.ehl.discrete import ContactProblem, Outcome
-from tribodyn.ehl.domain import choose_domain, estimate_film
-from tribodyn.ehl.newton_engine import first_intervals, newton_engine
-from tribodyn.ehl.verification import verify
+from tribodyn.ehl import solve_line_contact_moes
+from tribodyn.ehl.steady import rescue as attempts
+from tribodyn.ehl.steady.contact_case import moes_case
+from tribodyn.ehl.steady.contact_problem import ContactProblem, Outcome
+from tribodyn.ehl.steady.grid import choose_domain, estimate_film
+from tribodyn.ehl.steady.newton_engine import first_intervals, newton_engine
+from tribodyn.ehl.steady.rescue import ENGINES, continue_to, solve_problem
+from tribodyn.ehl.steady.verification import verify
 from tribodyn.errors import ComputationError
 
 

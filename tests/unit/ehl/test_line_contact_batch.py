@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tribodyn.ehl import batch as batches
 from tribodyn.ehl import solve_line_contact, solve_line_contacts
+from tribodyn.ehl.steady import batch as batches
 from tribodyn.errors import ComputationError, ModelWarning, Problem
 from tribodyn.lubricant import Lubricant
 

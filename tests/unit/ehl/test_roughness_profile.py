@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tribodyn.ehl.roughness import RoughnessProfile
-from tribodyn.ehl.roughness_resolution import warn_if_unresolved
+from tribodyn.ehl import RoughnessProfile
+from tribodyn.ehl.roughness import warn_if_unresolved
 from tribodyn.errors import InputError, ModelWarning
 
 X = np.linspace(0.0, 1e-3, 1001)

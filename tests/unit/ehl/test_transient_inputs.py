@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.ehl.transient import solve_transient_line_contact
-from tribodyn.ehl.transient_scale import flooded_domain, reference_scale
+from tribodyn.ehl import solve_transient_line_contact
+from tribodyn.ehl.transient.moving_contact import flooded_domain, reference_scale
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.lubricant import Lubricant
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tribodyn.errors import InputError
-from tribodyn.gear.involute import inverse_involute, involute
+from tribodyn.gear.curves import inverse_involute, involute
 
 
 @pytest.mark.parametrize("degrees", [0.01, 1.0, 10.0, 20.0, 45.0, 80.0, 89.0])

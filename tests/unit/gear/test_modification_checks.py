@@ -70,7 +70,7 @@ def test_a_pair_names_the_gear(make_pair: Maker) -> None:
             pinion_modification=FlankModification(cumulative_pitch_deviation=(0.0,) * 21),
             wheel_modification=FlankModification(single_pitch_deviation=(0.0,) * 20),
         )
-    where = [problem.where for problem in caught.value.problems]
+    where = [str(problem.where) for problem in caught.value.problems]
     assert where == [
         "argument pinion_modification.cumulative_pitch_deviation",
         "argument wheel_modification.single_pitch_deviation",

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tribodyn.gear import BasicRack, ToothForm
-from tribodyn.gear.outline import half_tooth, tooth_outline
+from tribodyn.gear import BasicRack, ToothForm, half_tooth, tooth_outline
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import pytest
 
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.gear import BasicRack, SpurPair, operating_pressure_angle, spur_pair
-from tribodyn.gear.involute import involute
+from tribodyn.gear.curves import involute
 
 Maker = Callable[..., SpurPair]
 SMALL_RACK = BasicRack(1.0, 1.0, 0.2)
@@ -101,7 +101,7 @@ def test_no_backlash_makes_up_for_a_centre_distance_that_is_too_small(
             pinion_profile_shift_coefficient=0.8635, wheel_profile_shift_coefficient=-0.5103,
             center_distance=distance, backlash=backlash,
         )  # fmt: skip
-    assert [problem.where for problem in caught.value.problems] == ["argument center_distance"]
+    assert [str(problem.where) for problem in caught.value.problems] == ["argument center_distance"]
     assert "the centre distance must be at least 91.5001 mm" in str(caught.value)
 
 
@@ -149,7 +149,7 @@ def test_faults_of_both_gears_and_of_the_mesh_come_at_once(make_pair: Maker) -> 
         make_pair(
             pinion_tip_diameter=100e-3, wheel_bore_diameter=0.2, center_distance=0.09, driver="x"
         )
-    places = [problem.where for problem in caught.value.problems]
+    places = [str(problem.where) for problem in caught.value.problems]
     assert places == [
         "argument center_distance",
         "argument driver",

@@ -7,7 +7,7 @@ import pytest
 
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError
-from tribodyn.mesh.grid import phase_grid
+from tribodyn.mesh import phase_grid
 from tribodyn.mesh.positions import path_positions
 
 

@@ -16,7 +16,7 @@ from tribodyn.mesh import MeshTable, build
 from tribodyn.mesh.series import in_series
 from tribodyn.mesh.teeth import Teeth
 from tribodyn.stiffness import ContactProblem
-from tribodyn.stiffness.loaded.structure import Compliance, independent_compliance
+from tribodyn.stiffness.loaded.problem import Compliance, independent_compliance
 
 OIL = Lubricant(0.082, 880.0, 21.9e-9)
 CONDITIONS = {

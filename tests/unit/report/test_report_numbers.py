@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tribodyn.report.numbers import HEADLINES, describe, headlines, in_words, table
-from tribodyn.study.summary_names import SUMMARY
+from tribodyn.study import SUMMARY
 from tribodyn.units import parse
 
 

@@ -12,8 +12,8 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness import load_point, tooth_compliance, wind_up_compliance
-from tribodyn.stiffness.analytic import analytic_influence
-from tribodyn.stiffness.analytic_nodes import flank_nodes
+from tribodyn.stiffness.teeth.analytic import analytic_influence
+from tribodyn.stiffness.teeth.load_point import flank_nodes
 
 
 def standard_gear(teeth: int, bore: float, shift: float = 0.0) -> SpurGear:
@@ -106,9 +106,10 @@ def test_cubic_splines_between_the_nodes_are_enough(fzg, steel):
 def test_more_waves_and_points_change_little(fzg, steel, monkeypatch):
     gear = fzg().pinion
     before = analytic_influence(gear, steel)
-    module = importlib.import_module("tribodyn.stiffness.analytic")
-    monkeypatch.setattr(module, "_RESOLUTION", 800.0)
-    monkeypatch.setattr(module, "_OUTLINE_POINTS", 3200)
+    ring = importlib.import_module("tribodyn.stiffness.teeth.analytic")
+    tooth = importlib.import_module("tribodyn.stiffness.teeth.tooth_bending")
+    monkeypatch.setattr(ring, "_RESOLUTION", 800.0)
+    monkeypatch.setattr(tooth, "_OUTLINE_POINTS", 3200)
     after = analytic_influence(gear, steel)
     assert before.self_compliance == pytest.approx(after.self_compliance, rel=2e-4)
     scale = after.cross_compliance.max()

@@ -11,8 +11,8 @@ import pytest
 
 from tribodyn.errors import InputError
 from tribodyn.gear import BasicRack, Material, SpurGear
-from tribodyn.stiffness.fe2d import MeshSize, cache, fe2d_influence, provider
-from tribodyn.stiffness.fe2d.compliances import NODES, UnitCompliances
+from tribodyn.stiffness.fe2d import MeshSize, fe2d_influence, provider
+from tribodyn.stiffness.fe2d.provider import NODES, UnitCompliances
 
 STEEL = Material()
 
@@ -112,7 +112,7 @@ def test_other_sources_are_computed(counted, monkeypatch):
 def test_every_source_that_counts_is_in_the_digest():
     here = Path(provider.__file__).parent
     listed = set(provider._SOURCES[0][1].split())
-    kept_out = {"__init__", "cache", "provider", "picture"}
+    kept_out = {"__init__", "picture"}
     assert listed | kept_out == {path.stem for path in here.glob("*.py")}
     for folder, names in provider._SOURCES:
         assert all((here / folder / f"{name}.py").is_file() for name in names.split())
@@ -154,7 +154,7 @@ def test_pickled_objects_are_not_loaded(counted, folder):
     fe2d_influence(gear_of(), STEEL)
     (path,) = files(folder)
     np.savez(path, curvature_radius=np.array([{"a": 1}], dtype=object))
-    assert cache.load_arrays(path.stem) is None
+    assert provider.load_arrays(path.stem) is None
 
 
 def test_folder_that_cannot_be_made_does_not_stop_the_work(counted, folder, monkeypatch):
@@ -170,26 +170,26 @@ def test_interrupted_writing_leaves_nothing_behind(folder, monkeypatch):
     def full(*_: object) -> None:
         raise OSError("no space left")
 
-    monkeypatch.setattr(cache.os, "replace", full)
-    assert not cache.store_arrays("name", {"a": np.ones(2)})
+    monkeypatch.setattr(provider.os, "replace", full)
+    assert not provider.store_arrays("name", {"a": np.ones(2)})
     assert files(folder) == []
-    assert cache.load_arrays("name") is None
+    assert provider.load_arrays("name") is None
 
 
 def test_folder_of_the_platform(monkeypatch, tmp_path):
     for name in ("TRIBODYN_CACHE_DIR", "XDG_CACHE_HOME", "LOCALAPPDATA"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr(cache.Path, "home", lambda: tmp_path)
+    monkeypatch.setattr(provider.Path, "home", lambda: tmp_path)
     expected = {"linux": ".cache", "win32": "Local", "darwin": "Caches"}
     for platform, part in expected.items():
         monkeypatch.setattr(sys, "platform", platform)
-        assert part in cache.cache_folder().parts
-        assert cache.cache_folder().is_relative_to(tmp_path)
+        assert part in provider.cache_folder().parts
+        assert provider.cache_folder().is_relative_to(tmp_path)
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "other"))
-    assert cache.cache_folder() == tmp_path / "other" / "tribodyn"
+    assert provider.cache_folder() == tmp_path / "other" / "tribodyn"
     monkeypatch.setenv("TRIBODYN_CACHE_DIR", str(tmp_path / "mine"))
-    assert cache.cache_folder() == tmp_path / "mine"
+    assert provider.cache_folder() == tmp_path / "mine"
 
 
 def test_kept_result_is_the_computed_one(folder):

@@ -10,12 +10,15 @@ from scipy.sparse.linalg import spsolve
 
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import BasicRack, SpurGear, section_moments
-from tribodyn.stiffness.fe2d.element import element_stiffness, plane_stress, shape_gradients
+from tribodyn.stiffness import load_point
 from tribodyn.stiffness.fe2d.flank_load import flank_loads, nodal_weights
-from tribodyn.stiffness.fe2d.ring import sector_stiffness
-from tribodyn.stiffness.fe2d.sector_mesh import SectorMesh, grid_elements
-from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
-from tribodyn.stiffness.load_point import load_point
+from tribodyn.stiffness.fe2d.ring import (
+    element_stiffness,
+    plane_stress,
+    sector_stiffness,
+    shape_gradients,
+)
+from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, grid_elements, tooth_mesh
 
 
 def gear_of(teeth: int, shift: float, bore: float, **more: object) -> SpurGear:

@@ -10,11 +10,11 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification
 from tribodyn.stiffness import (
-    harris,
     loaded_contact,
     transmission_error_over_torque,
     with_tip_relief,
 )
+from tribodyn.stiffness.tip_relief import harris
 
 
 @pytest.fixture(scope="module")

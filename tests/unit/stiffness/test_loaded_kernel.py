@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from plain.loaded_contact import plain_approach, plain_loads
 from tribodyn.errors import ComputationError
-from tribodyn.stiffness.loaded.plain import plain_approach, plain_loads
-from tribodyn.stiffness.loaded.problem import ContactProblem
-from tribodyn.stiffness.loaded.structure import Compliance
+from tribodyn.stiffness import ContactProblem
+from tribodyn.stiffness.loaded.problem import Compliance
 
 WIDTH = 0.02
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from tribodyn.errors import InputError
-from tribodyn.stiffness.ring_fourier import ring_compliance
-from tribodyn.stiffness.ring_fourier_feet import foot_compliance, foot_stresses
+from tribodyn.stiffness.teeth.ring_fourier import foot_compliance, foot_stresses, ring_compliance
 
 INNER, OUTER, FOOT = 0.015, 0.034, 0.17
 

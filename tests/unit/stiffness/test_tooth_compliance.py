@@ -77,6 +77,6 @@ def test_structure_scales_with_modulus_and_width(fzg):
 def test_the_outline_is_fine_enough(fzg, monkeypatch):
     gear = fzg().wheel
     coarse = total(gear).total
-    module = importlib.import_module("tribodyn.stiffness.tooth_compliance")
+    module = importlib.import_module("tribodyn.stiffness.teeth.tooth_bending")
     monkeypatch.setattr(module, "_OUTLINE_POINTS", 6400)
     assert coarse == pytest.approx(total(gear).total, rel=2e-6)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.nonlinear.bifurcation import Bifurcation
-from tribodyn.study.bifurcation_findings import Findings
+from tribodyn.analysis import Bifurcation
+from tribodyn.study.studies.bifurcation import Findings
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import pytest
 from broken import BROKEN, SOUND, Broken, line_of
 
 from tribodyn.errors import InputError
-from tribodyn.study.read import read_case
+from tribodyn.study import read_case
 
 
 @pytest.mark.parametrize("broken", BROKEN, ids=lambda broken: broken.name)
@@ -44,7 +44,7 @@ def test_all_faults_come_at_once_in_the_order_of_the_file() -> None:
         text = text.replace(old, new, 1)
     with pytest.raises(InputError) as caught:
         read_case(text, "pair.toml")
-    places = [problem.where.split(":")[1] for problem in caught.value.problems]
+    places = [str(problem.where).split(":")[1] for problem in caught.value.problems]
     assert places == ["3", "9", "18", "29"]
 
 

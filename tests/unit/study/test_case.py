@@ -10,9 +10,9 @@ from broken import SOUND
 
 import tribodyn as td
 from tribodyn.errors import InputError
-from tribodyn.study.citations import cite
-from tribodyn.study.provenance import assumptions, effective, provenance
-from tribodyn.study.read import read_case
+from tribodyn.study import read_case
+from tribodyn.study.case.provenance import assumptions, effective, provenance
+from tribodyn.study.pipeline.citations import cite
 
 
 @pytest.fixture

@@ -11,8 +11,8 @@ import pytest
 from broken import SOUND
 
 import tribodyn as td
-from tribodyn.study.cautions import case_cautions, mesh_cautions
-from tribodyn.study.read import read_case
+from tribodyn.study import read_case
+from tribodyn.study.pipeline.cautions import case_cautions, mesh_cautions
 
 RPM = math.pi / 30.0
 

@@ -9,12 +9,11 @@ import pytest
 from broken import SOUND
 
 import tribodyn as td
-from tribodyn.study.assembly import system_of
-from tribodyn.study.cautions import case_cautions
-from tribodyn.study.damping import damping_of
-from tribodyn.study.read import read_case
-from tribodyn.study.steps import steps_of
-from tribodyn.study.tooth_contact import mesh_of
+from tribodyn.study import read_case
+from tribodyn.study.pipeline.assembly import damping_of, system_of
+from tribodyn.study.pipeline.cautions import case_cautions
+from tribodyn.study.pipeline.motion import steps_of
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,7 @@ import warnings
 
 import pytest
 
-from tribodyn.errors import warn
-from tribodyn.study.collect import collected
+from tribodyn.errors import collected, warn
 
 
 def test_each_warning_once_in_order() -> None:

@@ -13,12 +13,10 @@ import tribodyn as td
 from tribodyn.dynamics import steady_state
 from tribodyn.mesh import MeshTable
 from tribodyn.plot import FIGURES
-from tribodyn.study.assembly import system_of
-from tribodyn.study.damping import damping_of
-from tribodyn.study.read import read_case
-from tribodyn.study.record import first_touch
-from tribodyn.study.result import Result
-from tribodyn.study.tooth_contact import mesh_of
+from tribodyn.study import Result, read_case
+from tribodyn.study.pipeline.assembly import damping_of, system_of
+from tribodyn.study.pipeline.record import first_touch
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 #: Deflection at which the relieved flanks touch, mean and swing over the mesh cycle [m].
 _TOUCH, _SWING = 6e-6, 2e-6

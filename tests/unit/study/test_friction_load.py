@@ -9,7 +9,7 @@ import pytest
 
 import tribodyn
 from tribodyn.errors import InputError, ModelWarning
-from tribodyn.study.cautions import friction_cautions
+from tribodyn.study.pipeline.cautions import friction_cautions
 
 DYNAMIC = {"dynamics.friction_load": "dynamic"}
 
@@ -78,7 +78,7 @@ def test_without_friction_nothing_follows():
 
 def test_light_loads_that_have_no_film_are_left_out(monkeypatch):
     from tribodyn.errors import ComputationError
-    from tribodyn.study import tooth_contact
+    from tribodyn.study.pipeline import tooth_contact
 
     case = tribodyn.load_case("fzg-roughness").replace({**DYNAMIC, "friction.law": "xu-2007"})
     plain, refused = tooth_contact.mesh_of, []

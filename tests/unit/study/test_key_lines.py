@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tribodyn.study.lines import key_lines
+from tribodyn.study.case.read import key_lines
 
 TEXT = '''\
 # [not.a.table]

@@ -16,11 +16,9 @@ import tribodyn as td
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, default_relief_length, flank_gap, flank_ranges
-from tribodyn.study import SUMMARY
-from tribodyn.study.case import Case
-from tribodyn.study.geometry import geometry
-from tribodyn.study.provenance import assumptions
-from tribodyn.study.read import read_case
+from tribodyn.study import SUMMARY, Case, read_case
+from tribodyn.study.case.provenance import assumptions
+from tribodyn.study.pipeline.assembly import geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -88,7 +86,7 @@ def test_faults_of_both_gears_and_of_the_geometry_come_at_once() -> None:
     )
     with pytest.raises(InputError) as caught:
         read_case(text.replace('"91.5 mm"', '"80 mm"', 1), "pair.toml")
-    places = [problem.where.partition(": ")[2] for problem in caught.value.problems]
+    places = [str(problem.where).partition(": ")[2] for problem in caught.value.problems]
     assert places == ["gears.center_distance", f"{PINION}.profile_map", f"{WHEEL}.profile_map"]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import threading
 import warnings
 
 import numpy as np
@@ -12,8 +13,9 @@ import xarray
 
 import tribodyn as td
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.study.axes import read_axes
-from tribodyn.study.sweep_result import Sweep, SweepPoint
+from tribodyn.study import Sweep
+from tribodyn.study.studies.axes import read_axes
+from tribodyn.study.studies.sweep_result import SweepPoint
 
 FIGURE = "rms_mesh_force"
 
@@ -74,17 +76,28 @@ def test_a_value_that_fails_is_told_and_the_others_go_on(case):
 
 
 def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
-    import tribodyn.study.parameter_sweep as module
+    import tribodyn.study.studies.sweep as module
 
-    run, count = module.run, []
+    computed, point = module.computed, module._point
+    ready = [threading.Event(), threading.Event()]
 
     def third_is_interrupted(changed):
-        count.append(1)
-        if len(count) == 3:
+        speed = round(changed.operation.speed * 30.0 / np.pi)
+        if speed == 1250:
+            assert all(event.wait(300.0) for event in ready)
             raise KeyboardInterrupt
-        return run(changed)
+        return computed(changed)
 
-    monkeypatch.setattr(module, "run", third_is_interrupted)
+    def told(case, axes, values):
+        found = point(case, axes, values)
+        place = axes[0].values.index(values[0])
+        if place < 2:
+            # The point counts as finished a moment after this.
+            threading.Timer(0.2, ready[place].set).start()
+        return found
+
+    monkeypatch.setattr(module, "computed", third_is_interrupted)
+    monkeypatch.setattr(module, "_point", told)
     found = td.sweep(case, between=("1000 rpm", "1500 rpm"), points=5, partial=True)
     assert not found.complete
     assert repr(found).endswith("2 of 5 done)")
@@ -93,7 +106,6 @@ def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
     found.save(tmp_path / "part")
     assert len((tmp_path / "part" / "sweep.csv").read_text().splitlines()) == 3
     assert "2 of 5" in (tmp_path / "part" / "report.html").read_text()
-    count.clear()
     with pytest.raises(KeyboardInterrupt):
         td.sweep(case, between=("1000 rpm", "1500 rpm"), points=5)
 
@@ -172,7 +184,7 @@ def test_an_unknown_figure_names_the_nearest(grid):
     ],
 )
 def test_bad_input_is_refused_before_anything_runs(case, over, words, monkeypatch):
-    monkeypatch.setattr("tribodyn.study.parameter_sweep.run", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr("tribodyn.study.studies.sweep.computed", lambda *_: pytest.fail("it ran"))
     with pytest.raises(InputError, match=words):
         td.sweep(case, over)
 

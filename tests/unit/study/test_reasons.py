@@ -11,21 +11,21 @@ from typing import Any
 import pytest
 
 import tribodyn as td
-from tribodyn.cases.catalogue import case_files
+from tribodyn.cases import case_files
 from tribodyn.cli import call
 from tribodyn.errors import InputError
+from tribodyn.model import Option
 from tribodyn.report import render_report, write_sweep_report
-from tribodyn.study.cautions import case_cautions
-from tribodyn.study.citations import cite
-from tribodyn.study.fields import Spec
-from tribodyn.study.provenance import (
+from tribodyn.study.case.provenance import (
     assumptions,
     changed_keys,
     effective,
     provenance,
     spec_of,
 )
-from tribodyn.study.read import read_case
+from tribodyn.study.case.read import read_case
+from tribodyn.study.pipeline.cautions import case_cautions
+from tribodyn.study.pipeline.citations import cite
 
 WIDTH = "gears.pinion.face_width"
 MARK = re.compile(r'^("[\w.]+") = \{ value = (.*), reason = (".*") \}$', re.MULTILINE)
@@ -129,7 +129,7 @@ def test_what_is_untouched_says_what_it_said(name: str, tmp_path: Path) -> None:
         assert case_cautions(copy) == case_cautions(case)
 
 
-def other_values(spec: Spec, value: Any) -> list[Any]:
+def other_values(spec: Option, value: Any) -> list[Any]:
     """Values of a key unlike the one in force, the likeliest to be allowed first."""
     if spec.names is not None:
         return [name for name in spec.names() if name != value]

@@ -13,9 +13,8 @@ from broken import SOUND
 
 import tribodyn as td
 from tribodyn.errors import ComputationError, OutputExistsError
-from tribodyn.study import SUMMARY
-from tribodyn.study.read import read_case
-from tribodyn.study.save import RESULT_FILES
+from tribodyn.study import SUMMARY, read_case
+from tribodyn.study.pipeline.save import RESULT_FILES
 
 _NAMED = """
 mesh_frequency mean_mesh_force rms_mesh_force peak_mesh_force mean_dynamic_transmission_error

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.dynamics import fzg12
+from tribodyn.dynamics import STRUCTURES, fzg12
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES
-from tribodyn.study.rig import RIG, RIG_KEYS
 
+RIG_KEYS = [name for name in STRUCTURES["fzg-12dof"].options if name.startswith("shaft")]
+RIG = {name: STRUCTURES["fzg-12dof"].options[name] for name in (*RIG_KEYS, "bearing_stiffness")}
 SHAFTS = ("shaft1", "shaft2")
 
 

@@ -10,7 +10,7 @@ import pytest
 import tribodyn
 from tribodyn.analysis import alternating_rms
 from tribodyn.errors import InputError
-from tribodyn.study.run_up_study import _rotation, speed_systems
+from tribodyn.study.studies.run_up import _rotation, speed_systems
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.study.save import new_directory, write_file
+from tribodyn.study.pipeline.save import new_directory, write_file
 
 
 def _fill(place: Path, text: str = "{}") -> None:

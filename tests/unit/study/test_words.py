@@ -10,8 +10,7 @@ import pytest
 
 import tribodyn
 from tribodyn.cli import call
-from tribodyn.study.reference import case_keys
-from tribodyn.study.words import choice_meanings, warning_meanings
+from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
 
 _SOURCE = Path(tribodyn.__file__).parent
 _PAGE = Path(__file__).resolve().parents[3] / "docs" / "command-line.md"

@@ -11,13 +11,13 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.look.labels import axis_label, displayed, readable, rounded
 from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
-from tribodyn.study.summary_names import SUMMARY
+from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.units import convert
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import SpeedSweep
     from tribodyn.study import Sweep
-    from tribodyn.study.axes import Axis
+    from tribodyn.study.studies.axes import Axis
 
 _WAYS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
 _WORDS = {"up": "upwards", "down": "downwards"}

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material, SpurGear
-from tribodyn.stiffness.fe2d.compliances import held_radius, wind_up_to_take_off
-from tribodyn.stiffness.fe2d.element import plane_stress
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
-from tribodyn.stiffness.fe2d.ring import Ring
+from tribodyn.stiffness.fe2d.provider import held_radius, wind_up_to_take_off
+from tribodyn.stiffness.fe2d.ring import Ring, plane_stress
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
 from tribodyn.types import Array
 
@@ -81,8 +80,10 @@ def deformed_gear(
     for tooth in shown:
         moved = np.zeros((len(mesh.outline), 2))
         for case, loaded in enumerate(teeth):
-            found = ring.displacement(solution, loaded - tooth)[:, case].reshape(-1, 2)
-            moved += forces[case] / material.youngs_modulus * found[mesh.outline]
+            displacement_of_tooth = ring.displacement(solution, loaded - tooth)[:, case].reshape(
+                -1, 2
+            )
+            moved += forces[case] / material.youngs_modulus * displacement_of_tooth[mesh.outline]
         turn = 2.0 * math.pi * tooth / gear.teeth
         # a clockwise turn of rows
         matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
@@ -100,24 +101,20 @@ def _split(
 ) -> tuple[list[int], Array, Array]:
     if not loads:
         raise InputError(
-            Problem(
-                what="no load",
-                where="argument loads",
-                why="There is nothing to deform the gear",
-                remedy="Give (tooth, radius of curvature, load per width) for each contact",
-            )
+            "no load",
+            where=Argument("loads"),
+            why="There is nothing to deform the gear",
+            remedy="Give (tooth, radius of curvature, load per width) for each contact",
         )
     teeth = [int(tooth) for tooth, _, _ in loads]
     radii = np.array([radius for _, radius, _ in loads], dtype=float)
     tip = gear.roll_angle(gear.tip_radius) * gear.base_radius
     if not np.all((radii > 0.0) & (radii <= tip * (1.0 + 1e-9))):
         raise InputError(
-            Problem(
-                what=f"radii of curvature {radii.min() * 1e3:.6g} to {radii.max() * 1e3:.6g} mm",
-                where="argument loads",
-                why=f"The flank ends at the tip with {tip * 1e3:.6g} mm",
-                remedy="Load the tooth on its involute",
-            )
+            f"radii of curvature {radii.min() * 1e3:.6g} to {radii.max() * 1e3:.6g} mm",
+            where=Argument("loads"),
+            why=f"The flank ends at the tip with {tip * 1e3:.6g} mm",
+            remedy="Load the tooth on its involute",
         )
     return teeth, radii, np.array([load for _, _, load in loads], dtype=float)
 

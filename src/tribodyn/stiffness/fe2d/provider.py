@@ -3,30 +3,114 @@
 from __future__ import annotations
 
 import hashlib
+import os
+import sys
+import tempfile
+import zipfile
+from collections.abc import Mapping
 from functools import cache as remember
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from tribodyn.compiled import source_digest
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Material, SpurGear
-from tribodyn.stiffness.fe2d.cache import load_arrays, store_arrays
-from tribodyn.stiffness.fe2d.compliances import (
-    NODES,
-    UnitCompliances,
-    held_radius,
-    unit_compliances,
-    wind_up_to_take_off,
-)
-from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize
-from tribodyn.stiffness.influence import GearInfluence
+from tribodyn.stiffness.fe2d.flank_load import flank_loads, remainder_loads
+from tribodyn.stiffness.fe2d.ring import Ring, plane_stress
+from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.sainsot import LARGEST_RATIO, wind_up_compliance
+from tribodyn.stiffness.teeth.tooth_compliance import check_reference
+from tribodyn.types import Array, Mask
+
+#: Places along the flank.
+NODES = 25
+#: Least radius of curvature that is tabulated [modules].
+_LEAST_CURVATURE = 0.02
+#: Distances from the tip corner [modules] from which the self compliance goes on to the tip.
+_TIP_SUPPORT = np.array([0.07, 0.11, 0.15])
+#: Largest share of the involute that this may take.
+_TIP_SHARE = 0.3
+
+
+class UnitCompliances(NamedTuple):
+    """Compliances for a Young's modulus of one."""
+
+    curvature_radius: Array  #: nodes [m]
+    self_compliance: Array
+    cross_compliance: Array
+
+
+def held_radius(gear: SpurGear) -> float:
+    """Radius of the circle where the body is held."""
+    if gear.bore_diameter > 0.0:
+        return 0.5 * gear.bore_diameter
+    return gear.root_radius / LARGEST_RATIO
+
+
+def wind_up_to_take_off(gear: SpurGear, material: Material, reference: str) -> float:
+    """Wind-up of the body per unit width that does not belong to the reference."""
+    check_reference(reference)
+    held = 0.5 * gear.bore_diameter if reference == "bore" else held_radius(gear)
+    wind_up = wind_up_compliance(gear.base_radius, gear.root_radius, held, 1.0, material)
+    return wind_up if reference == "rim" else 0.0
+
+
+def unit_compliances(
+    gear: SpurGear,
+    poissons_ratio: float,
+    neighbours: int,
+    size: MeshSize | None = None,
+    held_at: float | None = None,
+) -> UnitCompliances:
+    """Compliances of a gear whose body is held along a circle."""
+    held = held_radius(gear) if held_at is None else held_at
+    elasticity = plane_stress(1.0, poissons_ratio)
+    mesh = tooth_mesh(gear, held, size)
+    ring = Ring(mesh, elasticity)
+    rho, support = _places(gear)
+    loads = flank_loads(gear, mesh, np.concatenate([rho, support]))
+    near = np.append(rho > support[0], np.zeros(support.size, dtype=bool))
+    forces = loads.forces.copy()
+    place, direction, depth = (rows[~near] for rows in loads[:3])
+    forces[:, ~near] = remainder_loads(mesh, place, direction, depth, elasticity)
+    solution = ring.solve(forces)
+    # the side of larger radii is the clockwise one
+    seen = ring.seen(solution, loads.forces, [-n for n in range(neighbours + 1)])
+    self_compliance = _carried_to_tip(rho, support, np.diagonal(seen[0]), near[: rho.size])
+    return UnitCompliances(rho, self_compliance, seen[1:, : rho.size, : rho.size].copy())
+
+
+def _places(gear: SpurGear) -> tuple[Array, Array]:
+    """Nodes from the form circle to the tip, denser at both ends, and supports near the tip [m]."""
+    base, module = gear.base_radius, gear.normal_module
+    tip = gear.roll_angle(gear.tip_radius) * base
+    form = gear.roll_angle(max(gear.form_radius, base)) * base
+    low = max(form, min(_LEAST_CURVATURE * module, 0.5 * tip))
+    share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, NODES))
+    rho = low + (tip - low) * share
+    rho[-1] = tip
+    flank = 0.5 * (tip * tip - low * low) / base
+    shrink = min(1.0, _TIP_SHARE * flank / (_TIP_SUPPORT[-1] * module))
+    return rho, np.sqrt(tip * tip - 2.0 * base * module * shrink * _TIP_SUPPORT)
+
+
+def _carried_to_tip(rho: Array, support: Array, self_compliance: Array, near: Mask) -> Array:
+    """Self compliance at the nodes, beyond the supports as the parabola of the length."""
+    tip = rho[-1]
+    scale = tip * tip - support[-1] ** 2
+    curve = np.polyfit((tip * tip - support**2) / scale, self_compliance[rho.size :], 2)
+    parabola = np.polyval(curve, (tip * tip - rho * rho) / scale)
+    return np.where(near, parabola, self_compliance[: rho.size])
+
 
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
-    (".", "compliances element flamant flank_load ring sector_mesh tooth_mesh tooth_side"),
-    ("..", "load_point sainsot"),
-    ("../../gear", "form_circle involute rack tooth_form trochoid"),
+    (".", "flank_load provider ring tooth_mesh"),
+    ("../teeth", "load_point sainsot"),
+    ("../../gear", "curves rack tooth_form"),
 )
 
 
@@ -53,7 +137,7 @@ def fe2d_influence(
         Number of neighbours on each side that are known, 1 or more; no more than there are.
     cache : bool
         Whether the result is looked up and kept in the folder of
-        :func:`tribodyn.stiffness.fe2d.cache.cache_folder`.
+        :func:`tribodyn.stiffness.fe2d.provider.cache_folder`.
     size : MeshSize, optional
         Sizes of the elements.
 
@@ -89,20 +173,18 @@ def fe2d_influence(
     wind_up = wind_up_to_take_off(gear, material, reference)
     if neighbours < 1:
         raise InputError(
-            Problem(
-                what=f"neighbours = {neighbours}",
-                where="argument neighbours",
-                why="Teeth in contact at the same time move one another",
-                remedy="Give 1 or more",
-            )
+            f"neighbours = {neighbours}",
+            where=Argument("neighbours"),
+            why="Teeth in contact at the same time move one another",
+            remedy="Give 1 or more",
         )
     known = max(min(neighbours, (gear.teeth - 1) // 2), 1)
-    found = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)
-    own = found.self_compliance / material.youngs_modulus - wind_up
-    if not np.all(own > 0.0):
+    unit = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)
+    self_compliance = unit.self_compliance / material.youngs_modulus - wind_up
+    if not np.all(self_compliance > 0.0):
         raise InputError(_too_thin(gear))
-    cross = found.cross_compliance / material.youngs_modulus - wind_up
-    return GearInfluence(found.curvature_radius, own, cross)
+    cross = unit.cross_compliance / material.youngs_modulus - wind_up
+    return GearInfluence(unit.curvature_radius, self_compliance, cross)
 
 
 def _too_thin(gear: SpurGear) -> Problem:
@@ -127,14 +209,14 @@ def _looked_up(
     arrays = load_arrays(name)
     if arrays is not None and set(arrays) == set(UnitCompliances._fields):
         kept = UnitCompliances(**arrays)
-        shapes = [part.shape for part in kept]
+        shapes = [rows.shape for rows in kept]
         if shapes == [(NODES,), (NODES,), (neighbours, NODES, NODES)] and all(
-            np.all(np.isfinite(part)) for part in kept
+            np.all(np.isfinite(rows)) for rows in kept
         ):
             return kept
-    found = unit_compliances(gear, poissons_ratio, neighbours, size)
-    store_arrays(name, found._asdict())
-    return found
+    unit = unit_compliances(gear, poissons_ratio, neighbours, size)
+    store_arrays(name, unit._asdict())
+    return unit
 
 
 def _file_name(gear: SpurGear, poissons_ratio: float, neighbours: int, size: MeshSize) -> str:
@@ -157,3 +239,51 @@ def _file_name(gear: SpurGear, poissons_ratio: float, neighbours: int, size: Mes
 def _digest() -> str:
     here = Path(__file__).parent
     return "".join(source_digest(here / folder, names.split()) for folder, names in _SOURCES)
+
+
+#: Environment variable that names another folder.
+VARIABLE = "TRIBODYN_CACHE_DIR"
+
+
+def cache_folder() -> Path:
+    """Folder of the kept arrays, which need not exist."""
+    given = os.environ.get(VARIABLE)
+    if given:
+        return Path(given)
+    if sys.platform == "win32":
+        local = os.environ.get("LOCALAPPDATA")
+        return (Path(local) if local else Path.home() / "AppData" / "Local") / "tribodyn" / "Cache"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "tribodyn"
+    shared = os.environ.get("XDG_CACHE_HOME")
+    return (Path(shared) if shared else Path.home() / ".cache") / "tribodyn"
+
+
+def load_arrays(name: str) -> dict[str, Array] | None:
+    """Read kept arrays."""
+    try:
+        with np.load(_path(name), allow_pickle=False) as file:
+            return {key: np.asarray(file[key], dtype=float) for key in file.files}
+    except (OSError, ValueError, KeyError, EOFError, RuntimeError, zipfile.BadZipFile):
+        return None
+
+
+def store_arrays(name: str, arrays: Mapping[str, Array]) -> bool:
+    """Keep arrays, at once or not at all: another process never sees half a file."""
+    path = _path(name)
+    temporary = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
+        with os.fdopen(handle, "wb") as file:
+            np.savez(file, **dict(arrays))  # type: ignore[arg-type]
+        os.replace(temporary, path)
+    except (OSError, RuntimeError):
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
+        return False
+    return True
+
+
+def _path(name: str) -> Path:
+    return cache_folder() / "fe2d" / f"{name}.npz"

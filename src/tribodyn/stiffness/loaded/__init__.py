@@ -1,11 +1,19 @@
-"""The loaded tooth contact: which pairs carry what, and by how much the mesh gives way."""
+"""The loaded tooth contact: which pairs carry what, and by how much the mesh gives way.
 
-from tribodyn.stiffness.loaded.contact import loaded_contact
+| module | what it answers |
+| --- | --- |
+| `contact` | from a gear pair, a torque and a model's name to the loaded contact |
+| `load_points` | where tooth pairs may touch, and how far their flanks are apart there |
+| `problem` | compliance of all pairs together; loads at an approach and approach at a load |
+| `kernel` | the compiled solver of that problem |
+| `result` | load sharing, transmission error, stiffness, harmonics, loads at the foot |
+| `models` | stiffness models whose pairs are solved together |
+"""
+
+from tribodyn.stiffness.loaded.contact import contact_problem, loaded_contact, mesh_problem
 from tribodyn.stiffness.loaded.models import OPTIONS
-from tribodyn.stiffness.loaded.prepare import contact_problem, mesh_problem
 from tribodyn.stiffness.loaded.problem import ContactProblem, Equilibrium
-from tribodyn.stiffness.loaded.result import LoadedContact
-from tribodyn.stiffness.loaded.root_loads import RootLoads
+from tribodyn.stiffness.loaded.result import LoadedContact, RootLoads
 
 __all__ = [
     "OPTIONS",

@@ -3,19 +3,220 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import require_positive
+from tribodyn.contact import path_of_contact
+from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.loaded.gaps import mesh_period
-from tribodyn.stiffness.loaded.prepare import NO_OPTIONS, contact_problem, phases_of
-from tribodyn.stiffness.loaded.problem import ContactProblem, Equilibrium
+from tribodyn.stiffness.loaded.load_points import (
+    ContactPlaces,
+    contact_places,
+    extended_places,
+    mesh_period,
+    on_path_places,
+    slice_gaps,
+    slice_widths,
+)
+from tribodyn.stiffness.loaded.problem import (
+    Compliance,
+    ContactProblem,
+    Equilibrium,
+    coupled_compliance,
+    independent_compliance,
+    local_coefficients,
+)
 from tribodyn.stiffness.loaded.result import LoadedContact
-from tribodyn.stiffness.model import MODELS
-from tribodyn.types import Array
+from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
+from tribodyn.types import Array, Mask
+
+NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
+
+
+def compliance_of(
+    pair: SpurPair,
+    material: Material,
+    places: ContactPlaces,
+    total_force: float,
+    model: StiffnessModel,
+    options: Mapping[str, Any] = NO_OPTIONS,
+) -> Compliance:
+    """Compliance of the teeth at given places by a named model."""
+    if model.influence is not None:
+        reference = {**model.options, **options}["reference"]
+        pinion, wheel = (
+            model.influence(gear, material, reference=reference)
+            for gear in (pair.pinion, pair.wheel)
+        )
+        structure = coupled_compliance(pinion, wheel, places)
+        return Compliance(structure, *local_coefficients(material, places))
+    stiffness = model(
+        pair, material, places.path, places.on_path, places.phase, total_force, **options
+    )
+    checked = usable_stiffness(stiffness, places.on_path, model.name)
+    structure = independent_compliance(checked, pair.common_face_width)
+    return Compliance(structure, np.zeros(places.path.shape), 0.0)
+
+
+def contact_problem(
+    pair: SpurPair,
+    *,
+    provider: str = "fe2d",
+    phase: Array,
+    total_force: float,
+    extended_contact: bool = True,
+    material: Material,
+    options: Mapping[str, Any] = NO_OPTIONS,
+    slices: int | None = None,
+) -> ContactProblem:
+    """Prepare the loaded tooth contact at given mesh phases.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position, with their deviations.
+    provider : str
+        Name in ``tribodyn.stiffness.MODELS``.
+    phase : array (p,)
+        Mesh phases; the whole part counts mesh cycles, where teeth differ.
+    total_force : float [N]
+        Normal force of all pairs.
+    extended_contact : bool
+        Let tip corners touch outside of the path of contact.
+    material : Material
+        Material of both gears.
+    options : mapping
+        Options of the provider.
+    slices : int, optional
+        Slices of the face width; by default one, or 21 where flanks vary over the width.
+
+    Returns
+    -------
+    ContactProblem
+
+    Raises
+    ------
+    InputError
+        If the provider is unknown or something is out of range.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
+    >>> problem = contact_problem(pair, provider="analytic", phase=np.array([0.0, 0.5]),
+    ...     total_force=2000.0, material=Material(), options={"reference": "rim"})
+    >>> problem.gaps.shape
+    (2, 1, 4)
+    """
+    model = MODELS[provider]
+    extended = extended_contact and model.influence is not None
+    places = contact_places(pair, phase, extended=extended)
+    compliance = compliance_of(pair, material, places, total_force, model, options)
+    widths = slice_widths(pair, slices)
+    return ContactProblem(places, compliance, slice_gaps(places, widths.size), widths)
+
+
+def mesh_problem(
+    pair: SpurPair,
+    *,
+    provider: str,
+    places: tuple[Array, Array, Mask],
+    total_force: float,
+    extended_contact: bool,
+    material: Material,
+    options: Mapping[str, Any] = NO_OPTIONS,
+) -> ContactProblem:
+    """Prepare the loaded tooth contact on the knots of a mesh table, one-sided at its events.
+
+    A mesh table repeats with every mesh cycle, so what differs from tooth to tooth is left out.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position, with their deviations.
+    provider : str
+        Name in ``tribodyn.stiffness.MODELS``.
+    places : tuple
+        Phase (p,), path (p, n) [m] and whether each pair is between A and E (p, n).
+    total_force : float [N]
+        Normal force of all pairs.
+    extended_contact : bool
+        Let tip corners touch outside of the path of contact; then there are two pairs more.
+    material : Material
+        Material of both gears.
+    options : mapping
+        Options of the provider.
+
+    Returns
+    -------
+    ContactProblem
+
+    Raises
+    ------
+    InputError
+        As :func:`contact_problem`.
+
+    Examples
+    --------
+    >>> from tribodyn.contact import path_of_contact
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
+    >>> phase = np.array([0.0, 1.0])
+    >>> places = phase, *path_of_contact(pair).pair_paths(phase)
+    >>> mesh_problem(pair, provider="analytic", places=places, total_force=2000.0,
+    ...     extended_contact=False, material=Material(), options={"reference": "rim"}).gaps.shape
+    (2, 1, 2)
+    """
+    model, contact = MODELS[provider], path_of_contact(pair)
+    phase, path, touching = places
+    if extended_contact and model.influence is not None:
+        where = extended_places(contact, phase, path)
+    else:
+        where = on_path_places(contact, phase, path, touching)
+    compliance = compliance_of(pair, material, where, total_force, model, options)
+    widths = slice_widths(pair, None)
+    gaps = slice_gaps(where, widths.size, teeth_alike=True)
+    return ContactProblem(where, compliance, gaps, widths)
+
+
+def contact_settings(
+    provider: str,
+    phase: Array,
+    extended_contact: bool,
+    reference: str | None,
+    material: Material | None,
+    slices: int | None,
+    options: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Arguments of :func:`contact_problem` but for the pair and its load."""
+    known = reference is not None and "reference" in MODELS[provider].options
+    return {
+        "provider": provider,
+        "phase": phase,
+        "extended_contact": extended_contact,
+        "material": material or Material(),
+        "options": {**options, "reference": reference} if known else dict(options),
+        "slices": slices,
+    }
+
+
+def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
+    """Mesh phases over all cycles, from a number for each cycle or as they are given."""
+    if not isinstance(phases, int | np.integer):
+        return np.atleast_1d(np.asarray(phases, dtype=float))
+    if phases < 8:
+        raise InputError(
+            f"phases = {phases}",
+            where=Argument("phases"),
+            why="A mesh cycle needs at least 8 phases",
+            remedy="Give for example phases=64",
+        )
+    return np.arange(int(phases) * mesh_cycles) / int(phases)
 
 
 def loaded_contact(
@@ -88,23 +289,16 @@ def loaded_contact(
     """
     torques = np.asarray(torque, dtype=float)
     require_positive("torque", torques, "N*m")
-    chosen = dict(options)
-    if reference is not None and "reference" in MODELS[provider].options:
-        chosen["reference"] = reference
-    given = {
-        "provider": provider,
-        "phase": phases_of(phases, mesh_period(pair)),
-        "extended_contact": extended_contact,
-        "material": material or Material(),
-        "options": chosen,
-        "slices": slices,
-    }
+    phase = phases_of(phases, mesh_period(pair))
+    settings = contact_settings(
+        provider, phase, extended_contact, reference, material, slices, options
+    )
     totals = np.atleast_1d(torques) / pair.pinion.base_radius
-    problem, found = _solved(pair, totals, film_stiffness, given)
+    problem, equilibrium = _solved(pair, totals, film_stiffness, settings)
     shape = torques.shape
-    places, pairs = problem.places, found.load.shape[-1]
-    load = found.load.reshape(*shape, *found.load.shape[1:])
-    held = {**MODELS[provider].options, **chosen}.get("reference", "as measured")
+    places, pairs = problem.places, equilibrium.load.shape[-1]
+    load = equilibrium.load.reshape(*shape, *equilibrium.load.shape[1:])
+    held = {**MODELS[provider].options, **settings["options"]}.get("reference", "as measured")
     return LoadedContact(
         gear_pair=pair,
         provider=provider,
@@ -116,33 +310,36 @@ def loaded_contact(
         pinion_curvature_radius=places.pinion_curvature_radius,
         wheel_curvature_radius=places.wheel_curvature_radius,
         gap=problem.gaps.min(axis=1),
-        transmission_error=found.approach.reshape(*shape, places.phase.size),
+        transmission_error=equilibrium.approach.reshape(*shape, places.phase.size),
         normal_force=np.einsum("s,...psn->...pn", problem.widths, load).reshape(
             *shape, places.phase.size, pairs
         ),
         load_per_width=load,
-        mesh_stiffness_tangent=found.tangent.reshape(*shape, places.phase.size),
+        mesh_stiffness_tangent=equilibrium.tangent.reshape(*shape, places.phase.size),
     )
 
 
 def _solved(
-    pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, given: dict[str, Any]
+    pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, settings: dict[str, Any]
 ) -> tuple[ContactProblem, Equilibrium]:
     """One problem for all loads, or one for each where the stiffness itself depends on the load."""
 
-    def solve(some: Array) -> tuple[ContactProblem, Equilibrium]:
-        problem = contact_problem(pair, total_force=float(some[0]), **given)
+    def solve(forces: Array) -> tuple[ContactProblem, Equilibrium]:
+        problem = contact_problem(pair, total_force=float(forces[0]), **settings)
         if film_stiffness is not None:
             shape = problem.compliance.local.shape
             problem = problem.with_film(np.broadcast_to(np.asarray(film_stiffness, float), shape))
-        order = np.argsort(some)
-        found = problem.at_loads(some[order])
+        order = np.argsort(forces)
+        equilibrium = problem.at_loads(forces[order])
         back = np.argsort(order)
-        return problem, Equilibrium(*(part[back] for part in found))
+        return problem, Equilibrium(*(column[back] for column in equilibrium))
 
-    if MODELS[given["provider"]].influence is not None or totals.size == 1:
+    if MODELS[settings["provider"]].influence is not None or totals.size == 1:
         return solve(totals)
     each = [solve(totals[k : k + 1]) for k in range(totals.size)]
     return each[0][0], Equilibrium(
-        *(np.concatenate(parts) for parts in zip(*(found for _, found in each), strict=True))
+        *(
+            np.concatenate(parts)
+            for parts in zip(*(equilibrium for _, equilibrium in each), strict=True)
+        )
     )

@@ -2,7 +2,7 @@
 
 For each slice of the face width ``delta = gap_i + sum_j C_ij f_j + f_i (A_i - B ln f_i)`` where a
 pair carries, ``f_i >= 0``, and ``delta <= gap_i + sum_j C_ij f_j`` where it does not: the minimum
-of a convex function. Replaces, and is tested against, :mod:`tribodyn.stiffness.loaded.plain`.
+of a convex function. Replaces, and is tested against, ``tests/plain/loaded_contact.py``.
 
 Loads ``f`` are per face width [N/m], compliances ``C``, ``A``, ``B`` [m^2/N], gaps and ``delta``
 [m]. Status 0 is success, 1 no convergence, 2 a contact so wide that the formula of the local

@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.influence import GearInfluence
-from tribodyn.stiffness.loaded.prepare import mesh_problem
-from tribodyn.stiffness.model import MODELS, StiffnessModel
-from tribodyn.types import Array, Mask
+from tribodyn.gear import Material, SpurGear
+from tribodyn.model import flag
+from tribodyn.stiffness.loaded.contact import mesh_problem
+from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, reference_option
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.types import Array
 
 #: Options of every model that knows the structure of the gears.
 OPTIONS = {"reference": "bore", "extended_contact": True}
@@ -28,52 +29,74 @@ def _fe2d(gear: SpurGear, material: Material, *, reference: str) -> GearInfluenc
 
 
 def _analytic(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.analytic import analytic_influence
+    from tribodyn.stiffness.teeth.analytic import analytic_influence
 
     return analytic_influence(gear, material, reference=reference)
 
 
 def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.weber import weber_influence
+    from tribodyn.stiffness.teeth.weber import weber_influence
 
     return weber_influence(gear, material, reference=reference)
 
 
 def _pair_stiffness(name: str) -> Callable[..., Array]:
-    def function(
-        pair: SpurPair,
-        material: Material,
-        path: Array,
-        in_contact: Mask,
-        phase: Array,
-        normal_force: float,
-        **options: Any,
-    ) -> Array:
+    def function(*mesh: Any, **options: Any) -> Array:
+        state = MeshState(*mesh)
         problem = mesh_problem(
-            pair,
+            state.pair,
             provider=name,
-            places=(phase, path, in_contact),
-            total_force=normal_force,
+            places=(state.phase, state.path, state.in_contact),
+            total_force=state.normal_force,
             extended_contact=bool(options.get("extended_contact")),
-            material=material,
+            material=state.material,
             options=options,
         )
-        found = problem.at_loads(np.array([normal_force]))
-        force = np.einsum("s,psn->pn", problem.widths, found.load[0])
-        if force.shape != in_contact.shape:
+        equilibrium = problem.at_loads(np.array([state.normal_force]))
+        force = np.einsum("s,psn->pn", problem.widths, equilibrium.load[0])
+        if force.shape != state.in_contact.shape:
             force = force[:, 1:-1]
-        deflection = found.approach[0] - problem.least_gap
-        return np.where(in_contact, force / deflection[:, None], 0.0)
+        deflection = equilibrium.approach[0] - problem.least_gap
+        return np.where(state.in_contact, force / deflection[:, None], 0.0)
 
     return function
 
 
-def _register(
-    name: str, influence: Callable[..., GearInfluence], options: dict[str, Any], coupled: bool
-) -> None:
-    MODELS.register(name)(StiffnessModel(name, _pair_stiffness(name), options, influence, coupled))
-
-
-_register("fe2d", _fe2d, OPTIONS, coupled=True)
-_register("analytic", _analytic, OPTIONS, coupled=True)
-_register("weber", _weber, {"reference": "rim"}, coupled=False)
+_DECLARED = {
+    "reference": reference_option("bore"),
+    "extended_contact": flag(
+        True, meaning="let tip corners of bent teeth touch before A and after E"
+    ),
+}
+for _model in (
+    StiffnessModel(
+        "fe2d",
+        _pair_stiffness("fe2d"),
+        _DECLARED,
+        _fe2d,
+        coupled=True,
+        meaning="stiffness from plane finite elements of both whole gears, all tooth pairs solved "
+        "together",
+        papers=("weber-banaschek", "conry-seireg"),
+    ),
+    StiffnessModel(
+        "analytic",
+        _pair_stiffness("analytic"),
+        _DECLARED,
+        _analytic,
+        coupled=True,
+        meaning="stiffness from strain energy of the teeth and Fourier series of the gear bodies, "
+        "all pairs together",
+        papers=("weber-banaschek", "conry-seireg"),
+    ),
+    StiffnessModel(
+        "weber",
+        _pair_stiffness("weber"),
+        {"reference": reference_option("rim")},
+        _weber,
+        meaning="stiffness after Weber: bending of the tooth, half plane under it, local "
+        "compression",
+        papers=("weber-banaschek",),
+    ),
+):
+    MODELS.register(_model.name)(_model)

@@ -2,15 +2,72 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.contact import effective_modulus
 from tribodyn.errors import ComputationError, Problem
-from tribodyn.stiffness.loaded.places import FAR, ContactPlaces
-from tribodyn.stiffness.loaded.structure import Compliance
+from tribodyn.gear import Material
+from tribodyn.stiffness.loaded.load_points import FAR, ContactPlaces
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.load_point import load_point
 from tribodyn.types import Array
+
+
+def coupled_compliance(pinion: GearInfluence, wheel: GearInfluence, places: ContactPlaces) -> Array:
+    """Structural compliance of all pairs that may touch, coupled through both gear bodies."""
+    radii = [
+        np.clip(radius, *gear.curvature_radius[[0, -1]])
+        for gear, radius in (
+            (pinion, places.pinion_curvature_radius),
+            (wheel, places.wheel_curvature_radius),
+        )
+    ]
+    count = places.path.shape[1]
+    total = np.empty((places.path.shape[0], count, count))
+    for i in range(count):
+        total[:, i, i] = pinion.at(radii[0][:, i]) + wheel.at(radii[1][:, i])
+        for j in range(i + 1, count):
+            further = (j - i) * places.direction
+            cross = pinion.between(radii[0][:, i], radii[0][:, j], further)
+            cross = cross + wheel.between(radii[1][:, i], radii[1][:, j], -further)
+            total[:, i, j] = total[:, j, i] = cross
+    return total
+
+
+def independent_compliance(stiffness: Array, face_width: float) -> Array:
+    """Compliance of pairs that know nothing of each other."""
+    touching = stiffness > 0.0
+    diagonal = np.where(touching, face_width / np.where(touching, stiffness, 1.0), 1.0)
+    return np.asarray(diagonal[..., None] * np.eye(stiffness.shape[1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Compliance:
+    """Everything that the solver needs of the teeth at some phases."""
+
+    structure: Array  #: compliance without the local compression [m^2/N]
+    local: Array  #: coefficient ``A`` of the local compression ``f (A - B ln f)`` [m^2/N]
+    logarithm: float  #: coefficient ``B`` [m^2/N]
+
+
+def local_coefficients(material: Material, places: ContactPlaces) -> tuple[Array, float]:
+    """Coefficients of the compression after Weber and Banaschek with its Hertzian half width."""
+    nu = material.poissons_ratio
+    scale = 2.0 * (1.0 - nu**2) / (math.pi * material.youngs_modulus)
+    radii = places.pinion_curvature_radius, places.wheel_curvature_radius
+    reduced = radii[0] * radii[1] / (radii[0] + radii[1])
+    square = 8.0 * reduced / (math.pi * effective_modulus(material, material))
+    total = np.zeros(places.path.shape)
+    pair = places.contact.pair
+    for gear, radius in zip((pair.pinion, pair.wheel), radii, strict=True):
+        depth = load_point(gear, radius).depth
+        total += np.log(2.0 * depth) - 0.5 * np.log(square) - nu / (2.0 * (1.0 - nu))
+    return scale * total, scale
+
 
 _STATUS = {
     1: ("the loads of the tooth pairs do not settle", "Check the load and the deviations"),
@@ -102,13 +159,17 @@ class ContactProblem:
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
         phases, slices, pairs = self.gaps.shape
-        found = Equilibrium(
+        equilibrium = Equilibrium(
             np.empty((totals.size, phases)),
             np.empty((totals.size, phases, slices, pairs)),
             np.empty((totals.size, phases)),
         )
-        _told(solve_loads(*self._arguments, self.widths, np.asarray(totals, dtype=float), *found))
-        return found
+        _check_status(
+            solve_loads(
+                *self._arguments, self.widths, np.asarray(totals, dtype=float), *equilibrium
+            )
+        )
+        return equilibrium
 
     def at_approach(self, approach: Array) -> tuple[Array, Array]:
         """Force and tangent stiffness at given approaches.
@@ -132,7 +193,7 @@ class ContactProblem:
 
         total, tangent = np.empty(approach.shape), np.empty(approach.shape)
         asked = np.ascontiguousarray(approach, dtype=float)
-        _told(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
+        _check_status(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
         return total, tangent
 
     def tangent_at(self, load_per_width: Array) -> Array:
@@ -177,9 +238,9 @@ class ContactProblem:
         """
         from tribodyn.stiffness.loaded.kernel import pickups
 
-        found = np.empty(self.compliance.local.shape)
-        _told(pickups(*self._arguments, np.ascontiguousarray(most), found))
-        return found
+        approach = np.empty(self.compliance.local.shape)
+        _check_status(pickups(*self._arguments, np.ascontiguousarray(most), approach))
+        return approach
 
     @property
     def _arguments(self) -> tuple[Array, Array, float, Array]:
@@ -187,7 +248,7 @@ class ContactProblem:
         return parts.structure, parts.local, parts.logarithm, np.minimum(self.gaps, FAR)
 
 
-def _told(status: int) -> None:
+def _check_status(status: int) -> None:
     if status:
         what, remedy = _STATUS[status]
         raise ComputationError(Problem(what, "loaded tooth contact", "", remedy))

@@ -2,22 +2,110 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.gear import SpurPair
-from tribodyn.stiffness.loaded.root_loads import RootLoads, root_loads
+from tribodyn.errors import Argument, InputError
+from tribodyn.gear import SpurGear, SpurPair, half_tooth
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.record import Parts, Record, fact, record
+from tribodyn.stiffness.teeth.load_point import load_point
 from tribodyn.types import Array, Index
 
-if TYPE_CHECKING:
-    import xarray
+
+class RootLoads(NamedTuple):
+    """Loads at the feet of the teeth of both gears, (..., p, n) each.
+
+    Parameters
+    ----------
+    pinion_bending_moment, wheel_bending_moment : array [N*m]
+        About the middle of the foot, positive where the loaded flank is in tension.
+    pinion_shear_force, wheel_shear_force : array [N]
+        Across the axis of the tooth.
+    pinion_compressive_force, wheel_compressive_force : array [N]
+        Along the axis of the tooth, towards the gear centre.
+    """
+
+    pinion_bending_moment: Array
+    wheel_bending_moment: Array
+    pinion_shear_force: Array
+    wheel_shear_force: Array
+    pinion_compressive_force: Array
+    wheel_compressive_force: Array
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class LoadedContact:
+def root_loads(pair: SpurPair, curvature_radii: tuple[Array, Array], force: Array) -> RootLoads:
+    """Carry the normal force of every pair to the feet of its two teeth.
+
+    The foot is the height at which the fillet meets the root circle, the lowest section of the
+    tooth; the force crosses the axis of the tooth at the height ``h``:
+    ``M = F cos(a) (h - h_foot)``, ``Q = F cos(a)``, ``N = F sin(a)``. Without friction. Source:
+    statics; the lever of ISO 6336-3 is that of the 30 degree tangent, a little higher.
+    """
+    feet = [
+        _foot(gear, radius, force)
+        for gear, radius in zip((pair.pinion, pair.wheel), curvature_radii, strict=True)
+    ]
+    return RootLoads(*(load for both in zip(*feet, strict=True) for load in both))
+
+
+def _foot(gear: SpurGear, curvature_radius: Array, force: Array) -> tuple[Array, Array, Array]:
+    load = load_point(gear, curvature_radius)
+    lever = load.axis_height - half_tooth(gear)[0][0]
+    across = force * np.cos(load.load_angle)
+    return across * lever, across, force * np.sin(load.load_angle)
+
+
+def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: int) -> Array:
+    """Peak amplitudes of the orders 1, 2, ... of the mesh frequency."""
+    even = np.arange(phase.size) * (mesh_cycles / phase.size) + phase[0]
+    if not np.allclose(phase, even, rtol=0.0, atol=1e-9):
+        raise InputError(
+            "mesh phases that are not evenly spaced",
+            where=Argument("phases"),
+            why="Harmonics need evenly spaced phases over whole mesh cycles",
+            remedy="Give the number of phases of a mesh cycle instead",
+        )
+    if not 1 <= count < phase.size / (2 * mesh_cycles):
+        raise InputError(
+            f"count = {count}",
+            where=Argument("count"),
+            why=f"{phase.size // mesh_cycles} phases of a mesh cycle have less than half as "
+            "many harmonics",
+            remedy="Give more phases, for example phases=64",
+        )
+    spectrum = 2.0 * np.abs(np.fft.rfft(values, axis=-1)) / phase.size
+    return np.asarray(spectrum[..., mesh_cycles * np.arange(1, count + 1)])
+
+
+#: Array -> its last dimensions and its quantity in the nomenclature.
+_ARRAYS: dict[str, tuple[tuple[str, ...], str]] = {
+    "transmission_error": (("phase",), "static_transmission_error"),
+    "deflection": (("phase",), "static_transmission_error"),
+    "mesh_stiffness_secant": (("phase",), "mesh_stiffness_secant"),
+    "mesh_stiffness_tangent": (("phase",), "mesh_stiffness_tangent"),
+    "normal_force": (("phase", "pair"), "normal_force"),
+    "load_share": (("phase", "pair"), "load_share"),
+    "pair_deflection": (("phase", "pair"), "static_transmission_error"),
+    "load_per_width": (("phase", "slice", "pair"), "load_per_width"),
+}
+_PLACES: dict[str, str] = {
+    "path": "path",
+    "gap": "static_transmission_error",
+    "pinion_curvature_radius": "curvature_radius",
+    "wheel_curvature_radius": "curvature_radius",
+}
+
+
+def _labels(quantity: str) -> dict[str, str]:
+    known = QUANTITIES[quantity]
+    return {"units": known.unit or "1", "long_name": known.meaning}
+
+
+@record
+class LoadedContact(Record):
     """Quasi-static mesh under load; made by :func:`tribodyn.stiffness.loaded_contact`.
 
     Shapes: ``...`` is nothing for one torque and (torques,) for several; p phases, n tooth pairs
@@ -56,8 +144,8 @@ class LoadedContact:
     """
 
     gear_pair: SpurPair
-    provider: str
-    reference: str
+    provider: str = fact()
+    reference: str = fact()
     torque: Array
     phase: Array
     number: Index
@@ -134,34 +222,38 @@ class LoadedContact:
         InputError
             If there are too few phases, or they are not evenly spaced.
         """
-        from tribodyn.stiffness.loaded.harmonics import harmonic_amplitudes
-
         return harmonic_amplitudes(self.phase, self.transmission_error, self.mesh_cycles, count)
 
     @property
     def root_loads(self) -> RootLoads:
         """Bending moment, shear and normal force at the foot of every loaded tooth."""
-        return root_loads(self)
+        radii = self.pinion_curvature_radius, self.wheel_curvature_radius
+        return root_loads(self.gear_pair, radii, self.normal_force)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set with units.
+    def _parts(self) -> Parts:
+        parts, several = super()._parts(), ("torque",) * self.torque.ndim
+        for name, (dims, quantity) in _ARRAYS.items():
+            parts.variables[name] = ((*several, *dims), getattr(self, name), _labels(quantity))
+        for name, quantity in _PLACES.items():
+            parts.variables[name] = (("phase", "pair"), getattr(self, name), _labels(quantity))
+        parts.coordinates["phase"] = ("phase", self.phase, _labels("mesh_phase"))
+        parts.coordinates["pair"] = ("pair", self.number)
+        parts.coordinates["torque"] = (several, self.torque, _labels("torque"))
+        return parts
 
-        Returns
-        -------
-        xarray.Dataset
-        """
-        from tribodyn.stiffness.loaded.dataset import to_xarray
-
-        return to_xarray(self)
-
-    def plot(self) -> Any:
+    def plot(self, **options: Any) -> Any:
         """Draw transmission error, stiffness and load sharing over the roll angle.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
 
         Returns
         -------
         plotly.graph_objects.Figure
         """
-        return draw(self, "loaded_contact")
+        return draw(self, "loaded_contact", **options)
 
     def plot_load_sharing(self) -> Any:
         """Draw the force on a tooth pair over its way through the mesh.

@@ -1,0 +1,104 @@
+"""``tribodyn cases``, ``tribodyn check`` and ``tribodyn new``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.settings import changed_case
+from tribodyn.errors import InputError, OutputExistsError, Problem
+
+
+def cases(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+    """List the built-in cases.
+
+    Parameters
+    ----------
+    json : bool
+        Write one JSON array to stdout.
+    """
+    from tribodyn.cases.catalogue import cases as all_cases
+
+    found = all_cases()
+    if json:
+        say_json([{"name": name, "title": title} for name, title in found.items()])
+    else:
+        say(table([[name, title] for name, title in found.items()], indent=""))
+
+
+def check(
+    case: str,
+    /,
+    *,
+    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Check a case and show the geometry that follows from it; nothing is computed beyond.
+
+    Parameters
+    ----------
+    case : str
+        Built-in case or path of a case file.
+    set_ : list of str
+        Values to change, for example "operation.torque=120 N*m".
+    json : bool
+        Write one flat JSON object in SI to stdout.
+    """
+    from tribodyn.study.case.provenance import assumptions
+    from tribodyn.study.pipeline.assembly import geometry
+    from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.summary import SUMMARY
+
+    checked = changed_case(case, set_ or [])
+    values = geometry(checked)
+    if json:
+        say_json(values)
+    else:
+        rows = [[n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in values.items()]
+        say(f"{checked.title}\n{table(rows)}")
+    show_warnings((warning.code, warning.message) for warning in case_cautions(checked))
+    kinds = [assumption.kind for assumption in assumptions(checked)]
+    tell(
+        f"The case is in order; {kinds.count('assumed')} values are assumed, "
+        f"{kinds.count('default')} are defaults."
+    )
+
+
+def new(
+    path: Path,
+    /,
+    *,
+    from_: Annotated[str, Parameter(name="--from")],
+    force: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Write a commented case file to start from.
+
+    Parameters
+    ----------
+    path : Path
+        File to write.
+    from_ : str
+        Built-in case or case file to take the values from.
+    force : bool
+        Replace an existing file.
+    json : bool
+        Write one JSON object to stdout.
+    """
+    from tribodyn.cases.load import load_case
+    from tribodyn.study.pipeline.save import write_file
+
+    if path.exists() and (path.is_dir() or not force):
+        remedy = "Choose another name" + ("" if path.is_dir() else ", or add --force to replace it")
+        raise OutputExistsError(Problem("this exists already", str(path), "", remedy))
+    if not path.parent.is_dir():
+        raise InputError(Problem("there is no such directory", str(path.parent), "", "Create it"))
+    write_file(path, load_case(from_).to_toml())
+    if json:
+        say_json({"path": str(path)})
+    else:
+        say(str(path))
+        tell(f"Edit it, then: tribodyn check {path}")

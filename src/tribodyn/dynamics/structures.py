@@ -1,0 +1,260 @@
+"""Structures by name: what vibrates, built from a mesh, its gears and the options of the structure.
+
+The chosen structure brings its options into ``[dynamics]`` of a case file; one of a third party is
+one function, decorated with ``STRUCTURES.define``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.dynamics.fzg12 import fzg12
+from tribodyn.dynamics.spur6 import spur6
+from tribodyn.dynamics.torsional import torsional
+from tribodyn.model import REQUIRED, Model, Option, Registry, number
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics.equations.system import System
+    from tribodyn.mesh import MeshFunctions
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Gearing:
+    """What every structure is given: the mesh and both gears, in the order (pinion, wheel).
+
+    Parameters
+    ----------
+    mesh : MeshFunctions
+        Stiffness and friction of the teeth over the mesh phase.
+    mass : tuple [kg]
+        Masses.
+    moment_of_inertia : tuple [kg*m^2]
+        Polar moments of inertia.
+    base_radius : tuple [m]
+        Base radii.
+    torque : tuple [N*m]
+        Sizes of the nominal torques.
+    contact : mapping
+        How the teeth carry: ``mesh_damping``, ``driver``, ``backlash``, ``damping_in_gap``,
+        ``torque_balance``, ``mesh_force`` and, where one is prescribed, ``error``, as
+        :func:`tribodyn.dynamics.torsional` takes them.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> flat = SimpleNamespace(stiffness=lambda p: 3e8 + 0 * p, friction_sum=lambda p: 0 * p,
+    ...     friction_moment_pinion=lambda p: 0 * p, friction_moment_wheel=lambda p: 0 * p,
+    ...     event_phases=(0.0,))
+    >>> gears = Gearing(flat, (1.0, 2.0), (1e-3, 3e-3), (0.03, 0.05), (90.0, 150.0), {})
+    >>> STRUCTURES["torsional"](gears)
+    System(2 coordinates, 1 contact)
+    """
+
+    mesh: MeshFunctions
+    mass: Pair
+    moment_of_inertia: Pair
+    base_radius: Pair
+    torque: Pair
+    contact: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Structure(Model):
+    """A structure that vibrates.
+
+    Parameters
+    ----------
+    name : str
+        Name in the registry.
+    function : callable
+        ``function(gearing, **options)``: takes a :class:`Gearing`, gives a :class:`System`.
+        Coordinates of the gears are called ``pinion_x``, ``pinion_y`` (across and along the line
+        of action), ``pinion_theta``, and so on.
+    options : mapping of str to Option or default
+        Its options; afterwards their defaults, None where there is none.
+    turns_with : mapping of str to str
+        Gear with which a further turning coordinate runs: ``{"shaft1_theta": "wheel"}``.
+    source : str
+        Where the structure comes from.
+    meaning : str
+        One line for whoever chooses a structure.
+    papers : tuple of str
+        Keys of the bibliography of the package.
+
+    Examples
+    --------
+    >>> STRUCTURES["spur-6dof"].options["bearing_damping_ratio"]
+    0.02
+    """
+
+    name: str
+    function: Callable[..., System] = field(repr=False)
+    options: Mapping[str, Any] = field(default_factory=dict)
+    turns_with: Mapping[str, str] = field(default_factory=dict)
+    source: str = ""
+    meaning: str = ""
+    papers: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Keep options and defaults apart."""
+        self.declare(self.options)
+
+    def __call__(self, gearing: Gearing, **options: Any) -> System:
+        """Build the structure.
+
+        Parameters
+        ----------
+        gearing : Gearing
+            Mesh and gears.
+        **options : object
+            Options of the structure, in SI; those left out have their defaults.
+
+        Returns
+        -------
+        System
+
+        Raises
+        ------
+        InputError
+            If an option is out of range.
+        """
+        return self.function(gearing, **{**self.options, **options})
+
+
+#: The structures by name, open to third parties through the entry points of this group.
+STRUCTURES: Registry[Structure] = Registry("structure", "tribodyn.structure", Structure)
+
+_GUARD = "guards against a wrong unit"
+_FIXED = "That model turns the gears about fixed axes"
+_NO_SHAFTS = "That model has no shafts"
+
+
+def _supports(default: Any) -> dict[str, Option]:
+    """Options of gears on springs and dampers."""
+    return {
+        "bearing_stiffness": number(
+            default, 1e3, 1e13, _GUARD, of="bearing_stiffness", absent=_FIXED
+        ),
+        "bearing_damping": number(None, 0.0, 1e9, _GUARD, of="bearing_damping", absent=_FIXED),
+        "bearing_damping_ratio": number(
+            0.02, 0.0, 2.0, "supports lie between 0.01 and 0.1",
+            meaning="damping of each gear on its bearing over its critical value", absent=_FIXED,
+        ),
+    }  # fmt: skip
+
+
+def support_damping(
+    stiffness: float | None, mass: float, damping: float | None, ratio: float | None
+) -> float:
+    """Damping of a support [N*s/m]: given, or a part of its critical value."""
+    if damping is not None or stiffness is None:
+        return damping or 0.0
+    return 2.0 * (ratio or 0.0) * math.sqrt(stiffness * mass)
+
+
+@STRUCTURES.define(
+    "spur-6dof",
+    options=_supports(REQUIRED),
+    meaning="both gears move along and across the line of action on their supports and turn",
+    papers=("he-gunda-singh",),
+)
+def _spur6(
+    gears: Gearing,
+    *,
+    bearing_stiffness: float | None,
+    bearing_damping: float | None,
+    bearing_damping_ratio: float | None,
+) -> System:
+    stiffness = bearing_stiffness or 0.0
+    return spur6(
+        gears.mesh,
+        mass=gears.mass,
+        moment_of_inertia=gears.moment_of_inertia,
+        base_radius=gears.base_radius,
+        torque=gears.torque,
+        bearing_stiffness=stiffness,
+        bearing_damping=[
+            support_damping(stiffness, mass, bearing_damping, bearing_damping_ratio)
+            for mass in gears.mass
+        ],
+        **gears.contact,
+    )
+
+
+@STRUCTURES.define(
+    "torsional", meaning="both gears turn about fixed axes", papers=("kahraman-singh",)
+)
+def _torsional(gears: Gearing) -> System:
+    return torsional(
+        gears.mesh,
+        moment_of_inertia=gears.moment_of_inertia,
+        base_radius=gears.base_radius,
+        torque=gears.torque,
+        **gears.contact,
+    )
+
+
+#: Options of the two shafts of the rig: default, range, quantity, what is told of each shaft.
+_SHAFT = {
+    "stiffness": (75397.3113, 1.0, 1e12, "shaft_stiffness", "torsional stiffness of shaft {0}{1}"),
+    "damping": (1.0, 0.0, 1e6, "shaft_damping", "torsional damping of shaft {0}"),
+    "moment_of_inertia": (
+        6.829922680095e-3, 1e-14, 1e7, "moment_of_inertia",
+        "polar moment of inertia of the disc of shaft {0}",
+    ),
+    "mass": (1.5, 1e-7, 1e6, "mass", "mass of the disc of shaft {0}"),
+}  # fmt: skip
+_BETWEEN = {1: ", between its disc and the wheel", 2: ", between its disc and the pinion"}
+
+
+def _shaft_options() -> dict[str, Option]:
+    """Options and defaults of the benchmark rig, first elastic mode at 492 Hz; none is printed."""
+    return {
+        f"shaft{shaft}_{name}": number(
+            default, low, high, _GUARD, of=quantity,
+            meaning=meaning.format(shaft, _BETWEEN[shaft]), absent=_NO_SHAFTS,
+        )
+        for shaft in (1, 2)
+        for name, (default, low, high, quantity, meaning) in _SHAFT.items()
+    }  # fmt: skip
+
+
+@STRUCTURES.define(
+    "fzg-12dof",
+    options={**_supports(3.5e9), **_shaft_options()},
+    turns_with={"shaft1_theta": "wheel", "shaft2_theta": "pinion"},
+    meaning="two shafts with a disc each, wheel and pinion: all move across and along the line of "
+    "action on supports and turn",
+)
+def _fzg12(
+    gears: Gearing,
+    *,
+    bearing_stiffness: float,
+    bearing_damping: float | None,
+    bearing_damping_ratio: float | None,
+    **shafts: float,
+) -> System:
+    def bodies(of_gears: Pair, name: str) -> list[float]:
+        return [shafts[f"shaft1_{name}"], of_gears[1], of_gears[0], shafts[f"shaft2_{name}"]]
+
+    masses = bodies(gears.mass, "mass")
+    return fzg12(
+        gears.mesh,
+        torque=gears.torque[0],
+        base_radius=gears.base_radius,
+        mass=masses,
+        moment_of_inertia=bodies(gears.moment_of_inertia, "moment_of_inertia"),
+        shaft_stiffness=[shafts[f"shaft{number}_stiffness"] for number in (1, 2)],
+        shaft_damping=[shafts[f"shaft{number}_damping"] for number in (1, 2)],
+        bearing_stiffness=bearing_stiffness,
+        bearing_damping=[
+            support_damping(bearing_stiffness, mass, bearing_damping, bearing_damping_ratio)
+            for mass in masses
+        ],
+        **gears.contact,
+    )

@@ -1,0 +1,106 @@
+"""How the kernels are compiled, and exponential and logarithm as vector instructions.
+
+Numba calls the C library for every single element; these are straight arithmetic without
+branches, several times faster in a loop over an array.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+#: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
+JIT: dict[str, Any] = {
+    "nogil": True,
+    "fastmath": {"contract", "nsz", "arcp", "reassoc"},
+    "error_model": "numpy",
+}
+
+#: For what only compiled functions call: no entry from C has to be compiled.
+INNER: dict[str, Any] = {**JIT, "no_cfunc_wrapper": True}
+
+#: For what not even a test calls from Python: no entry from there either, which is much to compile.
+BURIED: dict[str, Any] = {**INNER, "no_cpython_wrapper": True}
+
+
+#: Sums must keep their order: the rounding below would be optimised away. For the same reason
+#: the functions are inlined by the compiler's back end, which keeps these flags, never by Numba.
+STRICT = {**INNER, "fastmath": {"contract"}}
+
+
+@intrinsic
+def _bits(typing: Any, value: Any) -> Any:
+    """Bit pattern of a double as an integer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], ir.IntType(64))
+
+    return types.int64(types.float64), generate
+
+
+@intrinsic
+def _double(typing: Any, value: Any) -> Any:
+    """Double of a bit pattern."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], ir.DoubleType())
+
+    return types.float64(types.int64), generate
+
+
+@nb.njit(**STRICT)
+def exp_(x: float) -> float:
+    """Exponential of a number, held between exp(-700) and exp(700)."""
+    x = min(max(x, -700.0), 700.0)
+    # Adding and taking away 1.5 * 2^52 rounds to the nearest integer.
+    shifted = x * 1.4426950408889634 + 6755399441055744.0
+    k = shifted - 6755399441055744.0
+    r = x - k * 0.693147180369123816490
+    r = r - k * 1.90821492927058770002e-10
+    s = 1.0 / 6227020800.0
+    s = s * r + 1.0 / 479001600.0
+    s = s * r + 1.0 / 39916800.0
+    s = s * r + 1.0 / 3628800.0
+    s = s * r + 1.0 / 362880.0
+    s = s * r + 1.0 / 40320.0
+    s = s * r + 1.0 / 5040.0
+    s = s * r + 1.0 / 720.0
+    s = s * r + 1.0 / 120.0
+    s = s * r + 1.0 / 24.0
+    s = s * r + 1.0 / 6.0
+    s = s * r + 0.5
+    s = s * r + 1.0
+    s = s * r + 1.0
+    # The integer k sits in the lowest bits of the shifted number.
+    power = (_bits(shifted) - 4843621399236968448 + 1023) << 52
+    result: float = s * _double(power)
+    return result
+
+
+@nb.njit(**STRICT)
+def log_(x: float) -> float:
+    """Natural logarithm of a positive normal number; nonsense for any other."""
+    bits = _bits(x)
+    # Exponent such that the mantissa lies between sqrt(1/2) and sqrt(2).
+    k = (bits - 4604544271217802189) >> 52
+    m = _double(bits - (k << 52))
+    f = m - 1.0
+    s = f / (2.0 + f)
+    z = s * s
+    w = z * z
+    odd = w * (
+        3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)
+    )
+    even = z * (
+        6.666666666666735130e-01
+        + w
+        * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01))
+    )
+    half = 0.5 * f * f
+    tail = s * (half + odd + even) + k * 1.90821492927058770002e-10
+    result: float = k * 6.93147180369123816490e-01 - ((half - tail) - f)
+    return result

@@ -1,0 +1,9 @@
+"""Film formulas of the line contact, by author.
+
+| module | what it answers |
+|---|---|
+| ``dimensionless_groups`` | which numbers describe a contact |
+| ``lubrication_regimes`` | which of the four regimes of Moes it lies in |
+| ``power_laws`` | film in the elastic-piezoviscous regime: Dowson, Dowson-Toyoda, Pan-Hamrock |
+| ``moes`` | central film in all regimes, and how it follows the load |
+"""

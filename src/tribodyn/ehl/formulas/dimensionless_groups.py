@@ -1,0 +1,194 @@
+"""Dimensionless groups of a line contact, and the arguments that every film formula shares."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any, NamedTuple, Protocol, TypeVar, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.errors import require_positive
+from tribodyn.types import Array
+
+
+class Groups(NamedTuple):
+    """Groups of an isothermal line contact, and the radius that scales the film.
+
+    Parameters
+    ----------
+    speed : array
+        ``U = eta0 u_e / (E' R)`` with the mean entrainment speed, a pure number.
+    material : array [1]
+        ``G = alpha E'``.
+    load : array [1]
+        ``W = w / (E' R)``.
+    equivalent_radius : array [m]
+        Film thickness over dimensionless film ``H = h/R``.
+    """
+
+    speed: Array
+    material: Array
+    load: Array
+    equivalent_radius: Array
+
+    @property
+    def moes_load(self) -> Array:
+        """Load number of Moes, ``M = W (2 U)^(-1/2)``."""
+        return np.asarray(self.load / np.sqrt(2.0 * self.speed))
+
+    @property
+    def moes_material(self) -> Array:
+        """Material number of Moes, ``L = G (2 U)^(1/4)``."""
+        return np.asarray(self.material * (2.0 * self.speed) ** 0.25)
+
+    @property
+    def moes_film_unit(self) -> Array:
+        """Film [m] at ``H_Moes = (h/R) (2 U)^(-1/2) = 1``."""
+        return np.asarray(self.equivalent_radius * np.sqrt(2.0 * self.speed))
+
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+#: What every film formula takes, in this order and in SI: the text of its section ``Parameters``.
+ARGUMENTS = """\
+load_per_width : float or array [N/m]
+    Normal load per face width.
+equivalent_radius : float or array [m]
+    Reduced radius of curvature.
+entrainment_speed : float or array [m/s]
+    HALF the sum of the surface speeds.
+dynamic_viscosity : float or array [Pa*s]
+    Viscosity at ambient pressure.
+pressure_viscosity_coefficient : float or array [1/Pa]
+    Slope of ln(viscosity) over pressure.
+effective_modulus : float or array [Pa]
+    ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``."""
+
+_RETURNS = """\
+float or array [m]
+    Film thickness, of the common shape of the arguments."""
+_RAISES = """\
+InputError
+    If any value is not finite and positive."""
+
+
+class FilmFormula(Protocol):
+    """A formula of six arguments, each a number or an array; see :data:`ARGUMENTS`."""
+
+    def __call__(
+        self,
+        load_per_width: ArrayLike,
+        equivalent_radius: ArrayLike,
+        entrainment_speed: ArrayLike,
+        dynamic_viscosity: ArrayLike,
+        pressure_viscosity_coefficient: ArrayLike,
+        effective_modulus: ArrayLike,
+    ) -> Array:
+        """Film, or what else the formula gives."""
+
+
+def full_text(text: str) -> str:
+    """Docstring of a formula with what all of them share; sections that it has itself stay."""
+    first, _, rest = text.partition("\n\n")
+    for title, lines in (("Raises", _RAISES), ("Returns", _RETURNS), ("Parameters", ARGUMENTS)):
+        if f"{title}\n---" not in rest:
+            rest = f"{title}\n{'-' * len(title)}\n{lines}\n\n{rest}"
+    return f"{first}\n\n{rest}"
+
+
+def shared_arguments(function: F) -> F:
+    """Complete the docstring of a function that takes the six arguments."""
+    function.__doc__ = full_text(inspect.cleandoc(function.__doc__ or ""))
+    return function
+
+
+def film_formula(law: Callable[[Groups], Array]) -> FilmFormula:
+    """Make a law of the dimensionless groups a formula of the six arguments in SI."""
+
+    def value(*arguments: ArrayLike) -> Array:
+        return np.asarray(law(line_contact_groups(*arguments)))[()]
+
+    def formula(
+        load_per_width: ArrayLike,
+        equivalent_radius: ArrayLike,
+        entrainment_speed: ArrayLike,
+        dynamic_viscosity: ArrayLike,
+        pressure_viscosity_coefficient: ArrayLike,
+        effective_modulus: ArrayLike,
+    ) -> Array:
+        return value(
+            load_per_width,
+            equivalent_radius,
+            entrainment_speed,
+            dynamic_viscosity,
+            pressure_viscosity_coefficient,
+            effective_modulus,
+        )
+
+    # With the globals of the law's module: there the search for doctests expects it.
+    public = FunctionType(
+        formula.__code__, law.__globals__, law.__name__, None, formula.__closure__
+    )
+    public.__annotations__, public.__module__ = formula.__annotations__, law.__module__
+    public.__qualname__, public.__doc__ = law.__qualname__, law.__doc__
+    return cast(FilmFormula, shared_arguments(public))
+
+
+@shared_arguments
+def line_contact_groups(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> Groups:
+    """Dimensionless groups of a line contact, from checked SI values.
+
+    Returns
+    -------
+    Groups
+        Arrays of the common shape of the arguments.
+
+    Raises
+    ------
+    InputError
+        If any value is not finite and positive.
+
+    Valid for any line contact. Source: Dowson and Higginson (1966); Moes (1965).
+
+    Examples
+    --------
+    >>> groups = line_contact_groups(49267.5, 8e-3, 3.0722, 0.082, 2.19e-8, 2.2e11)
+    >>> round(float(groups.moes_load), 3), round(float(groups.moes_material), 2)
+    (1.654, 19.82)
+    """
+    require_positive("load_per_width", load_per_width, "N/m", remedy="1 N/mm is 1000 N/m")
+    require_positive("equivalent_radius", equivalent_radius, "m")
+    require_positive(
+        "entrainment_speed",
+        entrainment_speed,
+        "m/s",
+        remedy="A film needs a rolling motion: give half the sum of the surface speeds",
+    )
+    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
+    require_positive("pressure_viscosity_coefficient", pressure_viscosity_coefficient, "1/Pa")
+    require_positive("effective_modulus", effective_modulus, "Pa")
+    load, radius, speed, viscosity, coefficient, modulus = np.broadcast_arrays(
+        load_per_width,
+        equivalent_radius,
+        entrainment_speed,
+        dynamic_viscosity,
+        pressure_viscosity_coefficient,
+        effective_modulus,
+    )
+    stiffness = modulus * radius
+    return Groups(
+        speed=np.asarray(viscosity * speed / stiffness),
+        material=np.asarray(coefficient * modulus),
+        load=np.asarray(load / stiffness),
+        equivalent_radius=radius,
+    )

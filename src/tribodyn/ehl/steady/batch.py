@@ -1,0 +1,281 @@
+"""Many line contacts at once, in threads."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, wait
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribodyn.ehl.steady.contact_case import si_case
+from tribodyn.ehl.steady.line_contact import SolverOptions, solve_case
+from tribodyn.ehl.steady.solution import LineContactSolution
+from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
+from tribodyn.interrupt import Threads
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.lubricant import Lubricant
+
+
+#: Contacts handed to the threads ahead of the one that is collected.
+_AHEAD = 64
+
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True, eq=False)
+class LineContactBatch:
+    """Films of many line contacts: arrays of the common shape of the arguments.
+
+    Parameters
+    ----------
+    central_film, minimum_film : array [m]
+        Film at position zero, and least film.
+    film_stiffness : array [N/m]
+        Tangent stiffness of the film over the length that was asked for; empty if none was.
+    hertz_pressure : array [Pa]
+        Maximum pressure of the dry contact.
+    half_width : array [m]
+        Half width of the dry contact.
+    outlet : array [m]
+        Position where the oil film parts.
+    flux_error : array [-]
+        Greatest relative deviation of the mass flux from its mean.
+    central_film_error : array [m]
+        Estimate of the discretisation error of ``central_film``; empty where the grid has no
+        coarser one.
+    solutions : array of LineContactSolution
+        The solutions; empty if not asked for.
+    """
+
+    central_film: Array
+    minimum_film: Array
+    film_stiffness: Array
+    hertz_pressure: Array
+    half_width: Array
+    outlet: Array
+    flux_error: Array
+    central_film_error: Array
+    solutions: NDArray[Any] = field(repr=False)
+
+    def __repr__(self) -> str:
+        """One line."""
+        low, high = np.min(self.central_film), np.max(self.central_film)
+        return (
+            f"LineContactBatch({self.central_film.size} contacts, central film {low * 1e6:.4g} "
+            f"to {high * 1e6:.4g} um)"
+        )
+
+
+def solve_line_contacts(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    lubricant: Lubricant,
+    effective_modulus: float,
+    *,
+    nodes: str | int = 513,
+    method: str = "newton",
+    domain: str | tuple[float, float] = "auto",
+    inlet: str = "flooded",
+    viscosity_law: str = "roelands",
+    compressible: bool = True,
+    tolerance: float = 1e-4,
+    flux_tolerance: float = 3e-4,
+    film_tolerance: float = 5e-4,
+    stiffness: bool = True,
+    length: float = 1.0,
+    keep_solutions: bool = False,
+    threads: int | None = None,
+    progress: Progress = SILENT,
+) -> LineContactBatch:
+    """Films of many line contacts with one oil; see :func:`solve_line_contact`.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load per face width.
+    equivalent_radius : float or array [m]
+        Reduced radius of curvature.
+    entrainment_speed : float or array [m/s]
+        HALF the sum of the surface speeds.
+    lubricant : Lubricant
+        Oil at the temperature of the inlet.
+    effective_modulus : float [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+    nodes : "auto" or int
+        Nodes of each grid.
+    method : {"newton", "multigrid"}
+        Engine.
+    domain : "auto" or (float, float) [-]
+        First and last position, in half widths of each dry contact.
+    inlet : {"flooded", "zero"}
+        Oil everywhere before the contact, or pressure zero at the first position.
+    viscosity_law : {"roelands", "barus", "isoviscous"}
+        How the viscosity rises with pressure.
+    compressible : bool
+        Whether the density rises with pressure.
+    tolerance, flux_tolerance, film_tolerance : float
+        As for one contact.
+    stiffness : bool
+        Whether to compute the film stiffness, one or two linear solves a contact.
+    length : float [m]
+        Length of the contact line, for the stiffness.
+    keep_solutions : bool
+        Whether to keep pressure and film of every contact.
+    threads : int, optional
+        Contacts solved at a time; the number of processors by default.
+    progress : Progress
+        Told about every contact.
+
+    Returns
+    -------
+    LineContactBatch
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range; the message names the index of the contact.
+    ComputationError
+        If a contact is not solved; the message names its index.
+
+    Valid as :func:`solve_line_contact`. Source: see there.
+
+    Examples
+    --------
+    >>> from tribodyn.lubricant import Lubricant
+    >>> oil = Lubricant(0.082, 880.0, 2.19e-8)
+    >>> films = solve_line_contacts([49267.5, 147802.0], 8e-3, 3.0722, oil, 2.2e11, nodes=257)
+    >>> (films.central_film * 1e6).round(2)
+    array([1.14, 1.02])
+    """
+    options = SolverOptions.among(locals())
+    require_positive("length", length, "m")
+    shape, columns = _broadcast(load_per_width, equivalent_radius, entrainment_speed)
+
+    def solve(index: int) -> tuple[list[float], LineContactSolution | None]:
+        load, radius, speed = (float(column[index]) for column in columns)
+        try:
+            case = si_case(
+                load, radius, speed, lubricant, effective_modulus, viscosity_law, compressible
+            )
+            solution = solve_case(case, options)
+            row = _row(solution, stiffness)
+        except TribodynError as error:
+            raise type(error)(
+                [_at(problem, index, shape, columns) for problem in error.problems]
+            ) from error
+        return row, solution if keep_solutions else None
+
+    size = columns[0].size
+    table, solutions = np.empty((8, size)), np.empty(size, dtype=object)
+    progress.start("Solving oil films", size)
+    for index, (row, solution) in enumerate(_in_order(solve, size, threads)):
+        table[:, index], solutions[index] = row, solution
+        progress.advance()
+    progress.finish()
+    table[2] = -length * columns[0] / table[2]
+    if stiffness:
+        _warn_negative(table[2], shape)
+    return _gather(table, solutions if keep_solutions else solutions[:0], shape, stiffness)
+
+
+def _gather(
+    table: Array, solutions: NDArray[Any], shape: tuple[int, ...], stiffness: bool
+) -> LineContactBatch:
+    fields, empty = [column.reshape(shape) for column in table], np.empty(0)
+    return LineContactBatch(
+        central_film=fields[0],
+        minimum_film=fields[1],
+        film_stiffness=fields[2] if stiffness else empty,
+        hertz_pressure=fields[3],
+        half_width=fields[4],
+        outlet=fields[5],
+        flux_error=fields[6],
+        central_film_error=empty if np.any(fields[7] < 0.0) else fields[7],
+        solutions=solutions.reshape(shape) if solutions.size else solutions,
+    )
+
+
+def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
+    try:
+        arrays = np.broadcast_arrays(*(np.asarray(item, dtype=float) for item in arguments))
+    except (TypeError, ValueError) as error:
+        shapes = ", ".join(str(np.shape(item)) for item in arguments)
+        raise InputError(
+            Problem(
+                what=f"the shapes {shapes} of load, radius and speed do not fit",
+                where="arguments load_per_width, equivalent_radius, entrainment_speed",
+                why="they must be numbers, or arrays that broadcast",
+            )
+        ) from error
+    return arrays[0].shape, [np.ascontiguousarray(array).reshape(-1) for array in arrays]
+
+
+def _row(solution: LineContactSolution, stiffness: bool) -> list[float]:
+    from tribodyn.ehl.stiffness.film_stiffness import central_film_slope
+
+    error = solution.central_film_error
+    return [
+        solution.central_film,
+        solution.minimum_film,
+        central_film_slope(solution) if stiffness else 1.0,
+        solution.hertz_pressure,
+        solution.half_width,
+        solution.outlet,
+        solution.flux_error,
+        -1.0 if error is None else error,
+    ]
+
+
+def _warn_negative(stiffness: Array, shape: tuple[int, ...]) -> None:
+    """One warning for all contacts whose central film rises with the load."""
+    rising = np.flatnonzero(stiffness <= 0.0)
+    if rising.size:
+        place = ", ".join(str(part) for part in np.unravel_index(rising[0], shape)) or "0"
+        warn(
+            "film-stiffness",
+            f"The central film of {rising.size} of {stiffness.size} contacts, the first of them "
+            f"[{place}], rises with the load, so that its tangent stiffness is negative: the "
+            "load is so light that the outlet comes near the centre, or the inlet is starved",
+            stacklevel=4,
+        )
+
+
+def _at(problem: Problem, index: int, shape: tuple[int, ...], columns: list[Array]) -> Problem:
+    """Problem with the index of its contact."""
+    place = ", ".join(str(part) for part in np.unravel_index(index, shape)) if shape else "0"
+    load, radius, speed = (column[index] for column in columns)
+    return Problem(
+        what=f"contact [{place}] with {load:.6g} N/m, {radius:.6g} m, {speed:.6g} m/s: "
+        f"{problem.what}",
+        where=problem.where,
+        why=problem.why,
+        remedy=problem.remedy,
+    )
+
+
+def _in_order(work: Callable[[int], Value], size: int, threads: int | None) -> Iterator[Value]:
+    """Results in order as they come; an interrupt or an error leaves no work behind."""
+    count = min(threads or os.cpu_count() or 1, size)
+    if count <= 1:
+        yield from map(work, range(size))
+        return
+    with Threads(count) as pool:
+        waiting: deque[Future[Value]] = deque()
+        for index in range(size + _AHEAD):
+            if index < size:
+                waiting.append(pool.submit(work, index))
+            if index >= _AHEAD and waiting:
+                future = waiting.popleft()
+                while not future.done():
+                    # A wait with an end lets Ctrl-C through on every system.
+                    wait([future], timeout=0.2)
+                yield future.result()

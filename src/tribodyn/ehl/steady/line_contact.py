@@ -1,0 +1,337 @@
+"""The lubricated line contact solved: pressure and film from load, radius, speed and oil."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
+from tribodyn.ehl.steady.contact_problem import ContactProblem
+from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, estimate_film
+from tribodyn.ehl.steady.rescue import solve_problem
+from tribodyn.ehl.steady.solution import LineContactSolution, assemble
+from tribodyn.errors import InputError, Problem, require_between, warn
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.lubricant import Lubricant
+
+
+#: Heights that are added to the gap, at the nodes or over the position.
+Profile = Callable[[Array], ArrayLike]
+
+
+@dataclass(frozen=True, eq=False)
+class SolverOptions:
+    """How a contact is solved; see :func:`solve_line_contact`."""
+
+    nodes: Any = "auto"  #: nodes of the grid
+    method: str = "newton"  #: engine
+    domain: Any = "auto"  #: extent of the grid, in half widths
+    inlet: str = "flooded"  #: ``"flooded"`` or ``"zero"``
+    tolerance: float = 1e-4
+    flux_tolerance: float = 3e-4
+    film_tolerance: float = 5e-4
+    levels: int | None = None  #: number of grids
+    start: LineContactSolution | None = None  #: solution to start from
+    profile: Profile | None = None  #: heights that are added to the gap
+
+    @classmethod
+    def among(cls, arguments: Mapping[str, Any]) -> SolverOptions:
+        """Options among the arguments of a function, by their names."""
+        names = {each.name for each in fields(cls)}
+        return cls(**{name: value for name, value in arguments.items() if name in names})
+
+
+def solve_line_contact(
+    load_per_width: float,
+    equivalent_radius: float,
+    entrainment_speed: float,
+    lubricant: Lubricant,
+    effective_modulus: float,
+    *,
+    nodes: str | int = "auto",
+    method: str = "newton",
+    domain: str | tuple[float, float] = "auto",
+    inlet: str = "flooded",
+    viscosity_law: str = "roelands",
+    compressible: bool = True,
+    tolerance: float = 1e-4,
+    flux_tolerance: float = 3e-4,
+    film_tolerance: float = 5e-4,
+    levels: int | None = None,
+    start: LineContactSolution | None = None,
+    profile: Profile | None = None,
+) -> LineContactSolution:
+    """Pressure and film of a lubricated line contact: steady, isothermal, Newtonian.
+
+    Parameters
+    ----------
+    load_per_width : float [N/m]
+        Normal load per face width.
+    equivalent_radius : float [m]
+        Reduced radius of curvature.
+    entrainment_speed : float [m/s]
+        HALF the sum of the surface speeds.
+    lubricant : Lubricant
+        Oil at the temperature of the inlet.
+    effective_modulus : float [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+    nodes : "auto" or int
+        Nodes of the grid, 65 to 16385, preferably 2^k + 1. Automatic: refined until the estimated
+        error of the central film meets ``film_tolerance``. A grid on which so thin a film has no
+        solution is refined too; ``nodes`` and ``attempts`` of the solution tell.
+    method : {"newton", "multigrid"}
+        Multilevel Newton-Krylov, or full multigrid. If it fails, the other one is tried.
+    domain : "auto" or (float, float) [-]
+        First and last position, in half widths of the dry contact.
+    inlet : {"flooded", "zero"}
+        Oil everywhere before the contact, or pressure zero at the first position of a stated
+        domain: a contact that is starved from there.
+    viscosity_law : {"roelands", "barus", "isoviscous"}
+        How the viscosity rises with pressure.
+    compressible : bool
+        Whether the density rises with pressure, after Dowson and Higginson.
+    tolerance : float
+        Relative change of the pressure in the last step.
+    flux_tolerance : float
+        Greatest relative deviation of the mass flux from its mean.
+    film_tolerance : float
+        Relative error of the central film by the grid, for automatic nodes.
+    levels : int, optional
+        Number of grids, each half as fine as the next; by the film if absent.
+    start : LineContactSolution, optional
+        Solution of a similar contact to start from.
+    profile : callable, optional
+        Heights [m] that are added to the gap, as a function of the position [m].
+
+    Returns
+    -------
+    LineContactSolution
+
+    Raises
+    ------
+    InputError
+        If a value is out of range; the message names it, its limits and a remedy.
+    ComputationError
+        If no solver finds the solution, with a log of all attempts.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``starved-inlet`` for ``inlet="zero"``; ``film-resolution`` where the finest grid
+        does not meet ``film_tolerance``; ``outlet-cut`` where the domain ends before the film.
+
+    Valid for smooth bodies of a linear elastic material and a film that is thin against the
+    radius. Source: Reynolds (1886); Dowson and Higginson (1966); Venner and Lubrecht (2000).
+
+    Examples
+    --------
+    >>> from tribodyn.lubricant import Lubricant
+    >>> oil = Lubricant(0.082, 880.0, 2.19e-8)
+    >>> contact = solve_line_contact(147802.0, 8e-3, 3.0722, oil, 2.2e11)
+    >>> round(contact.central_film * 1e6, 3), round(contact.hertz_pressure * 1e-9, 4)
+    (1.024, 0.8043)
+    """
+    options = SolverOptions.among(locals())
+    case = si_case(
+        load_per_width, equivalent_radius, entrainment_speed, lubricant, effective_modulus,
+        viscosity_law, compressible,
+    )  # fmt: skip
+    solution = solve_case(case, options)
+    if inlet == "zero":
+        _warn_starved(solution)
+    _warn_cut(solution)
+    _warn_accuracy(solution, options)
+    return solution
+
+
+def solve_line_contact_moes(
+    M: float,
+    L: float,
+    *,
+    pressure_viscosity_index: float = 0.68,
+    pressure_viscosity_coefficient: float = 2.2e-8,
+    compressible: bool = True,
+    domain: str | tuple[float, float] = (-4.5, 1.5),
+    inlet: str = "zero",
+    nodes: str | int = 1025,
+    method: str = "newton",
+    viscosity_law: str = "roelands",
+    tolerance: float = 1e-4,
+    flux_tolerance: float = 3e-4,
+    film_tolerance: float = 5e-4,
+    levels: int | None = None,
+    start: LineContactSolution | None = None,
+    profile: Profile | None = None,
+) -> LineContactSolution:
+    """Pressure and film of the line contact with the numbers M and L of Moes.
+
+    Parameters
+    ----------
+    M : float [-]
+        Load number ``w/(E'R) (2U)^(-1/2)``.
+    L : float [-]
+        Material number ``alpha E' (2U)^(1/4)``; zero for an isoviscous oil.
+    pressure_viscosity_index : float
+        Index z of Roelands.
+    pressure_viscosity_coefficient : float [1/Pa]
+        Slope of ln(viscosity) over pressure; it sets the Hertz pressure
+        ``L sqrt(M/2pi)/alpha``, on which Roelands' law and the density depend.
+    compressible : bool
+        Whether the density rises with pressure, after Dowson and Higginson.
+    domain : "auto" or (float, float) [-]
+        First and last position, in half widths of the dry contact.
+    inlet : {"flooded", "zero"}
+        Oil everywhere before the contact, or pressure zero at the first position of the domain.
+    nodes : "auto" or int
+        Nodes of the grid, 65 to 16385, preferably 2^k + 1.
+    method : {"newton", "multigrid"}
+        Multilevel Newton-Krylov, or full multigrid.
+    viscosity_law : {"roelands", "barus", "isoviscous"}
+        How the viscosity rises with pressure.
+    tolerance, flux_tolerance, film_tolerance : float
+        Relative change of the pressure in the last step, flux error, and error of the central
+        film by the grid for automatic nodes.
+    levels : int, optional
+        Number of grids; by the film if absent.
+    start : LineContactSolution, optional
+        Solution of a similar contact to start from.
+    profile : callable, optional
+        Heights in b^2/R that are added to the gap, as a function of the position in b.
+
+    Returns
+    -------
+    LineContactSolution
+        Position in half widths b, pressure in Hertz pressures, film in b^2/R.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range; the message names it, its limits and a remedy.
+    ComputationError
+        If no solver finds the solution, with a log of all attempts.
+
+    Valid as :func:`solve_line_contact`. Source: Moes (1965).
+
+    Examples
+    --------
+    >>> contact = solve_line_contact_moes(20, 10, nodes=513)
+    >>> round(contact.central_film, 5), round(contact.central_film_extrapolated, 4)
+    (0.08492, 0.0852)
+    """
+    options = SolverOptions.among(locals())
+    case = moes_case(
+        M, L, pressure_viscosity_index, pressure_viscosity_coefficient, viscosity_law, compressible
+    )
+    solution = solve_case(case, options)
+    _warn_accuracy(solution, options)
+    return solution
+
+
+def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution:
+    """Solve a checked contact without warnings."""
+    require_between("tolerance", options.tolerance, 1e-13, 1e-2)
+    require_between("flux_tolerance", options.flux_tolerance, 1e-11, 0.1)
+    require_between("film_tolerance", options.film_tolerance, 1e-6, 0.1)
+    count, automatic = choose_nodes(options.nodes)
+    scales = case.scales
+    film = estimate_film(scales.moes_load, scales.moes_viscosity, scales.density_ratio)
+    domain = choose_domain(options.domain, options.inlet, film, scales)
+    problem = ContactProblem(
+        nodes=count,
+        domain=(domain.start, domain.end),
+        lam=scales.lam,
+        oil=scales.oil,
+        film=film,
+        load=0.5 * math.pi - domain.tail_load,
+        tail=domain.tail,
+        moes_load=scales.moes_load,
+        tolerance=options.tolerance,
+        flux_tolerance=options.flux_tolerance,
+        film_tolerance=options.film_tolerance if automatic else 0.0,
+        levels=options.levels,
+    )
+    if options.profile is not None:
+        problem = replace(problem, profile=_heights(options.profile, case, problem))
+    if options.start is not None:
+        problem = replace(problem, start=_start(options.start))
+    return assemble(case, domain, solve_problem(problem, options.method))
+
+
+def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
+    """Heights at the nodes of the finest grid, in b^2/R."""
+    start, end = problem.domain
+    position = np.linspace(start, end, problem.nodes) * case.half_width
+    if not callable(profile):
+        raise InputError(
+            Problem(
+                what=f"profile is of the type {type(profile).__name__}",
+                where="argument profile",
+                why="it must give the heights over the position",
+                remedy="Make it by tribodyn.ehl.RoughnessProfile, or give a function",
+            )
+        )
+    heights = np.asarray(profile(position), dtype=float)
+    if heights.shape != position.shape or not np.all(np.isfinite(heights)):
+        raise InputError(
+            Problem(
+                what=f"profile returns heights of shape {heights.shape} for {position.size} "
+                "positions, or heights that are not finite",
+                where="argument profile",
+                why="every node of the grid needs a height",
+            )
+        )
+    return np.ascontiguousarray(heights * case.equivalent_radius / case.half_width**2)
+
+
+def _start(start: Any) -> Any:
+    if not isinstance(start, LineContactSolution):
+        raise InputError(
+            Problem(
+                what=f"start is of the type {type(start).__name__}",
+                where="argument start",
+                why="it must be a solution of a similar contact",
+            )
+        )
+    return start._grid
+
+
+def _warn_starved(solution: LineContactSolution) -> None:
+    edge = solution.domain[0]
+    warn(
+        "starved-inlet",
+        f"The oil begins at X = {edge:g} half widths ({edge * solution.half_width * 1e3:.3g} mm): "
+        f"the central film of {solution.central_film * 1e6:.4g} um is that of a starved contact. "
+        'Take inlet="flooded" for a contact with oil everywhere before it',
+        stacklevel=3,
+    )
+
+
+def _warn_accuracy(solution: LineContactSolution, options: SolverOptions) -> None:
+    error = solution.central_film_error
+    automatic = isinstance(options.nodes, str)
+    if automatic and error is not None and error > options.film_tolerance * solution.central_film:
+        warn(
+            "film-resolution",
+            f"With {solution.nodes} nodes, the most there are, the central film has an estimated "
+            f"error of {error / solution.central_film:.2g} of it, more than film_tolerance = "
+            f"{options.film_tolerance:g}. Take the extrapolated value, or a greater tolerance",
+            stacklevel=3,
+        )
+
+
+def _warn_cut(solution: LineContactSolution) -> None:
+    if solution._grid.free >= solution._grid.n - 1:
+        warn(
+            "outlet-cut",
+            f"The oil film reaches the end of the domain, X = {solution.domain[1]:g} half widths, "
+            "where its pressure is forced to zero. Let the domain end further out, or take "
+            'domain="auto"',
+            stacklevel=3,
+        )

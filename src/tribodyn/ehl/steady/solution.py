@@ -1,0 +1,302 @@
+"""The solved line contact: pressure and film, and how far they can be trusted."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.drawing import draw
+from tribodyn.ehl.steady.contact_case import ContactCase
+from tribodyn.ehl.steady.contact_problem import DiscreteContact
+from tribodyn.ehl.steady.grid import Domain, regime_name
+from tribodyn.ehl.steady.rescue import Solved
+from tribodyn.ehl.stiffness.film_stiffness import film_stiffness
+from tribodyn.ehl.stiffness.frequency import frequency_response
+from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.lubricant import Lubricant
+
+
+@record
+class LineContactSolution(Record):
+    """Pressure and film of a lubricated line contact, steady and isothermal.
+
+    A contact given by the numbers of Moes has the position in half widths b, pressures in Hertz
+    pressures and films in b^2/R.
+
+    Parameters
+    ----------
+    position : (nodes,) array [m]
+        Distance from the line of centres in the direction of rolling.
+    pressure : (nodes,) array [Pa]
+        Pressure above ambient.
+    film : (nodes,) array [m]
+        Gap between the bodies.
+    central_film : float [m]
+        Film at position zero.
+    minimum_film : float [m]
+        Least film between inlet and outlet.
+    hertz_pressure : float [Pa]
+        Maximum pressure of the dry contact.
+    half_width : float [m]
+        Half width b of the dry contact.
+    outlet : float [m]
+        Position where the oil film parts.
+    spike_pressure : float, optional [Pa]
+        Local maximum of the pressure nearest to the outlet; ``None`` where the pressure has a
+        single maximum below the Hertz pressure. Not converged on uniform grids: too low by
+        10 % and more.
+    spike_position : float, optional [m]
+        Where the spike lies.
+    flux_error : float [-]
+        Greatest relative deviation of the mass flux from its mean.
+    load_error : float [-]
+        Relative difference between the integral of the pressure and the load.
+    cavity_residual : float [-]
+        Least mass balance per length behind the outlet, in units of the dry contact; a negative
+        one shows an outlet in the wrong place.
+    iterations : int
+        Newton steps, or multigrid cycles, on the finest grid.
+    nodes : int
+        Nodes of the grid.
+    domain : (float, float)
+        First and last position [b].
+    inlet : str
+        ``"flooded"`` or ``"zero"``.
+    method : str
+        Engine that found the solution.
+    regime : str
+        One of the four regimes of Moes.
+    central_film_error : float, optional [m]
+        Estimate of the discretisation error of ``central_film``; ``None`` without a coarser grid.
+    central_film_extrapolated : float, optional [m]
+        Central film extrapolated to an infinitely fine grid; ``None`` without a coarser grid.
+    attempts : tuple of str
+        What was tried in vain before.
+    moes_load, moes_viscosity : float [-]
+        Numbers M and L of Moes.
+    load_per_width : float [N/m]
+        Load that was asked for.
+    equivalent_radius : float [m]
+        Reduced radius of curvature.
+    entrainment_speed : float [m/s]
+        HALF the sum of the surface speeds.
+    effective_modulus : float [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+    lubricant : Lubricant, optional
+        The oil; ``None`` for a contact given by the numbers of Moes.
+    viscosity_law : str
+        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
+    compressible : bool
+        Whether the density rises with pressure.
+    """
+
+    position: Array = quantity("position", unit="m", axis=True)
+    pressure: Array = quantity("position", unit="Pa")
+    film: Array = quantity("position", unit="m")
+    central_film: float = fact()
+    minimum_film: float = fact()
+    hertz_pressure: float = fact()
+    half_width: float = fact()
+    outlet: float = fact()
+    spike_pressure: float | None = fact()
+    spike_position: float | None = fact()
+    flux_error: float = fact()
+    load_error: float = fact()
+    cavity_residual: float = fact()
+    iterations: int = fact()
+    nodes: int = fact()
+    domain: tuple[float, float]
+    inlet: str = fact()
+    method: str = fact()
+    regime: str = fact()
+    central_film_error: float | None = fact()
+    central_film_extrapolated: float | None = fact()
+    attempts: tuple[str, ...]
+    moes_load: float = fact()
+    moes_viscosity: float = fact()
+    load_per_width: float = fact()
+    equivalent_radius: float = fact()
+    entrainment_speed: float = fact()
+    effective_modulus: float = fact()
+    lubricant: Lubricant | None
+    viscosity_law: str = fact()
+    compressible: bool
+    _grid: DiscreteContact
+
+    @property
+    def film_unit(self) -> float:
+        """Film ``b^2/R`` [m] at the dimensionless film ``H = 1``."""
+        return self.half_width**2 / self.equivalent_radius
+
+    @property
+    def viscosity(self) -> Array:
+        """Viscosity at the nodes over that at ambient pressure."""
+        law, a, reference, z = self._grid.oil[:4]
+        pressure = self._grid.P
+        if law == 0.0:
+            return np.ones_like(pressure)
+        if law == 1.0:
+            return np.asarray(np.exp(a * pressure))
+        return np.asarray(np.exp(a * ((1.0 + pressure / reference) ** z - 1.0)))
+
+    @property
+    def density(self) -> Array:
+        """Density at the nodes over that at ambient pressure."""
+        rise, bound = self._grid.oil[4:6]
+        return np.asarray(1.0 + rise * self._grid.P / (1.0 + bound * self._grid.P))
+
+    def film_stiffness(self, length: float = 1.0, kind: str = "tangent") -> float:
+        """Stiffness of the oil film over the length of the contact line.
+
+        Parameters
+        ----------
+        length : float [m]
+            Length of the contact line.
+        kind : {"tangent", "secant", "seed"}
+            Slope of the load over the central film; sum of the nodal forces over their films;
+            that sum as one source prints it.
+
+        Returns
+        -------
+        float [N/m]
+
+        Raises
+        ------
+        InputError
+            If the length is not positive or the kind is unknown.
+        """
+        return film_stiffness(self, length, kind)
+
+    def frequency_response(
+        self, frequencies: ArrayLike, length: float = 1.0
+    ) -> tuple[Array, Array]:
+        """Stiffness and damping of the film against small vibrations.
+
+        Parameters
+        ----------
+        frequencies : float or array [Hz]
+            Frequencies of the vibration.
+        length : float [m]
+            Length of the contact line.
+
+        Returns
+        -------
+        (stiffness, damping) : arrays [N/m], [N*s/m]
+            Of the shape of the frequencies.
+        """
+        return frequency_response(self, frequencies, length)
+
+    def _units(self, unit: str | None) -> dict[str, str]:
+        """Units; none for a contact given by the numbers of Moes."""
+        return {"units": ""} if self.lubricant is None else super()._units(unit)
+
+    def _parts(self) -> Parts:
+        """Pressure and film with viscosity and density, and the facts that are known."""
+        parts = super()._parts()
+        for name in ("viscosity", "density"):
+            parts.variables[name] = ("position", getattr(self, name), {"units": ""})
+        known = {name: value for name, value in parts.attributes.items() if value is not None}
+        return parts._replace(attributes=known)
+
+    def plot(self, **options: Any) -> Any:
+        """Draw pressure and film over the position.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, **options)
+
+    def __repr__(self) -> str:
+        """One line with the figures that tell contacts apart."""
+        error = self.central_film_error
+        spread = "" if error is None else f" +- {error / self.central_film:.1g} of it"
+        if self.lubricant is None:
+            films = f"central film {self.central_film:.6g}, minimum {self.minimum_film:.6g}"
+        else:
+            films = (
+                f"central film {self.central_film * 1e6:.4f} um{spread}, "
+                f"minimum {self.minimum_film * 1e6:.4f} um, "
+                f"Hertz pressure {self.hertz_pressure * 1e-9:.4f} GPa"
+            )
+        return (
+            f"LineContactSolution({films}, M {self.moes_load:.4g}, L {self.moes_viscosity:.4g}, "
+            f"{self.nodes} nodes, {self.method}, {self.iterations} iterations)"
+        )
+
+
+def outlet_position(grid: DiscreteContact) -> float:
+    """Where the pressure ends, between the nodes."""
+    k = grid.free
+    here, before = float(grid.P[k]), float(grid.P[k - 1])
+    if not before > here > 0.0:
+        return float(grid.X[min(k + 1, grid.n)])
+    share = math.sqrt(here) / (math.sqrt(before) - math.sqrt(here))
+    return float(min(grid.X[k] + share * grid.dx, grid.X[-1]))
+
+
+def pressure_spike(grid: DiscreteContact) -> tuple[float, float] | None:
+    """Highest pressure of the local maximum nearest to the outlet, and where it lies."""
+    P = grid.P
+    peaks = np.flatnonzero((P[1:-1] > P[:-2]) & (P[1:-1] >= P[2:])) + 1
+    if peaks.size == 0:
+        return None
+    last = int(peaks[-1])
+    if peaks.size == 1 and P[last] <= 1.0:
+        return None
+    return float(P[last]), float(grid.X[last])
+
+
+def assemble(case: ContactCase, domain: Domain, solved: Solved) -> LineContactSolution:
+    """Solution with its units and its errors."""
+    grid, check, scales = solved.outcome.grid, solved.check, case.scales
+    assert grid is not None  # a verified outcome has a grid
+    films = solved.outcome.films
+    thick = case.half_width**2 / case.equivalent_radius
+    spike = pressure_spike(grid)
+    error = None if len(films) < 2 else (films[-1] - films[-2]) / 3.0
+    return LineContactSolution(
+        position=grid.X * case.half_width,
+        pressure=grid.P * case.hertz_pressure,
+        film=grid.H * thick,
+        central_film=films[-1] * thick,
+        minimum_film=float(np.min(grid.H[: grid.free + 1])) * thick,
+        hertz_pressure=case.hertz_pressure,
+        half_width=case.half_width,
+        outlet=outlet_position(grid) * case.half_width,
+        spike_pressure=None if spike is None else spike[0] * case.hertz_pressure,
+        spike_position=None if spike is None else spike[1] * case.half_width,
+        flux_error=check.flux_error,
+        load_error=check.load_error,
+        cavity_residual=check.cavity_residual,
+        iterations=solved.outcome.iterations,
+        nodes=grid.n + 1,
+        domain=(domain.start, domain.end),
+        inlet=domain.inlet,
+        method=solved.method,
+        regime=regime_name(scales.moes_load, scales.moes_viscosity),
+        central_film_error=None if error is None else abs(error) * thick,
+        central_film_extrapolated=None if error is None else (films[-1] + error) * thick,
+        attempts=solved.attempts,
+        moes_load=scales.moes_load,
+        moes_viscosity=scales.moes_viscosity,
+        load_per_width=case.load_per_width,
+        equivalent_radius=case.equivalent_radius,
+        entrainment_speed=case.entrainment_speed,
+        effective_modulus=case.effective_modulus,
+        lubricant=case.lubricant,
+        viscosity_law=scales.viscosity_law,
+        compressible=case.compressible,
+        _grid=grid,
+    )

@@ -1,0 +1,11 @@
+"""Traction of solved films, and their temperature.
+
+| module | what it answers |
+|---|---|
+| ``traction`` | tangential forces of the oil on both surfaces |
+| ``film_state`` | pressure and film of many contacts, as traction needs them |
+| ``shear_models`` | shear models by name |
+| ``newtonian``, ``ree_eyring``| shear stress of an oil |
+| ``film_temperature`` | viscosity of warm oil, flash temperature, balance of heat |
+| ``inlet_heating`` | thinner film by a heated inlet |
+"""

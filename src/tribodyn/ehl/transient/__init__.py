@@ -1,0 +1,8 @@
+"""The line contact over time: squeeze film, changing load, moving roughness.
+
+| module | what it answers |
+|---|---|
+| ``transient`` | film over time |
+| ``moving_contact`` | series, scale and grid of the contact, and the state it starts from |
+| ``transient_result`` | the result: films, loads and pressures over time |
+"""

@@ -1,0 +1,282 @@
+"""A line contact over time: squeeze film, moving roughness, imposed load or imposed approach."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.ehl.roughness import RoughnessProfile
+from tribodyn.ehl.transient.moving_contact import (
+    REASONS,
+    MovingContact,
+    Series,
+    flooded_domain,
+    read_inputs,
+    reference_scale,
+)
+from tribodyn.ehl.transient.transient_result import TransientLineContact
+from tribodyn.errors import (
+    ComputationError,
+    Problem,
+    require_between,
+    require_one_of,
+    require_positive,
+    warn,
+)
+from tribodyn.lubricant import Lubricant
+from tribodyn.types import Array, Index
+
+#: Share of the load near the last node up to which the grid does not cut the film off, and how
+#: often the grid is made longer for it.
+_LATE_LOAD, _EXTENSIONS = 1e-3, 4
+
+
+def solve_transient_line_contact(
+    time: ArrayLike,
+    load_per_width: Series,
+    equivalent_radius: Series,
+    entrainment_speed: Series,
+    lubricant: Lubricant,
+    effective_modulus: float,
+    *,
+    impose: Literal["load", "approach"] = "load",
+    approach: Series | None = None,
+    start: Literal["steady", "unloaded"] = "steady",
+    nodes: int = 513,
+    domain: Literal["auto"] | tuple[float, float] = "auto",
+    inlet: Literal["flooded", "zero"] = "flooded",
+    viscosity_law: str = "roelands",
+    compressible: bool = True,
+    roughness: tuple[RoughnessProfile | None, RoughnessProfile | None] = (None, None),
+    surface_speeds: tuple[Series, Series] | None = None,
+    reference_length: float | None = None,
+    tolerance: float = 1e-8,
+    step_halvings: int = 6,
+    keep_every: int = 1,
+) -> TransientLineContact:
+    """Film of a line contact whose load, radius and speed change over time.
+
+    Reynolds' equation with its squeeze term, elastic deflection and the load at every instant, on
+    one fixed grid. Second order in time (backward differences) and in space; 200 to 800 steps a
+    mesh cycle.
+
+    Parameters
+    ----------
+    time : (m,) array [s]
+        Instants, rising.
+    load_per_width : float, array or callable [N/m]
+        Load per face width; where the approach is imposed, its estimate, which sets the grid.
+    equivalent_radius : float, array or callable [m]
+        Reduced radius of curvature.
+    entrainment_speed : float, array or callable [m/s]
+        HALF the sum of the surface speeds, zero or positive.
+    lubricant : Lubricant
+        The oil at its working temperature.
+    effective_modulus : float [Pa]
+        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+    impose : {"load", "approach"}
+        What is imposed; the other is the answer.
+    approach : float, array or callable, optional [m]
+        Approach of the bodies since their undeformed flanks touched, rising under load, with
+        the deflection counted from ``reference_length``.
+    start : {"steady", "unloaded"}
+        Steady state under the first inputs, or, with an imposed approach that leaves a gap,
+        an unloaded film at rest.
+    nodes : int
+        Nodes of the grid.
+    domain : "auto" or (float, float) [b]
+        First and last position, b being the half width of the widest dry contact.
+    inlet : {"flooded", "zero"}
+        Whether the wedge before the first node is full of oil, or the oil begins there.
+    viscosity_law : {"roelands", "barus", "isoviscous"}
+        Viscosity over pressure.
+    compressible : bool
+        Whether the density rises with pressure.
+    roughness : two of RoughnessProfile or None
+        Heights of the two surfaces, carried along at their speeds.
+    surface_speeds : two of float, array or callable, optional [m/s]
+        Speeds of the two surfaces; needed with roughness.
+    reference_length : float, optional [m]
+        Distance from the line of centres at which a half space has the deflection zero; by
+        default the greatest radius. It shifts the approach by a multiple of the load.
+    tolerance : float
+        Relative change of the pressure, and of the flux, at convergence of an instant.
+    step_halvings : int
+        How often a time step that fails is halved.
+    keep_every : int
+        Steps from one kept pressure and film to the next; zero to keep none.
+
+    Returns
+    -------
+    TransientLineContact
+
+    Raises
+    ------
+    InputError
+        If an input is out of range or contradicts another.
+    ComputationError
+        If an instant does not converge; the message names it.
+
+    Valid for smooth or resolved rough surfaces, isothermal, Newtonian; the film must not touch.
+    Beyond the outlet the gap counts as full when the contact grows over it.
+    Source: Reynolds equation; Venner and Lubrecht, Multilevel Methods in Lubrication (2000).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tribodyn.lubricant import Lubricant
+    >>> oil = Lubricant(0.082, 880.0, 2.19e-8)
+    >>> time = np.linspace(0.0, 1e-3, 51)
+    >>> load = 147802.0 * (1.0 - 0.3 * np.sin(np.pi * time / 1e-3) ** 2)
+    >>> contact = solve_transient_line_contact(time, load, 8e-3, 3.0722, oil, 2.2e11, nodes=257)
+    >>> bool(contact.central_film.max() > contact.central_film[0])
+    True
+    """
+    _require_options(effective_modulus, start, nodes, inlet, tolerance, keep_every)
+    inputs = read_inputs(
+        time, load_per_width, equivalent_radius, entrainment_speed, impose=impose,
+        approach=approach, surface_speeds=surface_speeds, roughness=roughness,
+    )  # fmt: skip
+    scale = reference_scale(
+        inputs.time, inputs.load, inputs.radius, inputs.entrainment_speed, effective_modulus
+    )
+    extent = domain
+    if extent == "auto":
+        extent = flooded_domain(
+            scale,
+            inputs.load,
+            inputs.radius,
+            inputs.entrainment_speed,
+            lubricant,
+            effective_modulus,
+        )
+    length = float(np.max(inputs.radius)) if reference_length is None else reference_length
+    require_positive("reference_length", length, "m")
+    contact = MovingContact(
+        inputs=inputs, scale=scale, lubricant=lubricant, modulus=effective_modulus, nodes=nodes,
+        domain=(float(extent[0]), float(extent[1])), inlet=inlet, law=viscosity_law,
+        compressible=compressible, length=length, tolerance=tolerance,
+    )  # fmt: skip
+    return _extended(contact, start, step_halvings, keep_every, domain == "auto")
+
+
+def _extended(
+    contact: MovingContact, start: str, step_halvings: int, keep_every: int, automatic: bool
+) -> TransientLineContact:
+    """March, on a longer grid where the film turns out to reach over the end of this one."""
+    for _ in range(_EXTENSIONS if automatic else 0):
+        contact.check_roughness()
+        result, late = _follow(contact, start, step_halvings, keep_every)
+        if late < _LATE_LOAD:
+            return result
+        # A film that is squeezed out reaches further than a steady one.
+        contact = replace(contact, domain=(contact.domain[0], 1.5 * contact.domain[1]))
+    contact.check_roughness()
+    result, late = _follow(contact, start, step_halvings, keep_every)
+    if late >= _LATE_LOAD:
+        warn(
+            "transient-outlet",
+            f"Up to {late:.2%} of the load lies in the last sixteenth of the grid, so that its "
+            f"end at X = {contact.domain[1]:.3g} cuts the film off. Give a domain with a later "
+            "last node",
+        )
+    return result
+
+
+def _require_options(
+    effective_modulus: float, start: str, nodes: int, inlet: str, tolerance: float, keep_every: int
+) -> None:
+    require_positive("effective_modulus", effective_modulus, "Pa")
+    require_between("nodes", nodes, 65, 16385, remedy="257 to 513 nodes suit a mesh cycle")
+    require_between("tolerance", tolerance, 1e-13, 1e-3)
+    require_between("keep_every", keep_every, 0, 1e9)
+    require_one_of("start", start, ("steady", "unloaded"))
+    require_one_of("inlet", inlet, ("flooded", "zero"))
+
+
+def _follow(
+    contact: MovingContact, start: str, step_halvings: int, keep_every: int
+) -> tuple[TransientLineContact, float]:
+    """Result, and the greatest share of the load near the last node."""
+    from tribodyn.ehl._kernel.transient import RECORD, follow_contact
+
+    inputs = contact.inputs
+    imposed = inputs.approach is None
+    state = contact.steady() if start == "steady" else contact.unloaded()
+    m, n = inputs.time.size, contact.nodes - 1
+    records = np.zeros((m, RECORD))
+    kept = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, np.int64)
+    pressures, films = np.zeros((2, kept.size, n + 1))
+    status, instant, _ = follow_contact(
+        contact.kernel_contact(imposed, 1.0 if imposed else contact.depth), 1.25, contact.time,
+        contact.table(), step_halvings, keep_every, state.P, state.H, state.instant, records,
+        pressures, films,
+    )  # fmt: skip
+    if status != 0:
+        raise _failure(contact, status, instant, step_halvings)
+    result = _result(contact, records, kept, pressures, films)
+    return result, float(np.max(records[:, 10]))
+
+
+def _failure(
+    contact: MovingContact, status: int, instant: int, step_halvings: int
+) -> ComputationError:
+    inputs = contact.inputs
+    given = (
+        f"load {inputs.load[instant]:.6g} N/m"
+        if inputs.approach is None
+        else f"approach {inputs.approach[instant]:.6g} m"
+    )
+    return ComputationError(
+        Problem(
+            what=f"The contact did not converge at instant {instant} of {inputs.time.size - 1}, "
+            f"t = {inputs.time[instant]:.6g} s: {REASONS[status]}",
+            where=f"{given}, radius {inputs.radius[instant]:.6g} m, entrainment speed "
+            f"{inputs.entrainment_speed[instant]:.6g} m/s",
+            why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
+            f"{step_halvings} times",
+            remedy="Take more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
+            "of the load",
+        )
+    )
+
+
+def _result(
+    contact: MovingContact, records: Array, kept: Index, pressures: Array, films: Array
+) -> TransientLineContact:
+    inputs, scale = contact.inputs, contact.scale
+    offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = (
+        records.T
+    )
+    X = np.linspace(*contact.domain, contact.nodes)
+    if inputs.approach is None:
+        # The kernel counts the deflection from the distance b.
+        offset = offset - total * np.log(contact.depth) / np.pi
+    return TransientLineContact(
+        time=inputs.time,
+        central_film=central * scale.film,
+        minimum_film=minimum * scale.film,
+        load_per_width=load * scale.pressure * scale.half_width,
+        approach=-offset * scale.film,
+        maximum_pressure=highest * scale.pressure,
+        outlet=X[free.astype(int)] * scale.half_width,
+        equivalent_radius=inputs.radius,
+        entrainment_speed=inputs.entrainment_speed,
+        position=X * scale.half_width,
+        kept=kept,
+        pressure=pressures * scale.pressure,
+        film=films * scale.film,
+        iterations=steps.astype(int),
+        parts=parts.astype(int),
+        balance_error=flux,
+        ruptured=cavities * contact.dx * scale.half_width,
+        half_width=scale.half_width,
+        hertz_pressure=scale.pressure,
+        domain=contact.domain,
+        reference_length=contact.length,
+        impose="load" if inputs.approach is None else "approach",
+        inlet=contact.inlet,
+    )

@@ -1,0 +1,139 @@
+"""The two curves of a tooth: the involute, and the fillet that the rack's tip round cuts.
+
+The rack rolls without slip on the reference circle. Wherever its tip round cuts, the common
+normal passes through the rolling point, so that the angle between this normal and the reference
+tangent is a parameter free of singular points: pi/2 at the root circle, down to the pressure
+angle where the round ends and the straight flank of the rack begins.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tribodyn.errors import ComputationError, require_between
+from tribodyn.types import Array
+
+
+def involute(angle: float) -> float:
+    """Involute function tan(angle) - angle.
+
+    Parameters
+    ----------
+    angle : float
+        Pressure angle [rad], 0 to below pi/2.
+
+    Returns
+    -------
+    float
+        Involute polar angle [rad].
+
+    Notes
+    -----
+    Source: ISO 21771, involute function.
+
+    Examples
+    --------
+    >>> round(involute(math.radians(20.0)), 9)
+    0.014904384
+    """
+    return math.tan(angle) - angle
+
+
+def inverse_involute(value: float) -> float:
+    """Pressure angle whose involute function is ``value``."""
+    require_between("value", value, 0.0, 1000.0, "rad")
+    if value == 0.0:
+        return 0.0
+    angle = min(math.cbrt(3.0 * value), math.atan(value + math.pi / 2.0))
+    for _ in range(60):
+        step = (involute(angle) - value) / math.tan(angle) ** 2
+        if step <= 1e-16:  # descending no more: rounding is reached
+            return angle
+        angle -= step
+    raise ComputationError(f"no pressure angle found for the involute function {value!r}")
+
+
+@dataclass(frozen=True)
+class Trochoid:
+    """Envelope of the rack's tip round in the frame of the gear."""
+
+    reference_radius: float  #: radius of the reference circle [m]
+    teeth: int  #: number of teeth
+    pressure_angle: float  #: pressure angle of the rack [rad]
+    tip_radius: float  #: radius of the rack's tip round [m]
+    center_offset: float  #: [m]
+    center_depth: float
+
+    def _reach(self, normal_angle: Any) -> Array:
+        """Distance from the rolling point to the cutting point along the normal [m]."""
+        return np.asarray(self.center_depth / np.sin(normal_angle) + self.tip_radius, dtype=float)
+
+    def radius(self, normal_angle: Any) -> Array:
+        """Radius of the fillet."""
+        reach = self._reach(normal_angle)
+        across = reach * np.cos(normal_angle)
+        radius: Array = np.hypot(across, self.reference_radius - reach * np.sin(normal_angle))
+        return radius
+
+    def half_tooth_angle(self, normal_angle: Any) -> Array:
+        """Angle between the tooth axis and the fillet."""
+        reach = self._reach(normal_angle)
+        rolled = self.center_depth / np.tan(normal_angle) - self.center_offset
+        from_space = np.arctan2(
+            reach * np.cos(normal_angle), self.reference_radius - reach * np.sin(normal_angle)
+        )
+        half: Array = math.pi / self.teeth - from_space + rolled / self.reference_radius
+        return half
+
+    def squared_radius_slope(self, normal_angle: Any) -> Array:
+        """Derivative of the squared radius by the angle of the normal."""
+        pull = self.reference_radius * self.tip_radius + (
+            self._reach(normal_angle) * self.center_depth / np.sin(normal_angle) ** 2
+        )
+        slope: Array = -2.0 * np.cos(normal_angle) * pull
+        return slope
+
+    @property
+    def flank_end_reach(self) -> float:
+        """Distance from the rolling point to the end of the rack's straight flank [m]."""
+        return float(self._reach(self.pressure_angle))
+
+    @property
+    def undercuts(self) -> bool:
+        """Whether the straight flank reaches past the base tangent point, so that it undercuts."""
+        return self.flank_end_reach > self.reference_radius * math.sin(self.pressure_angle)
+
+
+def _bisect(function: Callable[[float], float], low: float, high: float) -> float:
+    """Root of a function that is positive at ``low`` and not positive at ``high``."""
+    while True:
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            return middle
+        if function(middle) > 0.0:
+            low = middle
+        else:
+            high = middle
+
+
+def form_point(trochoid: Trochoid, base_radius: float, base_half_angle: float) -> float:
+    """Angle of the fillet's normal at the point where the fillet meets the involute."""
+    if not trochoid.undercuts:
+        return trochoid.pressure_angle
+
+    def above_base(angle: float) -> float:
+        return float(trochoid.radius(angle)) - base_radius
+
+    def outside_involute(angle: float) -> float:
+        radius = max(float(trochoid.radius(angle)), base_radius)
+        roll = math.sqrt((radius - base_radius) * (radius + base_radius)) / base_radius
+        flank = base_half_angle - involute(math.atan(roll))
+        return float(trochoid.half_tooth_angle(angle)) - flank
+
+    at_base = _bisect(above_base, trochoid.pressure_angle, math.pi / 2.0)
+    return _bisect(outside_involute, trochoid.pressure_angle, at_base)

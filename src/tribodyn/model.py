@@ -1,0 +1,391 @@
+"""Models by name, the options that they bring, and the registries in which they are found.
+
+An :class:`Option` tells everything about one value that a user may give: what it means, its unit,
+its range and why, an example, the argument of the physics that it becomes. The keys of the case
+file are options, and so are the values that a friction law or a film formula takes. A model of a
+third party is one file: a function, decorated with :meth:`Registry.define` and its options. From
+then on a case file can name it, and its options stand in the table of the case that names it.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache, partial
+from importlib.metadata import entry_points
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from tribodyn.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from tribodyn.nomenclature import Quantity
+
+T = TypeVar("T")
+Names = Callable[[], list[str]]
+
+#: The default of an option that must be given.
+REQUIRED: Any = ...
+
+
+@dataclass(frozen=True)
+class Option:
+    """What is known about one value that a user may give.
+
+    Made by :func:`number`, :func:`numbers`, :func:`integer`, :func:`choice`, :func:`flag`,
+    :func:`text` and :func:`file_path`. Ranges and defaults are in SI.
+    """
+
+    kind: str  #: "number", "numbers", "integer", "choice", "flag", "text" or "file"
+    meaning: str  #: one line
+    default: Any = None  #: ``REQUIRED`` where one must be given, None where one is derived or none
+    symbol: str = ""
+    unit: str = ""
+    display_unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    positive: bool = False  #: zero is refused although ``low`` is zero
+    origin: str = ""  #: why the limits are what they are
+    names: Names | None = None  #: names allowed, for a choice
+    meanings: Mapping[str, str] = field(default_factory=dict)  #: what the names mean
+    later: tuple[str, ...] = ()  #: names that a later release will have
+    example: str = ""  #: TOML value shown where the value is missing
+    basis: str = ""  #: what the value is derived from where it is not given
+    argument: str = ""  #: argument of the physics that it becomes, where that is called otherwise
+    absent: str = ""  #: why the models that do not have this option have none
+    in_case: bool = True  #: whether it is a key of the case file, and not for programs alone
+
+    @property
+    def required(self) -> bool:
+        """Whether the value must be given."""
+        return self.default is REQUIRED
+
+    def show(self, value: Any) -> str:
+        """Write a value in the display unit, lists in brackets, flags as TOML does."""
+        if isinstance(value, tuple):
+            return f"[{', '.join(self.show(item) for item in value)}]"
+        if isinstance(value, bool):
+            return str(value).lower()
+        if self.unit:
+            from tribodyn.units import format_quantity
+
+            return format_quantity(value, self.unit, self.display_unit)
+        return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+    def allowed(self) -> str:
+        """Range or names that are accepted, as one phrase."""
+        if self.kind == "flag":
+            return "true or false"
+        if self.names is not None:
+            return ", ".join(self.names())
+        if math.isfinite(self.low) and math.isfinite(self.high):
+            sign = "above " if self.positive else ""
+            return f"{sign}{self.show(self.low)} to {self.show(self.high)}"
+        return {"text": "text", "file": "path of a file"}.get(self.kind, "any finite value")
+
+
+def number(
+    default: Any,
+    low: float,
+    high: float,
+    origin: str,
+    *,
+    of: str = "",
+    meaning: str = "",
+    unit: str = "",
+    display_unit: str = "",
+    symbol: str = "",
+    example: str = "",
+    **more: Any,
+) -> Any:
+    """Declare a real option.
+
+    Parameters
+    ----------
+    default : float, None or REQUIRED
+        Value in force where none is given.
+    low, high : float
+        Allowed range, in SI.
+    origin : str
+        Why the range is what it is.
+    of : str
+        Its quantity in :data:`tribodyn.nomenclature.QUANTITIES`, which knows symbol, unit, meaning
+        and example. Whatever is given beside it goes before.
+    meaning, unit, display_unit, symbol, example : str
+        Of a quantity that is not in the nomenclature, or of this option alone.
+    **more : object
+        Further fields of :class:`Option`.
+
+    Returns
+    -------
+    Option
+
+    Examples
+    --------
+    >>> slope = number(0.3, 0.0, 1.0, "dry steel has 0.6", meaning="fall of the friction")
+    >>> slope.allowed()
+    '0 to 1'
+    """
+    known = _quantity(of)
+    return Option(
+        kind=more.pop("kind", "number"),
+        meaning=meaning or known.meaning,
+        default=default,
+        symbol=symbol or known.symbol,
+        unit=unit or known.unit,
+        display_unit=display_unit or unit or known.display_unit,
+        low=low,
+        high=high,
+        origin=origin,
+        example=example or known.example or (f'"1 {display_unit or unit}"' if unit else "1.0"),
+        **more,
+    )
+
+
+def _quantity(name: str) -> Quantity:
+    from tribodyn.nomenclature import QUANTITIES, Quantity
+
+    return QUANTITIES.get(name) or Quantity(name, "", "", "", "")
+
+
+def numbers(low: float, high: float, origin: str, *, default: Any = None, **more: Any) -> Any:
+    """Declare an optional list of real values; arguments as for :func:`number`."""
+    return number(default, low, high, origin, kind="numbers", **more)
+
+
+def integer(default: Any, low: int, high: int, origin: str, *, meaning: str, **more: Any) -> Any:
+    """Declare a whole number."""
+    return Option("integer", meaning, default, low=low, high=high, origin=origin, **more)
+
+
+def choice(default: Any, names: Any, *, meaning: str, **more: Any) -> Any:
+    """Declare one of several names: a list, a mapping to what they mean, or a function of these."""
+    if callable(names):
+        return Option("choice", meaning, default, names=names, **more)
+    known = tuple(names)
+    meanings = dict(names) if isinstance(names, Mapping) else {}
+    more.setdefault("example", f'"{known[0]}"')
+    names = partial(list, known)
+    return Option("choice", meaning, default, names=names, meanings=meanings, **more)
+
+
+def flag(default: bool | None, *, meaning: str, **more: Any) -> Any:
+    """Declare an option that is true or false."""
+    return Option("flag", meaning, default, **more)
+
+
+def text(default: Any, *, meaning: str, **more: Any) -> Any:
+    """Declare an option of free text."""
+    return Option("text", meaning, default, **more)
+
+
+def file_path(*, meaning: str, example: str) -> Any:
+    """Declare an optional path of a file; it becomes absolute."""
+    return Option("file", meaning, example=example)
+
+
+def _declared(default: Any) -> Option:
+    """An option of which only the default is known."""
+    if isinstance(default, Option):
+        return default
+    if isinstance(default, bool):
+        return Option("flag", "", default)
+    if isinstance(default, str):
+        return Option("text", "", default)
+    kind = "numbers" if isinstance(default, tuple | list) else "number"
+    return Option(kind, "", default, example="1.0")
+
+
+class Model:
+    """What all models share: a name, a source, and options that know themselves.
+
+    The dataclass of a model declares ``options`` as a mapping of names to :class:`Option` or to
+    bare defaults, and calls :meth:`declare` when it is made. Afterwards ``options`` holds the
+    defaults, None where a value must be given, and ``declared`` the options themselves.
+    """
+
+    name: str
+    source: str
+    meaning: str
+    papers: tuple[str, ...]
+    options: Mapping[str, Any]
+    declared: Mapping[str, Option]
+    case_options: Mapping[str, Option]  #: those of them that are keys of the case file
+
+    def declare(self, options: Mapping[str, Any]) -> None:
+        """Keep the options and their defaults apart."""
+        declared = {name: _declared(option) for name, option in options.items()}
+        defaults = {n: None if o.required else o.default for n, o in declared.items()}
+        object.__setattr__(self, "declared", MappingProxyType(declared))
+        object.__setattr__(self, "options", MappingProxyType(defaults))
+        keys = {name: option for name, option in declared.items() if option.in_case}
+        object.__setattr__(self, "case_options", MappingProxyType(keys))
+
+    def nearest(self, option: str) -> str:
+        """Question for the option that was probably meant; empty if none is near."""
+        near = difflib.get_close_matches(option, self.declared, n=1)
+        return f'Did you mean "{near[0]}"?' if near else ""
+
+
+class Registry(Generic[T]):
+    """Named things of one kind, extended by the entry-point group of the same name.
+
+    Parameters
+    ----------
+    kind : str
+        What the things are, for messages: ``"friction law"``.
+    group : str, optional
+        Entry-point group that third parties use, for example ``"tribodyn.friction"``.
+    model : type, optional
+        Class of the things, for :meth:`define`.
+    part : str
+        Its argument that a decorated function becomes.
+
+    Examples
+    --------
+    >>> laws = Registry("law")
+    >>> @laws.register("twice")
+    ... def twice(x):
+    ...     return 2 * x
+    >>> laws["twice"](3)
+    6
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        group: str | None = None,
+        model: Callable[..., T] | None = None,
+        part: str = "function",
+    ) -> None:
+        self.kind = kind
+        self.group = group
+        self.model = model
+        self.part = part
+        self._items: dict[str, T] = {}
+        self._searched = group is None
+        self.version = 0  #: rises with everything that is registered
+
+    def register(self, name: str) -> Callable[[T], T]:
+        """Decorate a thing to make it known as ``name``.
+
+        Parameters
+        ----------
+        name : str
+            What the user writes.
+
+        Returns
+        -------
+        callable
+            Decorator that returns the thing unchanged.
+        """
+
+        def keep(item: T) -> T:
+            self._items[name] = item
+            self.version += 1
+            return item
+
+        return keep
+
+    def define(self, name: str, **details: Any) -> Callable[[Callable[..., Any]], Any]:
+        """Decorate a function to make it a model of this kind.
+
+        Parameters
+        ----------
+        name : str
+            What the user writes.
+        **details : object
+            Further arguments of the class of the models: ``source``, ``options``, ``meaning``.
+
+        Returns
+        -------
+        callable
+            Decorator that returns the function unchanged.
+
+        Raises
+        ------
+        TypeError
+            If the things of this registry are no models.
+        """
+
+        def keep(function: Callable[..., Any]) -> Callable[..., Any]:
+            if self.model is None:
+                raise TypeError(f"a {self.kind} is registered, not defined")
+            self.register(name)(self.model(name=name, **{self.part: function}, **details))
+            return function
+
+        return keep
+
+    def _search(self) -> None:
+        if not self._searched and self.group is not None:
+            self._searched = True
+            for entry in entry_points(group=self.group):
+                self._items.setdefault(entry.name, entry.load())
+            self.version += 1
+
+    def names(self) -> list[str]:
+        """All names, in order of registration.
+
+        Returns
+        -------
+        list of str
+        """
+        if not self._searched:
+            self._search()
+        return list(self._items)
+
+    def all(self) -> Mapping[str, T]:
+        """All things by name, in order of registration.
+
+        Returns
+        -------
+        mapping of str to object
+        """
+        if not self._searched:
+            self._search()
+        return MappingProxyType(self._items)
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+        return iter(self.names())
+
+    def __contains__(self, name: object) -> bool:
+        """Tell whether ``name`` is known."""
+        if not self._searched:
+            self._search()
+        return name in self._items
+
+    def __getitem__(self, name: str) -> T:
+        """Return the thing called ``name`` or raise :class:`InputError` naming the nearest."""
+        if not self._searched:
+            self._search()
+        if name in self._items:
+            return self._items[name]
+        near = difflib.get_close_matches(name, self._items, n=1)
+        raise InputError(
+            Problem(
+                what=f'no {self.kind} is called "{name}"',
+                why=f"Known: {', '.join(self._items)}",
+                remedy=f'Did you mean "{near[0]}"?' if near else "",
+            )
+        )
+
+
+@dataclass(frozen=True)
+class Models:
+    """Names of the models of a registry that is loaded when it is first asked."""
+
+    registry: Callable[[], Registry[Any]]
+
+    def __call__(self) -> list[str]:
+        """Return the names."""
+        return self.registry().names()
+
+
+def model_choice(
+    default: str, registry: Callable[[], Registry[Any]], *, meaning: str, **more: Any
+) -> Any:
+    """Declare the name of a model; the chosen one brings its options into the same table."""
+    return Option("choice", meaning, default, names=Models(cache(registry)), **more)

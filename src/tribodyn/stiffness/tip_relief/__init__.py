@@ -1,0 +1,8 @@
+"""Transmission error at rest over torque, and the tip relief that leaves least of it.
+
+| module | what it answers |
+| --- | --- |
+| `harris` | static transmission error over phase and torque |
+| `search` | which amount and length of tip relief is best over a range of torques |
+| `result` | what that search found, and the map that it searched |
+"""

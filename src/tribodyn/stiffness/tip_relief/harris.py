@@ -1,0 +1,246 @@
+"""Static transmission error over phase and torque: what the mesh does before anything vibrates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.drawing import draw
+from tribodyn.errors import Argument, InputError, require_positive
+from tribodyn.gear import Material, SpurPair
+from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.stiffness.loaded import loaded_contact
+from tribodyn.stiffness.loaded.contact import NO_OPTIONS
+from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
+from tribodyn.stiffness.loaded.result import harmonic_amplitudes
+from tribodyn.types import Array
+
+#: Loads of single pairs in single slices that are held in memory at the same time.
+_AT_ONCE = 4_000_000
+#: Phases and harmonics where nothing is said.
+_PHASES = 256
+_HARMONICS = 10
+#: Tooth pairs that may touch, about.
+_PAIRS = 4
+
+
+@record
+class HarrisMap(Record):
+    """Static transmission error of a mesh over phase and torque.
+
+    Parameters
+    ----------
+    gear_pair : SpurPair
+        Both gears in their working position.
+    provider : str
+        What the tooth compliances come from.
+    reference : str
+        Where the gear bodies are held.
+    torque : array (t,) [N*m]
+        Torques on the pinion, increasing.
+    phase : array (p,)
+        Mesh phase, 0 where a pair reaches A, from 0 to the number of mesh cycles.
+    mesh_cycles : int
+        Mesh cycles after which everything repeats.
+    transmission_error : array (t, p) [m]
+        Approach of the gears along the line of action under load at rest.
+    unloaded_transmission_error : array (p,) [m]
+        That of the rigid mesh: what the flanks alone do.
+    harmonics : array (t, k) [m]
+        Peak amplitudes of the orders 1, 2, ... of the mesh frequency.
+    mean_mesh_stiffness_secant, mean_mesh_stiffness_tangent : array (t,) [N/m]
+        Means over the phases.
+    """
+
+    gear_pair: SpurPair
+    provider: str = fact()
+    reference: str = fact()
+    torque: Array = quantity("torque", unit="N*m", axis=True)
+    phase: Array = quantity("phase", unit="1", axis=True)
+    mesh_cycles: int
+    transmission_error: Array = quantity("torque", "phase", unit="m")
+    unloaded_transmission_error: Array = quantity("phase", unit="m")
+    harmonics: Array = quantity("torque", "order", unit="m")
+    mean_mesh_stiffness_secant: Array = quantity("torque", unit="N/m")
+    mean_mesh_stiffness_tangent: Array = quantity("torque", unit="N/m")
+
+    @property
+    def mean_transmission_error(self) -> Array:
+        """Mean over the phases (t,) [m]."""
+        return np.asarray(self.transmission_error.mean(axis=1))
+
+    @property
+    def peak_to_peak_transmission_error(self) -> Array:
+        """Largest less least transmission error (t,) [m]."""
+        return np.asarray(np.ptp(self.transmission_error, axis=1))
+
+    @property
+    def quietest_torque(self) -> float:
+        """Torque of the least peak-to-peak transmission error [N*m]."""
+        return float(self.torque[np.argmin(self.peak_to_peak_transmission_error)])
+
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        for name in ("mean_transmission_error", "peak_to_peak_transmission_error"):
+            parts.variables[name] = ("torque", getattr(self, name), {"units": "m"})
+        parts.coordinates["order"] = ("order", np.arange(1, self.harmonics.shape[1] + 1))
+        return parts
+
+    def plot(self, **options: Any) -> Any:
+        """Draw the transmission error over phase and torque.
+
+        Parameters
+        ----------
+        **options
+            Of the figure.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, "harris_map", **options)
+
+    def __repr__(self) -> str:
+        """One line with the figures that matter."""
+        peak = self.peak_to_peak_transmission_error * 1e6
+        return (
+            f"HarrisMap({self.provider}, {self.torque.size} torques from {self.torque[0]:g} to "
+            f"{self.torque[-1]:g} N*m, peak to peak {peak.min():.4g} to {peak.max():.4g} um, "
+            f"least at {self.quietest_torque:g} N*m)"
+        )
+
+
+def increasing_torques(torque: ArrayLike) -> Array:
+    """Check torques and put them in order."""
+    torques = np.atleast_1d(np.asarray(torque, dtype=float))
+    require_positive("torque", torques, "N*m")
+    if torques.ndim != 1 or torques.size == 0:
+        raise InputError(
+            f"torque has the shape {torques.shape}",
+            where=Argument("torque"),
+            why="It is one value or a list of values",
+            remedy="Give a list of torques in N*m",
+        )
+    return np.unique(torques)
+
+
+def transmission_error_over_torque(
+    pair: SpurPair,
+    torque: ArrayLike,
+    *,
+    provider: str = "fe2d",
+    phases: int | None = None,
+    harmonics: int | None = None,
+    extended_contact: bool = True,
+    reference: str | None = None,
+    material: Material | None = None,
+    slices: int | None = None,
+    options: Mapping[str, Any] = NO_OPTIONS,
+) -> HarrisMap:
+    """Find the static transmission error of a mesh over phase and torque (Harris map).
+
+    Parameters
+    ----------
+    pair : SpurPair
+        Both gears in their working position, with modifications and deviations of their flanks.
+    torque : float or array (t,) [N*m]
+        Torques on the pinion, in any order.
+    provider : str
+        Where the tooth compliances come from.
+    phases : int, optional
+        Evenly spaced phases of a mesh cycle; by default 256, or 64 where slices of the face width
+        or the hunting tooth period multiply the work.
+    harmonics : int, optional
+        Number of mesh harmonics, less than half the phases; 10 by default, or all that there are.
+    extended_contact : bool
+        Let tip corners touch before A and after E.
+    reference : str, optional
+        ``"bore"`` or ``"rim"``; by default that of the provider.
+    material : Material, optional
+        Material of both gears; steel by default.
+    slices : int, optional
+        Slices of the face width; by default one, or 21 where flanks vary over the width.
+    options : mapping
+        Further options of the provider.
+
+    Returns
+    -------
+    HarrisMap
+        Over the hunting tooth period where teeth differ.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    ComputationError
+        If a load is beyond what the formula of the local compression covers.
+
+    Notes
+    -----
+    :func:`tribodyn.stiffness.loaded_contact` at every torque. The map is named after Harris (1958),
+    Proc. Inst. Mech. Eng. 172, 87-112, who drew the curves of all torques above each other.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02,
+    ...     pinion_bore_diameter=0.03, wheel_bore_diameter=0.03)
+    >>> found = transmission_error_over_torque(pair, [50.0, 100.0], provider="analytic")
+    >>> found.transmission_error.shape
+    (2, 256)
+    """
+    torques = increasing_torques(torque)
+    work = mesh_period(pair) * slice_widths(pair, slices).size
+    if phases is None:
+        phases = _PHASES if work == 1 else _PHASES // 4
+    orders = _orders(harmonics, phases)
+    given: dict[str, Any] = {
+        "provider": provider,
+        "phases": phases,
+        "extended_contact": extended_contact,
+        "reference": reference,
+        "material": material,
+        "slices": slices,
+        "options": options,
+    }
+    size = max(phases, 1) * work * _PAIRS
+    count = min(torques.size, 1 + torques.size * size // _AT_ONCE)
+    rows = []
+    for some_torques in np.array_split(torques, count):
+        contact = loaded_contact(pair, some_torques, **given)
+        secant = contact.mesh_stiffness_secant.mean(axis=1)
+        tangent = contact.mesh_stiffness_tangent.mean(axis=1)
+        rows.append((contact.transmission_error, secant, tangent))
+    error, secant, tangent = (np.concatenate(column) for column in zip(*rows, strict=True))
+    return HarrisMap(
+        gear_pair=pair,
+        provider=contact.provider,
+        reference=contact.reference,
+        torque=torques,
+        phase=contact.phase,
+        mesh_cycles=contact.mesh_cycles,
+        transmission_error=error,
+        unloaded_transmission_error=contact.unloaded_transmission_error,
+        harmonics=harmonic_amplitudes(contact.phase, error, contact.mesh_cycles, orders),
+        mean_mesh_stiffness_secant=secant,
+        mean_mesh_stiffness_tangent=tangent,
+    )
+
+
+def _orders(harmonics: int | None, phases: int) -> int:
+    """Check the number of harmonics, or choose it."""
+    most = (phases - 1) // 2
+    if harmonics is None:
+        return max(1, min(_HARMONICS, most))
+    if not 1 <= harmonics <= most:
+        raise InputError(
+            f"harmonics = {harmonics}",
+            where=Argument("harmonics"),
+            why=f"{phases} phases of a mesh cycle show 1 to {most} harmonics",
+            remedy="Give more phases, for example phases=64",
+        )
+    return harmonics

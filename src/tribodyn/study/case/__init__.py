@@ -1,0 +1,1 @@
+"""The case file: its tables and keys, how they are read, checked, completed and written."""

@@ -1,0 +1,339 @@
+"""Checks across keys: contradictions, missing partners, and marks on keys that do not exist."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, cast
+
+from tribodyn.errors import Problem
+from tribodyn.model import REQUIRED, Model, Option
+from tribodyn.study.case.given import Given
+from tribodyn.study.case.section import Choice, Known, choices, section_at
+
+if TYPE_CHECKING:
+    from tribodyn.ehl import FilmModel
+    from tribodyn.friction import FrictionLaw
+
+#: The reason that marks a written value as the default of the library that wrote it.
+DEFAULT_MARK = "default"
+
+Found = Iterator[tuple[str, Problem]]
+
+_PROPERTIES = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient")
+#: Options of the friction of the film, and the properties that only they need.
+_HEAT = ("inlet_heating", "flash_temperature")
+_THERMAL = ("temperature_viscosity_coefficient", "thermal_conductivity")
+#: Tables about values of the other tables.
+_ABOUT = ("assumed", "based_on")
+#: Abscissae of a stiffness table.
+_ABSCISSAE = ("phase", "roll_angle")
+_RECTANGULAR = ("single_pair_stiffness", "double_pair_stiffness")
+_SAME = "They are two ways of saying the same thing"
+
+
+def _both(given: Given, one: str, other: str) -> tuple[str, Problem]:
+    what = f"{given.show(one)} and {given.show(other)} are both given"
+    return one, Problem(what, "", _SAME, "Keep one of them")
+
+
+def _roughness(given: Given) -> Found:
+    keys = [f"gears.{gear}.roughness_rms" for gear in ("pinion", "wheel")]
+    present = [key for key in keys if key in given]
+    if "gears.composite_roughness" in given:
+        for key in present:
+            what = (
+                f"{given.show('gears.composite_roughness')} and {given.show(key)} "
+                f"of the {key.split('.')[1]} are both given"
+            )
+            yield "gears.composite_roughness", Problem(what, "", _SAME, "Keep one of them")
+    elif len(present) == 1:
+        absent = next(key for key in keys if key not in given)
+        what = f"roughness_rms of the {absent.split('.')[1]} is missing"
+        why = f"{given.show(present[0])} of the {present[0].split('.')[1]} needs its counterpart"
+        yield absent, Problem(what, "", why, "Add it, or give composite_roughness in [gears]")
+
+
+def _face_width(given: Given) -> Found:
+    gears = ("gears.pinion", "gears.wheel")
+    if all(gear in given and f"{gear}.face_width" not in given for gear in gears):
+        what, why = "face_width is missing", "At least one gear needs its face width"
+        yield "gears.pinion", Problem(what, "", why, 'Add face_width = "20 mm" to [gears.pinion]')
+
+
+def _size(given: Given) -> Found:
+    pinion, wheel = (given.get(f"gears.{gear}.teeth") for gear in ("pinion", "wheel"))
+    if type(pinion) is int and type(wheel) is int and pinion > wheel:
+        what = f"teeth = {pinion} of the pinion and teeth = {wheel} of the wheel"
+        why = "The pinion is the smaller gear, whichever drives"
+        remedy = "Exchange the two tables, speed_of and driver"
+        yield "gears.pinion.teeth", Problem(what, "", why, remedy)
+
+
+def _lubricant(given: Given) -> Found:
+    if "lubricant" not in given:
+        return
+    present = [name for name in (*_PROPERTIES, *_THERMAL) if f"lubricant.{name}" in given]
+    if "lubricant.name" in given:
+        for name in present:
+            yield _both(given, "lubricant.name", f"lubricant.{name}")
+        return
+    for name in _PROPERTIES:
+        if name not in present:
+            why = "Without a name from the library all three properties are needed"
+            remedy = f'Add {name}, or name an oil, for example name = "80W"'
+            yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
+
+
+def _needs(given: Given, law: FrictionLaw | None) -> Found:
+    """What the friction law and the film model need to know."""
+    film = given.get("film.model", "none")
+    tribological = law is not None and law.needs_oil
+    users = [f'law = "{law.name}"'] if law is not None and law.needs_oil else []
+    users += [f'film model = "{film}"'] if film != "none" else []
+    if users and "lubricant" not in given:
+        why = f"{users[0]} needs an oil"
+        remedy = 'Add [lubricant] with for example name = "80W"'
+        yield "lubricant", Problem("the table [lubricant] is missing", "", why, remedy)
+    rough = ("composite_roughness", "pinion.roughness_rms", "wheel.roughness_rms")
+    if (
+        tribological
+        and not (law is not None and law.needs_film)
+        and not any(f"gears.{name}" in given for name in rough)
+    ):
+        why, remedy = f"{users[0]} needs it", 'Add composite_roughness = "0.5 um" to [gears]'
+        what = "composite_roughness is missing"
+        yield "gears.composite_roughness", Problem(what, "", why, remedy)
+
+
+def _film_of_friction(given: Given, law: FrictionLaw | None, film: FilmModel | None) -> Found:
+    """What a law that shears the solved film needs besides an oil."""
+    if law is None or film is None or not law.needs_film:
+        return
+    if not film.method:
+        what = f'law = "{law.name}" and film model = "{film.name}"'
+        why = "That law shears the solved film, and this model gives no pressure"
+        yield "friction.law", Problem(what, "", why, 'Set model = "newton" in [film]')
+    heated = [key for key in _HEAT if given.get(f"friction.{key}")]
+    if heated and "lubricant" in given and "lubricant.name" not in given:
+        for name in _THERMAL:
+            if f"lubricant.{name}" not in given:
+                remedy = f"Add {name}, or set {heated[0]} = false in [friction]"
+                why = f"{heated[0]} = true needs it"
+                yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
+
+
+def _dampings(given: Given) -> Found:
+    for name in ("mesh_damping", "bearing_damping"):
+        value, ratio = f"dynamics.{name}", f"dynamics.{name}_ratio"
+        if value in given and ratio in given:
+            yield _both(given, value, ratio)
+
+
+def _friction_load(given: Given) -> Found:
+    key = "dynamics.friction_load"
+    if given.get(key) == "dynamic" and given.get("friction.law") == "none":
+        what = f"{given.show(key)} without friction"
+        why = 'friction.law = "none": nothing follows the load'
+        yield key, Problem(what, "", why, "Choose a friction law, or leave the key out")
+
+
+def _solver(given: Given) -> Found:
+    if "solver.cycles" in given and given.get("solver.method", "steady") == "steady":
+        what = f'{given.show("solver.cycles")} does not belong to method = "steady"'
+        why = "A steady state is found directly, without counting cycles"
+        yield "solver.cycles", Problem(what, "", why, 'Remove it, or choose "transient"')
+
+
+def _assumed(given: Given, faulty: set[str]) -> Found:
+    marks = given.get("assumed", {})
+    for key, reason in marks.items() if isinstance(marks, Mapping) else ():
+        absent = key not in given or isinstance(given.get(key), Mapping)
+        recorded = isinstance(reason, Mapping) and "value" in reason
+        if absent and reason != DEFAULT_MARK and not recorded:
+            known = [k for k in given.typed if k not in faulty and k.split(".")[0] not in _ABOUT]
+            near = difflib.get_close_matches(key, known, n=1)
+            why = "[assumed] marks values that this case gives"
+            remedy = f'Did you mean "{near[0]}"?' if near else f"Give {key}, or remove the mark"
+            yield f"assumed.{key}", Problem(f'no value is given for "{key}"', "", why, remedy)
+
+
+def left_behind(given: Given, changes: Mapping[str, Any], choices: Mapping[str, str]) -> set[str]:
+    """Options of an earlier choice that a new model, law or method cannot take."""
+    return {
+        key
+        for selector, name in choices.items()
+        for key in _below(given, selector.partition(".")[0])
+        if key not in changes and key != selector and not _takes(given, selector, name, key)
+    }
+
+
+def case_options(section: str, name: str) -> Mapping[str, Option]:
+    """Options of a model by name that are keys of the case file."""
+    table = section_at((section,))
+    model = table.model_named(name) if table else None
+    return model.case_options if model else {}
+
+
+def _below(given: Given, table: str) -> list[str]:
+    """Dotted keys of all values of a table."""
+    return [key for key in given.typed if key.startswith(f"{table}.")]
+
+
+def _takes(given: Given, selector: str, name: str, key: str) -> bool:
+    section, _, option = key.rpartition(".")
+    if key == "film.stiffness":
+        return given.get(key) in _film_stiffnesses(name)
+    if selector == "solver.method":
+        return name != "steady" or option != "cycles"
+    known = choices({selector: name})[section].known
+    return option not in known.owners or option in case_options(section, name)
+
+
+def _model_problems(given: Given, section: str, choice: Choice, faulty: set[str]) -> Found:
+    """Check the options of the model that a table names."""
+    selector, model = choice.selector, choice.model
+    if model is None or f"{section}.{selector}" in faulty:
+        return
+    yield from _foreign(given, section, selector, model, choice.known)
+    if section == "film":
+        yield from _film(given, cast("FilmModel", model), faulty)
+    if section == "stiffness" and model.name in _STIFFNESS_CHECKS:
+        yield from _STIFFNESS_CHECKS[model.name](given)
+    for name, option in model.declared.items():
+        key = f"{section}.{name}"
+        if option.default is REQUIRED and key not in given:
+            yield key, _lacking(section, selector, model, name, option)
+
+
+def _lacking(section: str, selector: str, model: Model, name: str, option: Option) -> Problem:
+    if name == "bearing_stiffness":
+        what, why = f"{name} is missing", f'model = "{model.name}" supports each gear'
+        remedy = f'Add {name} = {option.example} to [dynamics], or choose "torsional"'
+        return Problem(what, "", why, remedy)
+    what = f'{name} is missing for {selector} = "{model.name}"'
+    remedy = f"Add {name} to [{section}], for example {name} = {option.example or 1.0}"
+    return Problem(what, "", "It has no default", remedy)
+
+
+def _foreign(given: Given, section: str, selector: str, model: Model, all_known: Known) -> Found:
+    """Options given that the chosen model does not have."""
+    known, owners = model.case_options, all_known.owners
+    listing = f"Its options are: {', '.join(known)}" if known else "It has no options"
+    for key in _below(given, section):
+        option = key.rpartition(".")[2]
+        if option not in known and option in owners:
+            what = f'{given.show(key)} does not belong to {selector} = "{model.name}"'
+            first = owners[option][0]
+            why = all_known.models[first].case_options[option].absent
+            other = f'"{first}"' if why else f"another {selector}"
+            yield key, Problem(what, "", why or listing, f"Remove it, or choose {other}")
+
+
+def _film_stiffnesses(name: str) -> tuple[str, ...]:
+    from tribodyn.ehl import FILM_MODELS
+
+    return FILM_MODELS[name].stiffness_kinds
+
+
+def _film(given: Given, model: FilmModel, faulty: set[str]) -> Found:
+    """Check the options of the film model."""
+    key, name = "film.stiffness", model.name
+    if key in given and given[key] not in model.stiffness_kinds:
+        why = f"It has: {', '.join(model.stiffness_kinds)}"
+        remedy = 'Choose one of these, or model = "newton", which has all'
+        what = f'{given.show(key)} does not belong to model = "{name}"'
+        yield key, Problem(what, "", why, remedy)
+    if "nodes" in model.case_options and not faulty & {"film.nodes", "film.domain"}:
+        yield from _grid(given)
+
+
+def _grid(given: Given) -> Found:
+    """Check what nodes, inlet and domain of a solved contact say together."""
+    nodes = given.get("film.nodes", 513)
+    if nodes - 1 != 1 << (nodes - 1).bit_length() - 1:
+        below = 1 << (nodes - 1).bit_length() - 1
+        why = "Grids are halved: nodes are a power of two plus one"
+        remedy = f"Write nodes = {below + 1} or nodes = {2 * below + 1}"
+        yield "film.nodes", Problem(f"nodes = {nodes}", "", why, remedy)
+    starved, key = given.get("film.inlet", "flooded") == "zero", "film.domain"
+    if starved and key not in given:
+        why = 'inlet = "zero" starves the contact from the beginning of a stated domain on'
+        remedy = "Add domain = [-2.5, 1.5], in Hertzian half widths"
+        yield key, Problem('domain is missing for inlet = "zero"', "", why, remedy)
+    if key not in given:
+        return
+    if not starved:
+        what = f'{given.show(key)} does not belong to inlet = "flooded"'
+        why = "A flooded contact has the domain that its film demands"
+        yield key, Problem(what, "", why, 'Remove it, or add inlet = "zero"')
+    ends = given[key]
+    if len(ends) != 2 or not (ends[0] <= -1.5 and ends[1] >= 1.1):
+        why = "It is two numbers in Hertzian half widths: -1.5 or less, and 1.1 or more"
+        yield key, Problem(given.show(key), "", why, "Write for example domain = [-2.5, 1.5]")
+
+
+def _lacks(key: str, name: str, why: str, remedy: str) -> tuple[str, Problem]:
+    return f"stiffness.{key}", Problem(f'{key} is missing for model = "{name}"', "", why, remedy)
+
+
+def _rectangular(given: Given) -> Found:
+    pair = "stiffness.pair_stiffness"
+    zones = [f"stiffness.{name}" for name in _RECTANGULAR]
+    present = [key for key in zones if key in given]
+    if pair in given:
+        yield from ((key, _both(given, pair, key)[1]) for key in present)
+    elif not present:
+        why = "It needs pair_stiffness, or both single_pair_stiffness and double_pair_stiffness"
+        yield _lacks("pair_stiffness", "rectangular", why, 'Add pair_stiffness = "2e8 N/m"')
+    elif len(present) == 1:
+        absent = next(key for key in zones if key not in given).rpartition(".")[2]
+        why = f"{given.show(present[0])} needs its counterpart"
+        yield _lacks(absent, "rectangular", why, f'Add {absent} = "2e8 N/m"')
+
+
+def _fourier(given: Given) -> Found:
+    if "stiffness.mean_stiffness" not in given:
+        why = "The harmonics vary about a mean"
+        yield _lacks("mean_stiffness", "fourier", why, 'Add mean_stiffness = "2.5e8 N/m"')
+
+
+def _table(given: Given) -> Found:
+    forms = [f"stiffness.{name}" for name in _ABSCISSAE if f"stiffness.{name}" in given]
+    if len(forms) == 2:
+        yield _both(given, *forms)
+    if not forms:
+        why = "The stiffness of the mesh needs phase, that of one pair needs roll_angle"
+        yield _lacks("phase", "table", why, "Add phase = [...] or roll_angle = [...]")
+    if "stiffness.values" not in given:
+        why = "A table is two lists of equal length"
+        yield _lacks("values", "table", why, 'Add values = ["2e8 N/m", ...]')
+    values = given.get("stiffness.values")
+    for form in forms:
+        abscissa = given.get(form)
+        if isinstance(values, list) and isinstance(abscissa, list) and len(values) != len(abscissa):
+            short = form.rpartition(".")[2]
+            what = f"{short} has {len(abscissa)} entries, values has {len(values)}"
+            yield form, Problem(what, "", "A table is two lists of equal length", "Complete it")
+
+
+_STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _fourier}
+
+
+_CHECKS: tuple[Callable[[Given], Found], ...] = (
+    _roughness, _face_width, _size, _lubricant, _dampings,
+    _friction_load, _solver,
+)  # fmt: skip
+
+
+def cross_problems(
+    given: Given, chosen: Mapping[str, Choice], faulty: set[str]
+) -> list[tuple[str, Problem]]:
+    """Check the keys of a case against each other."""
+    law = cast("FrictionLaw | None", chosen["friction"].model)
+    film = cast("FilmModel | None", chosen["film"].model)
+    found = [problem for check in _CHECKS for problem in check(given)]
+    found += [*_needs(given, law), *_film_of_friction(given, law, film), *_assumed(given, faulty)]
+    for section, choice in chosen.items():
+        found += _model_problems(given, section, choice, faulty)
+    return [(key, problem) for key, problem in found if key not in faulty]

@@ -1,0 +1,278 @@
+"""From the sections of a case to the objects of the physics, and their faults back to its keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem, collected
+from tribodyn.model import Option
+from tribodyn.study.case.gears import Gear, Gears, Modification
+from tribodyn.study.case.profile_map_file import read_profile_map
+from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.sections import LubricantData, MaterialData
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import MeshForce
+    from tribodyn.gear import FlankModification, Material, ProfileMap, SpurPair
+    from tribodyn.lubricant import Lubricant
+    from tribodyn.study.case.case import Case
+
+
+def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:
+    values = {key: getattr(gear, key) for key in _PASSED}
+    values["face_width"] = gear.face_width if gear.face_width is not None else other.face_width
+    return {f"{name}_{key}": value for key, value in values.items()}
+
+
+_PASSED = (
+    "teeth", "profile_shift_coefficient", "tip_diameter", "bore_diameter", "mass",
+    "moment_of_inertia",
+)  # fmt: skip
+
+
+def flank_modification(data: Modification | None, chart: ProfileMap | None) -> FlankModification:
+    """Build the modification of one gear."""
+    from tribodyn.gear import FlankModification
+
+    if data is None:
+        return FlankModification()
+    values = {name: getattr(data, name) for name, _ in data.specs()}
+    del values["profile_map"], values["profile_map_interpolation"]
+    lists = ("single_pitch_deviation", "cumulative_pitch_deviation", "wear_depth")
+    values |= {name: values[name] or () for name in lists}
+    return FlankModification(profile_map=chart, **values)
+
+
+def gear_pair(gears: Gears, backlash: float | None = None) -> SpurPair:
+    """Build the gear pair of a case, silently; what was to be said is in :func:`gear_warnings`."""
+    return _built(gears, backlash or None, _modifications(gears))[0]
+
+
+def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWarning, ...]:
+    """Warnings about the geometry of the pair."""
+    return _built(gears, backlash or None, _modifications(gears))[1]
+
+
+class _Modified(NamedTuple):
+    """Modifications of pinion and wheel, or what is wrong with them."""
+
+    pinion: FlankModification | None
+    wheel: FlankModification | None
+    problems: tuple[Problem, ...]
+
+
+def _modifications(gears: Gears) -> _Modified:
+    """Modifications of both gears, files read anew where they have changed."""
+    problems: list[Problem] = []
+
+    def modification(name: str, data: Modification | None) -> FlankModification | None:
+        chart = None
+        try:
+            if data is not None and data.profile_map is not None:
+                chart = read_profile_map(data.profile_map, data.profile_map_interpolation)
+            return flank_modification(data, chart)
+        except InputError as error:
+            problems.extend(
+                replace(problem, where=Argument(f"modification.{place.name}", name))
+                if isinstance(place := problem.where, Argument)
+                else problem
+                for problem in error.problems
+            )
+            return None
+
+    both = (modification("pinion", gears.pinion.modification),
+            modification("wheel", gears.wheel.modification))  # fmt: skip
+    return _Modified(*both, tuple(problems))
+
+
+@lru_cache(maxsize=16)
+def _built(
+    gears: Gears, backlash: float | None, modified: _Modified
+) -> tuple[SpurPair, tuple[ModelWarning, ...]]:
+    problems = list(modified.problems)
+    with collected() as found:
+        try:
+            pair = _spur_pair(gears, backlash, modified)
+        except InputError as error:
+            problems += error.problems
+        if problems:
+            raise InputError(problems)
+    return pair, tuple(found)
+
+
+def _spur_pair(gears: Gears, backlash: float | None, modified: _Modified) -> SpurPair:
+    from tribodyn.gear import BasicRack, spur_pair
+
+    rack = BasicRack(
+        addendum_coefficient=gears.addendum_coefficient,
+        dedendum_coefficient=gears.dedendum_coefficient,
+        tip_radius_coefficient=gears.rack_tip_radius_coefficient,
+    )
+    return spur_pair(
+        normal_module=gears.normal_module,
+        normal_pressure_angle=gears.normal_pressure_angle,
+        center_distance=gears.center_distance,
+        driver=gears.driver,
+        backlash=backlash,
+        pinion_rack=rack,
+        wheel_rack=rack,
+        pinion_modification=modified.pinion,
+        wheel_modification=modified.wheel,
+        misalignment=gears.misalignment,
+        **_gear_arguments("pinion", gears.pinion, gears.wheel),
+        **_gear_arguments("wheel", gears.wheel, gears.pinion),
+    )
+
+
+def material(data: MaterialData) -> Material:
+    """Build the material of the gears."""
+    from tribodyn.gear import Material
+
+    return Material(data.youngs_modulus, data.poissons_ratio, data.density)
+
+
+@lru_cache(maxsize=64)
+def lubricant(data: LubricantData) -> Lubricant:
+    """Build the oil, from the library or from its properties."""
+    from tribodyn.lubricant import Lubricant, from_library
+
+    if data.name is not None:
+        return from_library(data.name, data.temperature)
+    properties = (data.dynamic_viscosity, data.density, data.pressure_viscosity_coefficient)
+    viscosity, density, coefficient = (float(value or 0.0) for value in properties)
+    return Lubricant(
+        viscosity,
+        density,
+        coefficient,
+        temperature=data.temperature,
+        temperature_viscosity_coefficient=data.temperature_viscosity_coefficient,
+        thermal_conductivity=data.thermal_conductivity,
+    )
+
+
+def mesh_law_of(case: Case) -> MeshForce:
+    """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law."""
+    from tribodyn.stiffness import MODELS
+
+    if case.dynamics.mesh_law is not None:
+        return cast("MeshForce", case.dynamics.mesh_law)
+    whole = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
+    return "force-law" if whole else "stiffness"
+
+
+def unused_lubricant() -> Lubricant:
+    """Return an oil for a case that needs none: no law or formula of such a case looks at it."""
+    from tribodyn.lubricant import Lubricant
+
+    return Lubricant(0.1, 900.0, 2e-8, name="unused")
+
+
+def _argument(problem: Problem) -> Argument | None:
+    """The argument that a problem is about."""
+    place = problem.where
+    if isinstance(place, str) and place.startswith("argument "):
+        return Argument(place.removeprefix("argument ").partition(" ")[0])
+    return place if isinstance(place, Argument) else None
+
+
+@lru_cache(maxsize=1)
+def _argument_keys() -> dict[str, str]:
+    """Keys of the case file by the argument of the physics that they become."""
+    return {o.argument: key for key, o in _options(Section.whole, "") if o.argument}
+
+
+def _options(section: type[Section], prefix: str) -> Iterator[tuple[str, Option]]:
+    for name, field in section.fields.items():
+        if isinstance(field, Table):
+            yield from _options(field.kind, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", field
+
+
+def _key(problem: Problem, section: str) -> str:
+    """Key of the case file for the argument that a problem of one table names."""
+    place = _argument(problem)
+    if place is None:
+        return section
+    known = _argument_keys().get(place.name)
+    if known is not None:
+        return known
+    if not place.gear and section == "gears" and place.name in Gear.fields:
+        return section
+    return f"{section}.{place.gear}.{place.name}" if place.gear else f"{section}.{place.name}"
+
+
+def _key_in(case: Case, problem: Problem) -> str:
+    """Key of the case that a problem of its computation is about; empty if it cannot be told."""
+    place = problem.where
+    if isinstance(place, ModelOption):
+        section = getattr(case, place.kind, None)
+        if not isinstance(section, Section) or not place.model:
+            return ""
+        option = place.name if place.name in section.known().keys else section.selector
+        return f"{place.kind}.{option}"
+    argument = _argument(problem)
+    if argument is None:
+        return ""
+    for name, section in vars(case).items():
+        model = section.chosen if isinstance(section, Section) else None
+        for option, known in (model.declared if model else {}).items():
+            if argument.name == (known.argument or option):
+                return f"{name}.{option}"
+    return _argument_keys().get(argument.name, "")
+
+
+@contextmanager
+def placed(case: Case) -> Iterator[None]:
+    """Name file, line and key in the input errors that are raised inside the block."""
+    try:
+        yield
+    except InputError as error:
+        keyed = [(_key_in(case, problem), problem) for problem in error.problems]
+        unknown = [problem for key, problem in keyed if not key]
+        found = case.source.place((key, problem) for key, problem in keyed if key)
+        raise InputError([*found, *unknown]) from None
+
+
+def _faults(section: str, build: Callable[[], object]) -> list[tuple[str, Problem]]:
+    try:
+        build()
+    except InputError as error:
+        return [(_key(problem, section), problem) for problem in error.problems]
+    return []
+
+
+def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
+    """Find the faults of the gear pair alone, where other tables are faulty."""
+    if gears.pinion.face_width is None and gears.wheel.face_width is None:
+        return []
+    return _faults("gears", lambda: gear_pair(gears))
+
+
+def case_problems(case: Case) -> list[tuple[str, Problem]]:
+    """Find what makes a well-written case physically impossible."""
+    found = _faults("gears", lambda: case.gear_pair)
+    found += _faults("lubricant", lambda: case.lubricant_properties)
+    return found + _bores(case)
+
+
+def _bores(case: Case) -> list[tuple[str, Problem]]:
+    """A gear body without a bore has nothing that holds it."""
+    model = case.stiffness.model
+    if case.stiffness.reference != "bore":
+        return []
+    gears = {"pinion": case.gears.pinion, "wheel": case.gears.wheel}
+    problem = Problem(
+        "bore_diameter = 0 mm",
+        why=f'The model "{model}" measures deflection against the bore',
+        remedy='Give bore_diameter, or reference = "rim" in [stiffness], without the body',
+    )
+    return [
+        (f"gears.{name}.bore_diameter", problem)
+        for name, gear in gears.items()
+        if gear.bore_diameter == 0.0
+    ]

@@ -1,0 +1,151 @@
+"""The table ``[gears]`` of the case file: the pair, both gears, and what their flanks have."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
+from tribodyn.study.case.section import Section, table
+
+_GUARD = "guards against a wrong unit"
+_RACK = "ISO 53 profiles lie between 0.2 and 1.4"
+_MOST = 0.5e-3
+_TURN = 2.0 * math.pi
+_SHAPES = ("linear", "parabolic")
+
+
+def _relief(of: str) -> Any:
+    return number(0.0, 0.0, _MOST, _GUARD, of=of)
+
+
+def _length(of: str) -> Any:
+    basis = "the place where the number of tooth pairs changes"
+    return number(
+        None, 0.0, 1.0, "no longer than the used flank", of=of, positive=True, basis=basis
+    )
+
+
+def _signed(of: str) -> Any:
+    return number(0.0, -_MOST, _MOST, _GUARD, of=of)
+
+
+def _pitches(of: str, meaning: str) -> Any:
+    return numbers(-_MOST, _MOST, _GUARD, of=of, meaning=meaning)
+
+
+class Modification(Section):
+    """What the loaded flanks of a gear have that the involute has not."""
+
+    tip_relief: float = _relief("tip_relief")
+    tip_relief_length: float | None = _length("tip_relief_length")
+    tip_relief_shape: str = choice("linear", _SHAPES, meaning="how the tip relief falls to zero")
+    root_relief: float = _relief("root_relief")
+    root_relief_length: float | None = _length("root_relief_length")
+    root_relief_shape: str = choice("linear", _SHAPES, meaning="how the root relief falls to zero")
+    profile_crowning: float = _signed("profile_crowning")
+    profile_slope: float = _signed("profile_slope")
+    crowning: float = _signed("crowning")
+    lead_slope: float = _signed("lead_slope")
+    single_pitch_deviation: tuple[float, ...] | None = _pitches(
+        "single_pitch_deviation",
+        "deviation of the pitch from the flank before, in the order of contact",
+    )
+    cumulative_pitch_deviation: tuple[float, ...] | None = _pitches(
+        "cumulative_pitch_deviation",
+        "by how much each flank stands further on, in the order of contact",
+    )
+    run_out: float = number(0.0, 0.0, 1e-3, _GUARD, of="run_out")
+    run_out_phase: float = number(0.0, -_TURN, _TURN, "one turn", of="run_out_phase")
+    wear_depth: tuple[float, ...] | None = numbers(
+        0.0,
+        _MOST,
+        _GUARD,
+        of="wear_depth",
+        meaning="depth of wear: one value, or several from the lowest point to the tip",
+    )
+    profile_map: str | None = file_path(
+        meaning="CSV file with the measured deviation of the flank", example='"flank.csv"'
+    )
+    profile_map_interpolation: str = choice(
+        "linear", ("linear", "cubic"), meaning="how the map is read between its points"
+    )
+
+
+class Gear(Section):
+    """The ``[gears.pinion]`` and ``[gears.wheel]`` tables; None where a default is derived."""
+
+    teeth: int = integer(
+        REQUIRED,
+        5,
+        1000,
+        "the range of ISO 1328-1",
+        symbol="z",
+        example="16",
+        meaning="number of teeth",
+    )
+    profile_shift_coefficient: float = number(
+        0.0, -3.0, 3.0, "shifts in use lie between -1 and 1.5", of="profile_shift_coefficient"
+    )
+    face_width: float | None = number(
+        None, 1e-4, 2.0, _GUARD, of="face_width", basis="that of the other gear"
+    )
+    tip_diameter: float | None = number(
+        None,
+        1e-4,
+        20.0,
+        _GUARD,
+        of="tip_diameter",
+        basis="the standard addendum less the tip shortening",
+    )
+    bore_diameter: float = number(0.0, 0.0, 20.0, _GUARD, of="bore_diameter")
+    mass: float | None = number(None, 1e-7, 1e6, _GUARD, of="mass", basis="the solid gear")
+    moment_of_inertia: float | None = number(
+        None, 1e-14, 1e7, _GUARD, of="moment_of_inertia", basis="the solid gear"
+    )
+    roughness_rms: float | None = number(
+        None, 0.0, 20e-6, "ground to milled flanks; " + _GUARD, of="roughness_rms"
+    )
+    modification: Modification | None = table(
+        Modification, "what the loaded flanks have that the involute has not", "none"
+    )
+
+
+class Gears(Section):
+    """The ``[gears]`` table."""
+
+    kind: str = choice("spur", ("spur",), later=("hypoid",), meaning="kind of gear pair")
+    normal_module: float = number(
+        REQUIRED, 0.05e-3, 0.1, "ISO 54 modules run from 1 to 50 mm", of="normal_module"
+    )  # fmt: skip
+    normal_pressure_angle: float = number(
+        REQUIRED, math.radians(10.0), math.radians(35.0), "basic racks lie between 14.5 and 30 deg",
+        of="normal_pressure_angle"
+    )  # fmt: skip
+    center_distance: float | None = number(
+        None, 1e-4, 10.0, _GUARD, of="center_distance", basis="the profile shifts, without backlash"
+    )
+    driver: str = choice(REQUIRED, ("pinion", "wheel"), meaning="the gear that drives")
+    composite_roughness: float | None = number(
+        None,
+        0.0,
+        20e-6,
+        "ground to milled flanks; " + _GUARD,
+        of="composite_roughness",
+        argument="roughness",
+    )
+    addendum_coefficient: float = number(1.0, 0.2, 1.5, _RACK, of="addendum_coefficient")
+    dedendum_coefficient: float = number(
+        1.25, 0.2, 1.8, _RACK, of="dedendum_coefficient", argument="rack"
+    )
+    rack_tip_radius_coefficient: float = number(
+        0.38,
+        0.0,
+        0.6,
+        "ISO 53 profiles lie between 0.25 and 0.39",
+        of="rack_tip_radius_coefficient",
+        argument="tip_radius_coefficient",
+    )
+    misalignment: float = number(0.0, -0.5e-3, 0.5e-3, _GUARD, of="misalignment")
+    pinion: Gear = table(Gear, "the smaller gear")
+    wheel: Gear = table(Gear, "the larger gear")

@@ -1,0 +1,121 @@
+"""What the user gave, before any default, by dotted keys; and where each of them stands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.study.case.values import Plain, written
+
+
+def plain(data: Any) -> Any:
+    """Mark every value of nested mappings as coming from Python, where a bare float is SI."""
+    if isinstance(data, Mapping):
+        return {
+            key: _marks(value) if key == "assumed" else plain(value) for key, value in data.items()
+        }
+    return data if isinstance(data, Plain) else Plain(data)
+
+
+def _marks(table: Any) -> Any:
+    """Mark the values that reasons belong to; the reasons stay as they are."""
+    if not isinstance(table, Mapping):
+        return table
+    return {
+        key: {**mark, "value": plain(mark["value"])}
+        if isinstance(mark, Mapping) and "value" in mark
+        else mark
+        for key, mark in table.items()
+    }
+
+
+class Given(dict[str, Any]):
+    """What the user gave, by dotted keys: values as typed, and tables; ``data`` has it nested."""
+
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        super().__init__()
+        self.data = data
+        self.typed: tuple[str, ...] = ()  #: keys of values alone
+        pending = [("", data)]
+        for prefix, table in pending:
+            for name, value in table.items():
+                key = f"{prefix}{name}"
+                if isinstance(value, Mapping):
+                    pending.append((f"{key}.", value))
+                else:
+                    self.typed += (key,)
+                    value = value.value if isinstance(value, Plain) else value
+                self[key] = value
+
+    def __reduce__(self) -> Any:
+        """Copy and pickle it by what it was made of."""
+        return type(self), (self.data,)
+
+    def show(self, key: str) -> str:
+        """Write ``key = value`` as the user typed it."""
+        return f"{key.rpartition('.')[2]} = {written(self.get(key))}"
+
+    def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return a copy with dotted keys set."""
+        result: dict[str, Any] = _copy(self.data)
+        for key, value in changes.items():
+            *tables, name = key.split(".")
+            node = result
+            for table in tables:
+                node = node.setdefault(table, {})
+                if not isinstance(node, dict):
+                    raise InputError(
+                        Problem(f"{table} is a value, not a table", key, "", "Correct the key")
+                    )
+            if value is None or (isinstance(value, Plain) and value.value is None):
+                node.pop(name, None)
+            else:
+                node[name] = value
+        return result
+
+
+def _copy(data: Any) -> Any:
+    if isinstance(data, Mapping):
+        return {key: _copy(value) for key, value in data.items()}
+    return data
+
+
+@dataclass(frozen=True)
+class Source:
+    """Origin of the keys of a case."""
+
+    name: str = ""  #: file name as the user gave it
+    find: Callable[[], Mapping[str, list[int]]] = dict  #: lines of the keys, looked up when asked
+    replaced: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def lines(self) -> Mapping[str, list[int]]:
+        """Lines on which each key stands."""
+        return self.find()
+
+    def line(self, key: str) -> int:
+        """Line of a key or, where it is not written, of the nearest table around it; or zero."""
+        while key and key not in self.lines:
+            key = key.rpartition(".")[0]
+        return self.lines[key][0] if key else 0
+
+    def where(self, key: str) -> str:
+        """Write ``file:line: key`` with as much of it as is known."""
+        if key in self.replaced:
+            return f"{self.replaced[key]} {key}"
+        if not self.name:
+            return key
+        line = self.line(key)
+        return f"{self.name}:{line}: {key}" if line else f"{self.name}: {key}"
+
+    def place(self, found: Iterable[tuple[str, Problem]]) -> list[Problem]:
+        """Set the place of each problem and order the problems as the file is read."""
+        ordered = sorted(found, key=lambda pair: self.line(pair[0]))
+        return [replace(problem, where=self.where(key)) for key, problem in ordered]
+
+    def with_replaced(self, keys: Iterable[str], by: str) -> Source:
+        """Return the same source with some keys replaced."""
+        return replace(self, replaced={**self.replaced, **dict.fromkeys(keys, by)})

@@ -1,0 +1,257 @@
+"""Which values the user gave, which are assumed, and which are defaults: nothing is hidden."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.model import Model, Option
+from tribodyn.study.case.checks import DEFAULT_MARK
+from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.section import Section, in_force, section_at
+from tribodyn.study.case.stated import same
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+
+_PROFILE = (
+    "gears.normal_module", "gears.normal_pressure_angle", "gears.addendum_coefficient",
+    "gears.dedendum_coefficient", "gears.rack_tip_radius_coefficient",
+)  # fmt: skip
+_TEETH = tuple(
+    f"gears.{gear}.{name}"
+    for gear in ("pinion", "wheel")
+    for name in ("teeth", "profile_shift_coefficient")
+)
+_OIL = tuple(
+    f"lubricant.{name}"
+    for name in ("name", "dynamic_viscosity", "density", "pressure_viscosity_coefficient")
+)
+_LOAD = ("operation.speed", "operation.torque")
+_ROUGHNESS = (
+    "gears.composite_roughness", "gears.pinion.roughness_rms", "gears.wheel.roughness_rms",
+)  # fmt: skip
+_MASSES = tuple(
+    f"gears.{gear}.{name}" for gear in ("pinion", "wheel") for name in ("mass", "moment_of_inertia")
+)
+
+
+def body(gear: str) -> tuple[str, ...]:
+    """Keys that make the body of a gear."""
+    own = ("teeth", "profile_shift_coefficient", "face_width", "tip_diameter", "bore_diameter")
+    return (*_PROFILE, *(f"gears.{gear}.{name}" for name in own), "material.density")
+
+
+_ELASTIC = (
+    *dict.fromkeys((*body("pinion"), *body("wheel"))),
+    "gears.center_distance", "material.youngs_modulus", "material.poissons_ratio",
+)  # fmt: skip
+
+_FOUNDATIONS: dict[str, tuple[str, ...]] = {
+    "gears.center_distance": (*_PROFILE[:2], *_TEETH),
+    "gears.pinion.mass": body("pinion"),
+    "gears.pinion.moment_of_inertia": body("pinion"),
+    "gears.wheel.mass": body("wheel"),
+    "gears.wheel.moment_of_inertia": body("wheel"),
+    "gears.pinion.tip_diameter": (*_PROFILE[:3], *_TEETH, "gears.center_distance"),
+    "gears.wheel.tip_diameter": (*_PROFILE[:3], *_TEETH, "gears.center_distance"),
+    "material.density": _MASSES,
+    "material.youngs_modulus": ("material.poissons_ratio",),
+    "lubricant.temperature": _OIL,
+    "operation.torque": (*_PROFILE[:2], *_TEETH),
+    "operation.speed_of": (*_LOAD, *_TEETH),
+    "operation.torque_balance": (*_LOAD, *_TEETH),
+    "friction.coefficient": (*_LOAD, *_OIL, "lubricant.temperature", *_ROUGHNESS),
+    "dynamics.bearing_damping": (*_MASSES, "dynamics.bearing_stiffness"),
+    "dynamics.mesh_damping": (*_MASSES, "stiffness.model"),
+    "dynamics.backlash": ("gears.normal_module", "gears.center_distance"),
+}
+for _shaft in ("dynamics.shaft1", "dynamics.shaft2"):
+    _disc, _spring = f"{_shaft}_moment_of_inertia", f"{_shaft}_stiffness"
+    _FOUNDATIONS |= {_disc: (_spring,), _spring: (_disc,), f"{_shaft}_damping": (_disc, _spring)}
+for _name in ("stiffness", "damping", "moment_of_inertia", "mass"):
+    _twin = f"dynamics.shaft2_{_name}"  # Where it is taken as that of shaft 1.
+    _FOUNDATIONS[_twin] = (*_FOUNDATIONS.get(_twin, ()), f"dynamics.shaft1_{_name}")
+for _value in ("pair", "single_pair", "double_pair", "mean"):
+    _FOUNDATIONS[f"stiffness.{_value}_stiffness"] = _ELASTIC
+_FOUNDATIONS["stiffness.double_pair_stiffness"] = (*_ELASTIC, "stiffness.single_pair_stiffness")
+for _value in ("cosine", "sine", "values"):
+    _FOUNDATIONS[f"stiffness.{_value}"] = _ELASTIC
+
+
+def foundations(key: str) -> tuple[str, ...]:
+    """Keys whose change takes away what a reason of this key speaks of."""
+    return _FOUNDATIONS.get(key, ())
+
+
+_TRANSIENT_CYCLES = 50
+#: Keys of a case that are words about it.
+_WORDS = ("title", "origin")
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """A value that nobody stated, and why it is what it is."""
+
+    key: str  #: dotted key of the case file
+    value: str  #: value with unit
+    kind: str  #: ``"assumed"`` by whoever wrote the case, or a ``"default"`` of tribodyn
+    reason: str  #: why
+
+    def __str__(self) -> str:
+        """One line."""
+        return f"{self.key} = {self.value} ({self.kind}): {self.reason}"
+
+
+def spec_of(case: Case, key: str) -> Option | None:
+    """Return the Option of a dotted key, or None if there is no such key or it is a table."""
+    *path, name = key.split(".")
+    section = section_at(tuple(path))
+    if section is None:
+        return None
+    model = _model_of(case, path)
+    return (model.declared.get(name) if model else None) or section.spec(name)
+
+
+def _model_of(case: Case, path: list[str]) -> Model | None:
+    """The model that a table of the case names."""
+    section = vars(case).get(path[0]) if len(path) == 1 else None
+    return section.chosen if isinstance(section, Section) else None
+
+
+def _bored(case: Case, default: Any) -> Any:
+    """Body against which deflection is measured; one without a bore has no shaft seat."""
+    if case.stiffness.reference is not None:
+        return default
+    bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
+    return "rim" if default == "bore" and not all(bores) else default
+
+
+def effective_values(case: Case) -> dict[str, Any]:
+    """All values in force by dotted key, defaults of options and solver filled in."""
+    values = in_force(case)
+    values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
+    for name in ("mesh_damping", "bearing_damping"):
+        if values[f"dynamics.{name}"] is not None:
+            values[f"dynamics.{name}_ratio"] = None
+    values["dynamics.mesh_law"] = mesh_law_of(case)
+    if case.solver.method == "transient" and values["solver.cycles"] is None:
+        values["solver.cycles"] = _TRANSIENT_CYCLES
+    return values
+
+
+def effective(case: Case) -> dict[str, Any]:
+    """Return all values in force by dotted key."""
+    return dict(case._effective)
+
+
+def default_of(case: Case, key: str) -> Any:
+    """Value of a key where a case like this one does not give it; None if it is derived."""
+    *path, name = key.split(".")
+    section = section_at(tuple(path))
+    if key == "solver.cycles":
+        return _TRANSIENT_CYCLES
+    if key == "dynamics.mesh_law":
+        return mesh_law_of(case)
+    model = _model_of(case, path)
+    option = section.fields.get(name) if section else None
+    standard = option.default if isinstance(option, Option) and not option.required else None
+    if standard is None and model is not None:
+        standard = model.options.get(name)
+    return _bored(case, standard) if key == "stiffness.reference" else standard
+
+
+def changed_keys(case: Case) -> tuple[str, ...]:
+    """Keys whose values differ from those that the case began with."""
+    values, base, given = effective(case), case.stated.base, case.given
+    if any(values.get(key) is None for key in base):
+        derived = derived_values(case)
+        values = {k: derived.get(k) if v is None else v for k, v in values.items()}
+    new = {
+        key: default_of(case, key)
+        for key in values
+        if key in given and key not in base and case.assumed.get(key) != DEFAULT_MARK
+    }
+    before = {**new, **base}
+    return tuple(
+        key
+        for key in (*values, *(key for key in base if key not in values))
+        if key in before and key not in _WORDS and not same(before[key], values.get(key))
+    )
+
+
+def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:
+    """Origin of a value with a mark in ``[assumed]``."""
+    reason = case.assumed[key]
+    if reason != DEFAULT_MARK:
+        since = [other for other in changed if other in foundations(key)]
+        told = f"; stated before {', '.join(since)} changed" if since else ""
+        return f"assumed: {reason}{told}"
+    standard = default_of(case, key)
+    if same(standard, value):
+        return DEFAULT_MARK
+    spec = spec_of(case, key)
+    now = spec.show(standard) if spec and standard is not None else "derived"
+    return f"assumed: marked as default in the file, while this version has {now} for this case"
+
+
+def _derived_from(case: Case, key: str) -> str:
+    spec = spec_of(case, key)
+    return spec.basis if spec else ""
+
+
+def provenance(case: Case) -> dict[str, str]:
+    """Tell the origin of every value in force."""
+    origins, changed, given = {}, changed_keys(case), case.given
+    for key, value in effective(case).items():
+        if key in case.assumed:
+            origins[key] = _marked(case, key, value, changed)
+        elif key in given:
+            origins[key] = "given"
+        elif value is not None or _derived_from(case, key):
+            origins[key] = DEFAULT_MARK
+    return origins
+
+
+def assumptions(case: Case) -> tuple[Assumption, ...]:
+    """List everything that the user did not state: assumed values and defaults."""
+    values, derived, rows = effective(case), derived_values(case), []
+    for key, origin in provenance(case).items():
+        kind, _, reason = origin.partition(": ")
+        spec = spec_of(case, key)
+        if kind == "given" or spec is None:
+            continue
+        if key in derived or (values[key] is None and spec.basis):
+            reason = f"derived from {spec.basis}"
+        value = derived.get(key, values[key])
+        shown = "automatic" if value is None else spec.show(value)
+        rows.append(Assumption(key, shown, kind, reason or spec.meaning))
+    return (*rows, *_oil_assumptions(case))
+
+
+def _oil_assumptions(case: Case) -> list[Assumption]:
+    """What the library assumes about the oil of a case."""
+    oil = case.lubricant_properties
+    if oil is None:
+        return []
+    return [Assumption("lubricant", oil.name, "assumed", reason) for reason in oil.assumptions]
+
+
+def derived_values(case: Case) -> dict[str, float]:
+    """All values that are derived because the case does not give them."""
+    from tribodyn.gear import default_relief_length, mass_properties
+
+    pair, values = case.gear_pair, {}
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        solid = mass_properties(gear, case.material.density)
+        values[f"gears.{name}.face_width"] = gear.face_width
+        values[f"gears.{name}.tip_diameter"] = gear.tip_diameter
+        values[f"gears.{name}.mass"] = solid.mass
+        values[f"gears.{name}.moment_of_inertia"] = solid.moment_of_inertia
+        for end in ("tip_relief", "root_relief"):
+            values[f"gears.{name}.modification.{end}_length"] = default_relief_length(pair)
+    values["gears.center_distance"] = pair.center_distance
+    values["dynamics.backlash"] = case.backlash
+    given = dict(case.values())
+    return {key: value for key, value in values.items() if given.get(key, value) is None}

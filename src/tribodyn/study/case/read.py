@@ -1,0 +1,255 @@
+"""Read a case file: text to a checked case, every fault with its line."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.given import Source
+
+_SPACE = " \t\r"
+
+
+class _Scanner:
+    """One pass over the text; ``lines`` maps dotted keys to the lines on which they stand."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.at = 0
+        self.lines: dict[str, list[int]] = {}
+
+    def run(self) -> dict[str, list[int]]:
+        """Scan the whole text."""
+        table: tuple[str, ...] = ()
+        while self.at < len(self.text):
+            self._skip(_SPACE + "\n")
+            if self._peek() == "#":
+                self._to_line_end()
+            elif self._peek() == "[":
+                self._skip("[")
+                start = self.at
+                table = self._key("]")
+                self._note(table, start)
+                self._to_line_end()
+            elif self.at < len(self.text):
+                self._pair(table, "\n")
+        return self.lines
+
+    def _peek(self) -> str:
+        return self.text[self.at : self.at + 1]
+
+    def _skip(self, characters: str) -> None:
+        while self._peek() and self._peek() in characters:
+            self.at += 1
+
+    def _to_line_end(self) -> None:
+        end = self.text.find("\n", self.at)
+        self.at = len(self.text) if end < 0 else end
+
+    def _note(self, key: tuple[str, ...], position: int) -> None:
+        line = self.text.count("\n", 0, position) + 1
+        self.lines.setdefault(".".join(key), []).append(line)
+
+    def _key(self, end: str) -> tuple[str, ...]:
+        """Read a dotted key, quoted parts included, up to and with the character ``end``."""
+        parts, part = [], ""
+        while self._peek() not in ("", "\n", end):
+            character = self._peek()
+            if character in "\"'":
+                start = self.at + 1
+                self._string(character)
+                part += self.text[start : self.at - 1]
+                continue
+            if character == ".":
+                parts.append(part)
+                part = ""
+            elif character not in _SPACE:
+                part += character
+            self.at += 1
+        if self._peek() == end:
+            self.at += 1
+        return (*parts, part)
+
+    def _pair(self, table: tuple[str, ...], ends: str) -> None:
+        """Read ``key = value`` and note the key; the value ends at a character of ``ends``."""
+        start = self.at
+        key = (*table, *self._key("="))
+        self._note(key, start)
+        self._value(key, ends)
+
+    def _string(self, quote: str) -> None:
+        """Step behind the string that begins here."""
+        long = self.text.startswith(quote * 3, self.at)
+        close = quote * 3 if long else quote
+        self.at += len(close)
+        while self.at < len(self.text) and not self.text.startswith(close, self.at):
+            if not long and self._peek() == "\n":
+                return
+            self.at += 2 if quote == '"' and self._peek() == "\\" else 1
+        self.at += len(close)
+
+    def _value(self, key: tuple[str, ...], ends: str) -> None:
+        """Step to the end of a value, noting the keys of inline tables inside it."""
+        depth = 0
+        while self.at < len(self.text):
+            character = self._peek()
+            if depth == 0 and character in ends:
+                return
+            if character in "\"'":
+                self._string(character)
+                continue
+            if character == "#":
+                self._to_line_end()
+                continue
+            if character == "{":
+                self._inline(key)
+                continue
+            depth += {"[": 1, "]": -1}.get(character, 0)
+            self.at += 1
+
+    def _inline(self, key: tuple[str, ...]) -> None:
+        """Read the inline table that begins here, up to and with its closing brace."""
+        self.at += 1
+        while self.at < len(self.text):
+            self._skip(_SPACE + "\n,")
+            if self._peek() == "}":
+                self.at += 1
+                return
+            self._pair(key, ",}\n")
+
+
+def key_lines(text: str) -> dict[str, list[int]]:
+    r"""Map every dotted key and table of TOML text to the lines on which it stands."""
+    return _Scanner(text).run()
+
+
+#: A number followed by a unit, without quotes.
+_BARE_UNIT = re.compile(r"=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-zµ°%][^\"'#]*?)\s*(?:#.*)?$")
+_COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
+_BARE_WORD = re.compile(r"=\s*([A-Za-z][\w-]*)\s*(?:#.*)?$")
+
+#: Characters of a faulty line that a message repeats.
+_SHOWN = 80
+
+
+def read_text(path: Path) -> str:
+    """Read a text file in UTF-8."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        what = f"byte 0x{error.object[error.start]:02x} is not UTF-8"
+        why = "A case file is text in UTF-8"
+        raise InputError(Problem(what, f"{path}:{line}", why, "Save it as UTF-8")) from None
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(Problem(f"the file cannot be read: {reason}", str(path))) from None
+
+
+def read_case(text: str, name: str = "") -> Case:
+    """Check the text of a case file.
+
+    Parameters
+    ----------
+    text : str
+        TOML text.
+    name : str
+        File name, for messages.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    InputError
+        Listing every fault of the file.
+
+    Examples
+    --------
+    >>> try:
+    ...     read_case("title = 'x'", "my.toml")
+    ... except InputError as error:
+    ...     print(error.problems[0])
+    my.toml: gears: the table [gears] is missing. Add it with normal_module, \
+normal_pressure_angle, driver, pinion, wheel.
+    """
+    data = _parse(text, name)
+    if not data:
+        remedy = "Write a case to start from: tribodyn new my.toml --from fzg-roughness"
+        raise InputError(Problem("the file holds no values", name, "", remedy))
+    _place_files(data, Path(name).parent)
+    return Case(Source(name or "case", partial(key_lines, text)), **data)
+
+
+def _place_files(data: dict[str, Any], folder: Path) -> None:
+    """Let the paths of a case begin at its own folder."""
+    for gear in ("pinion", "wheel"):
+        table = _at(data, "gears", gear, "modification")
+        if isinstance(table, dict) and isinstance(table.get("profile_map"), str):
+            table["profile_map"] = str((folder / table["profile_map"]).absolute())
+        mark = _at(data, "assumed", f"gears.{gear}.modification.profile_map")
+        if isinstance(mark, dict) and isinstance(mark.get("value"), str):
+            mark["value"] = str((folder / mark["value"]).absolute())
+
+
+def _at(data: Any, *keys: str) -> Any:
+    """Item of nested tables, or None."""
+    for key in keys:
+        data = data.get(key) if isinstance(data, dict) else None
+    return data
+
+
+def _parse(text: str, name: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(_syntax(text, name, str(error))) from None
+    except RecursionError:
+        deep = Problem("brackets are nested too deeply", name, "", "This is no case file")
+        raise InputError(deep) from None
+
+
+def _syntax(text: str, name: str, message: str) -> Problem:
+    """Say what the TOML reader stumbled over, and what was probably meant."""
+    found = re.search(r"\(at line (\d+), column \d+\)", message)
+    lines = text.splitlines()
+    number = int(found.group(1)) if found else len(lines)
+    reason = re.sub(r"\s*\(at .*\)$", "", message)
+    if repeated := _repeated(text, reason, number):
+        key, first, second = repeated
+        why = f"It stands in lines {first} and {second}"
+        return Problem(f"{key} is given twice", f"{name}:{second}: {key}", why, "Remove one")
+    content = lines[number - 1].strip() if 0 < number <= len(lines) else ""
+    shown = content if len(content) <= _SHOWN else f"{content[:_SHOWN]}..."
+    what = f'this is not TOML: "{shown}"' if content else "this is not TOML"
+    return Problem(what, f"{name}:{number}", reason, _remedy(content))
+
+
+def _repeated(text: str, reason: str, number: int) -> tuple[str, int, int] | None:
+    """Find the key that stands twice, if that is what the TOML reader refuses."""
+    if not re.search(r"overwrite|twice|duplicate|namespace", reason, re.IGNORECASE):
+        return None
+    twice = [(key, at) for key, at in key_lines(text).items() if len(at) > 1]
+    near = [(key, at) for key, at in twice if number in at] or twice
+    return (near[0][0], near[0][1][0], near[0][1][1]) if near else None
+
+
+def _remedy(content: str) -> str:
+    if match := _COMMA.search(content):
+        key = content.split("=")[0].strip()
+        return f"Write a decimal point: {key} = {match.group(1)}.{match.group(2)}"
+    if match := _BARE_UNIT.search(content):
+        return f'Put the value in quotes: {content.split("=")[0].strip()} = "{match.group(1)}"'
+    if match := _BARE_WORD.search(content):
+        return f'Put the word in quotes: {content.split("=")[0].strip()} = "{match.group(1)}"'
+    if content.count('"') % 2:
+        return "Close the quotes"
+    if content.startswith("[") and "]" not in content:
+        return "Close the bracket"
+    return 'A line reads: key = "value unit"' if "=" not in content else "Correct the line"

@@ -1,0 +1,85 @@
+"""All keys, models and warnings with their meaning: what ``explain`` and the pages are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from importlib.resources import files
+
+from tribodyn.model import Model, Option
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.section import Section, Table
+
+
+def case_keys() -> Iterator[tuple[str, Option, str]]:
+    """Walk over all keys of the case file."""
+    yield from _walk(Case, ())
+
+
+def _walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, Option, str]]:
+    for name, field in section.known().keys.items():
+        if isinstance(field, Table):
+            yield from _walk(field.kind, (*path, name))
+        else:
+            own = name in section.fields
+            yield ".".join((*path, name)), field, _default(field, own)
+
+
+def _default(option: Option, own: bool) -> str:
+    """Default of a key of every case; an option of a model has that of the model."""
+    if option.required and own:
+        return "required"
+    if option.default is None or not own:
+        return f"from {option.basis}" if option.basis else "none"
+    return option.show(option.default)
+
+
+def reference_tables() -> str:
+    """Write all keys as Markdown tables, one for each table of the case file."""
+    lines: list[str] = []
+    table = ""
+    for key, spec, default in case_keys():
+        place, _, name = key.rpartition(".")
+        if place != table or not lines:
+            table = place
+            lines += ["", f"### `[{place}]`" if place else "### Top of the file", ""]
+            lines += ["| key | symbol | meaning | allowed | default |", "|---|---|---|---|---|"]
+        symbol = f"`{spec.symbol}`" if spec.symbol else ""
+        row = (f"`{name}`", symbol, spec.meaning, _limits(spec), default)
+        lines.append("| " + " | ".join(row) + " |")
+    return "\n".join(lines).strip() + "\n"
+
+
+def _limits(spec: Option) -> str:
+    if spec.names is not None:
+        return ", ".join(f"`{name}`" for name in spec.names())
+    return f"{spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
+
+
+def _models() -> Iterator[tuple[str, Model]]:
+    """All models that a case can name, each with the key that names it."""
+    for table, field in Case.fields.items():
+        section = field.kind if isinstance(field, Table) else None
+        for model in section.known().models.values() if section else ():
+            yield f"{table}.{section.selector}", model  # type: ignore[union-attr]
+
+
+def choice_meanings() -> dict[str, str]:
+    """Meaning of the models, laws and methods that a case chooses among."""
+    told: dict[str, list[str]] = {}
+    for _, model in _models():
+        told.setdefault(model.name, []).append(getattr(model, "meaning", ""))
+    for _, option, _ in case_keys():
+        for name, meaning in option.meanings.items():
+            told.setdefault(name, []).append(meaning)
+    joined = {name: "; ".join(filter(None, dict.fromkeys(texts))) for name, texts in told.items()}
+    return {name: text for name, text in joined.items() if text}
+
+
+@lru_cache(maxsize=1)
+def warning_meanings() -> Mapping[str, str]:
+    """Meaning of every warning by its code."""
+    import tomllib
+
+    text = files("tribodyn.study.case").joinpath("warnings.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)["warnings"]  # type: ignore[no-any-return]

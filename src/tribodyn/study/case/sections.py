@@ -1,0 +1,215 @@
+"""The tables of the case file apart from ``[gears]``: oil, load, and the chosen models."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.model import REQUIRED, choice, flag, integer, model_choice, number
+from tribodyn.study.case.section import Section
+
+if TYPE_CHECKING:
+    from tribodyn.model import Registry
+
+_GUARD = "guards against a wrong unit"
+_RPM = math.pi / 30.0
+_TWO_PI = 2.0 * math.pi
+
+
+def _films() -> Registry[Any]:
+    from tribodyn.ehl import FILM_MODELS
+
+    return FILM_MODELS
+
+
+def _stiffnesses() -> Registry[Any]:
+    from tribodyn.stiffness import MODELS
+
+    return MODELS
+
+
+def _laws() -> Registry[Any]:
+    from tribodyn.friction import LAWS
+
+    return LAWS
+
+
+def _structures() -> Registry[Any]:
+    from tribodyn.dynamics import STRUCTURES
+
+    return STRUCTURES
+
+
+def _engines() -> Registry[Any]:
+    from tribodyn.dynamics import ENGINES
+
+    return ENGINES
+
+
+@cache
+def _lubricants() -> list[str]:
+    from tribodyn.lubricant import library
+
+    return list(library())
+
+
+class MaterialData(Section):
+    """The ``[material]`` table: both gears are made of it."""
+
+    youngs_modulus: float = number(
+        206e9, 1e8, 1e12, "from polymers to tungsten carbide", of="youngs_modulus"
+    )
+    poissons_ratio: float = number(
+        0.3, 0.0, 0.49, "0.5 is incompressible, negative is no gear material", of="poissons_ratio"
+    )
+    density: float = number(7800.0, 500.0, 25000.0, "from polymers to tungsten", of="density")
+
+
+class LubricantData(Section):
+    """The ``[lubricant]`` table: a name from the library, or the properties themselves."""
+
+    name: str | None = choice(
+        None, _lubricants, meaning="name of an oil of the library", argument="lubricant"
+    )
+    dynamic_viscosity: float | None = number(None, 1e-5, 100.0, _GUARD, of="dynamic_viscosity")
+    density: float | None = number(None, 500.0, 2000.0, "liquids; " + _GUARD, of="density")
+    pressure_viscosity_coefficient: float | None = number(
+        None, 1e-10, 1e-7, "oils lie between 5 and 40 1/GPa", of="pressure_viscosity_coefficient"
+    )
+    temperature_viscosity_coefficient: float | None = number(
+        None, 0.001, 0.3, "gear oils lie between 0.02 and 0.07 1/K",
+        of="temperature_viscosity_coefficient",
+    )  # fmt: skip
+    thermal_conductivity: float | None = number(
+        None, 0.01, 2.0, "mineral oil has about 0.13 W/m/K", of="thermal_conductivity"
+    )
+    temperature: float | None = number(
+        None, 233.15, 473.15, "gear oils work between -40 and 200 degC", of="temperature"
+    )
+
+
+class Operation(Section):
+    """The ``[operation]`` table."""
+
+    speed: float = number(
+        REQUIRED, 0.01 * _RPM, 2e5 * _RPM, _GUARD, of="speed", argument="pinion_speed"
+    )
+    torque: float = number(REQUIRED, 1e-6, 1e8, _GUARD, of="torque", argument="pinion_torque")
+    speed_of: str = choice(
+        "pinion", ("pinion", "wheel"), meaning="the gear whose speed and torque are given"
+    )
+    torque_balance: str = choice(
+        "drive",
+        ("drive", "load", "both"),
+        meaning="which nominal torque is held when friction acts",
+    )
+
+
+class Film(Section):
+    """The ``[film]`` table: how the oil film is found."""
+
+    model: str = model_choice("none", _films, meaning="how the oil film is found")
+
+
+class Stiffness(Section):
+    """The ``[stiffness]`` table: how the teeth give way."""
+
+    model: str = model_choice("fe2d", _stiffnesses, meaning="tooth stiffness model")
+
+
+class Friction(Section):
+    """The ``[friction]`` table."""
+
+    law: str = model_choice(
+        "none",
+        _laws,
+        later=("exponential", "schlenk", "mixed-ehl", "measured"),
+        meaning="friction law of the tooth contact",
+    )
+
+
+class Dynamics(Section):
+    """The ``[dynamics]`` table: the vibrating structure."""
+
+    model: str = model_choice(
+        "spur-6dof",
+        _structures,
+        later=("hypoid-14dof",),
+        meaning="structure that vibrates",
+    )
+    mesh_law: str | None = choice(
+        None,
+        {
+            "stiffness": "mesh force as a stiffness over the mesh phase times the deflection",
+            "tangent": "film stiffness as the slope of the load over the central film; of the mesh "
+            "force, linear about the load",
+            "force-law": "mesh force as it follows from the loaded tooth contact, any deflection",
+        },
+        meaning="k(t) times deflection, linearized about the load, or the whole force law",
+    )
+    friction_load: str = choice(
+        "nominal",
+        {
+            "nominal": "friction coefficients and load shares of the mesh at rest under the "
+            "nominal load",
+            "dynamic": "friction coefficients and load shares follow the dynamic load of the teeth",
+        },
+        meaning="load that friction coefficients and load shares belong to",
+    )
+    bearing_damping_ratio: float = number(
+        0.02, 0.0, 2.0, "supports lie between 0.01 and 0.1",
+        meaning="damping of each gear on its bearing over its critical value",
+    )  # fmt: skip
+    mesh_damping: float | None = number(None, 0.0, 1e9, _GUARD, of="mesh_damping")
+    mesh_damping_ratio: float = number(
+        0.04, 0.0, 2.0, "meshes lie between 0.03 and 0.17", of="mesh_damping_ratio"
+    )
+    damping_in_gap: bool = flag(False, meaning="keep the mesh damping while the flanks are apart")
+    backlash: float | None = number(
+        None,
+        0.0,
+        0.01,
+        _GUARD,
+        of="backlash",
+        basis="the tooth thicknesses at the operating pitch circles",
+        argument="backlash",
+    )
+    transmission_error_amplitude: float = number(
+        0.0, 0.0, 1e-3, _GUARD, of="transmission_error",
+        meaning="amplitude of the static transmission error at mesh frequency",
+    )  # fmt: skip
+    transmission_error_phase: float = number(
+        0.0, -_TWO_PI, _TWO_PI, "one turn", of="angle",
+        meaning="phase of the static transmission error where a pair enters contact",
+    )  # fmt: skip
+
+
+class Solver(Section):
+    """The ``[solver]`` table."""
+
+    method: str = choice(
+        "steady",
+        {
+            "steady": "the periodic motion, found directly",
+            "transient": "motion over time from the static equilibrium, measured over its second "
+            "half",
+        },
+        meaning="periodic motion, or motion from the static equilibrium",
+    )  # fmt: skip
+    engine: str = model_choice(
+        "runge-kutta-4", _engines, meaning="how the motion is marched over time"
+    )
+    steps_per_mesh_cycle: int | None = integer(
+        None, 64, 262144, "fewer do not resolve the mesh, more only cost time", example="1024",
+        meaning="integration steps per mesh cycle", argument="steps",
+        basis="the fastest motion of the structure, from 1024 to 65536",
+    )  # fmt: skip
+    cycles: int | None = integer(
+        None,
+        1,
+        100000,
+        "more only cost time",
+        example="50",
+        meaning="mesh cycles of a transient run",
+    )

@@ -1,0 +1,305 @@
+"""How tables and values of the case file are read: checked, and in SI."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import numbers as numeric
+import operator
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tribodyn import units
+from tribodyn.errors import Problem
+from tribodyn.model import REQUIRED, Option
+from tribodyn.study.case.section import Choice, Section, Table, section_at
+
+Chosen = Mapping[str, Choice]
+Found = list[tuple[str, Problem]]
+Kind = TypeVar("Kind", bound=Section)
+
+#: A number with a comma for its decimal point.
+_COMMA = re.compile(r"\s*[+-]?\d+,\d+(?!\d*,)")
+
+
+@dataclass(frozen=True)
+class Plain:
+    """A value given in Python: a bare number is SI, while in text it would lack its unit."""
+
+    value: Any
+
+
+class FaultError(Exception):
+    """What is wrong with one value; its place is not known yet."""
+
+    def __init__(self, what: str, why: str = "", remedy: str = "") -> None:
+        super().__init__(what)
+        self.problem = Problem(what, "", why, remedy)
+
+
+def written(value: Any) -> str:
+    """Show a value as TOML would have it."""
+    if isinstance(value, Plain):
+        value = value.value
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key} = {written(item)}' for key, item in value.items())}}}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(written(item) for item in value)}]"
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _comma(name: str, value: str) -> FaultError | None:
+    """Say that a number is written with a decimal point, where it has a comma."""
+    if not _COMMA.match(value):
+        return None
+    point = value.strip().replace(",", ".", 1)
+    shown = point if point.replace(".", "", 1).lstrip("+-").isdigit() else f'"{point}"'
+    why, remedy = "The decimal sign is a point, not a comma", f"Write {name} = {shown}"
+    return FaultError(f"{name} = {written(value)}", why, remedy)
+
+
+def _misread(spec: Option, name: str, value: str, told: str) -> FaultError:
+    """Say why text is no quantity of the field, and what to write."""
+    reason, lacks_unit, _ = told.partition("; write for example")
+    remedy = f"Write for example {spec.example}"
+    if lacks_unit:
+        remedy = f'Write for example {name} = "{value.strip()} {spec.display_unit}"'
+    elif spec.unit == "rad/s":
+        turns = re.fullmatch(r"\s*([\d.]+)\s*Hz\s*", value)
+        remedy = 'Write a rotational speed in rpm, for example "900 rpm"'
+        if turns:
+            rpm = 60.0 * float(turns.group(1))
+            remedy = f'Write it in rpm: "{rpm:g} rpm" if turns per second are meant'
+    return FaultError(f"{name} = {written(value)}", reason, remedy)
+
+
+def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
+    """Turn text, a pint quantity or a number into an SI float."""
+    shown = f"{name} = {written(value)}"
+    if hasattr(value, "magnitude") and hasattr(value, "to"):
+        try:
+            return float(value.to(spec.unit or "dimensionless").magnitude)
+        except Exception as error:
+            raise FaultError(
+                shown, f"{name} is a quantity in {spec.unit or '1'}", str(error)
+            ) from None
+    if isinstance(value, str):
+        if comma := _comma(name, value):
+            raise comma
+        if not spec.unit:
+            raise FaultError(shown, f"{name} is a pure number, not text", "Write it without quotes")
+        try:
+            return units.parse(value, spec.unit)
+        except units.UnitProblemError as error:
+            raise _misread(spec, name, value, str(error)) from None
+    if isinstance(value, bool) or not isinstance(value, numeric.Real):
+        kind = "a number with a unit" if spec.unit else "a number"
+        raise FaultError(shown, f"{name} must be {kind}", f"Write for example {spec.example}")
+    if spec.unit and as_text:
+        remedy = f'Write for example {name} = "{value} {spec.display_unit}"'
+        raise FaultError(shown, f"{name} has a dimension and needs a unit, as text", remedy)
+    return float(value)
+
+
+def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
+    """Refuse what is not finite or outside the limits of the field."""
+    outside = not (spec.low <= value <= spec.high) or (spec.positive and value == spec.low)
+    if math.isfinite(value) and not outside:
+        return
+    shown = f"{name} = {written(typed)}"
+    if spec.unit and math.isfinite(value):
+        display = spec.show(value)
+        shown += "" if display == str(typed) else f" ({display})"
+    why = f"Allowed: {spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
+    raise FaultError(
+        shown, why, "Correct the value or its unit" if spec.unit else "Correct the value"
+    )
+
+
+def _whole(spec: Option, name: str, value: Any) -> int:
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        whole = operator.index(value)
+    except TypeError:
+        remedy = f"Write for example {name} = {spec.example}"
+        raise FaultError(
+            f"{name} = {written(value)}", f"{name} must be a whole number", remedy
+        ) from None
+    _in_range(spec, name, whole, value)
+    return whole
+
+
+def _name(spec: Option, name: str, value: Any) -> str:
+    known = spec.names() if spec.names else []
+    if isinstance(value, str) and value in known:
+        return value
+    label = "This version has" if spec.later else "Allowed"
+    shown, why = f"{name} = {written(value)}", f"{label}: {', '.join(known)}"
+    if value in spec.later:
+        raise FaultError(
+            shown, f'"{value}" comes with a later release. {why}', "Choose one of these"
+        )
+    near = difflib.get_close_matches(str(value), known, n=1)
+    raise FaultError(shown, why, f'Did you mean "{near[0]}"?' if near else "Choose one of these")
+
+
+def read_value(spec: Option, name: str, value: Any) -> Any:
+    """Check one value and return it in SI."""
+    as_text = not isinstance(value, Plain)
+    if isinstance(value, Plain):
+        value = value.value
+    if spec.kind == "number":
+        result = _real(spec, name, value, as_text)
+        _in_range(spec, name, result, value)
+        return result
+    if spec.kind == "integer":
+        return _whole(spec, name, value)
+    if spec.kind == "choice":
+        return _name(spec, name, value)
+    if spec.kind == "numbers":
+        return _list(spec, name, value, as_text)
+    wanted = bool if spec.kind == "flag" else str
+    if not isinstance(value, wanted):
+        remedy = "Write true or false" if wanted is bool else "Write it in quotes"
+        raise FaultError(f"{name} = {written(value)}", f"{name} must be {spec.allowed()}", remedy)
+    return str(Path(str(value)).absolute()) if spec.kind == "file" else value
+
+
+def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ...]:
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        remedy = f"Write for example {name} = [{spec.example}]"
+        raise FaultError(f"{name} = {written(value)}", f"{name} must be a list", remedy)
+    result = []
+    for position, item in enumerate(value):
+        label = f"{name}[{position}]"
+        result.append(_real(spec, label, item, as_text))
+        _in_range(spec, label, result[-1], item)
+    return tuple(result)
+
+
+def read_table(
+    cls: type[Kind], data: Mapping[str, Any], path: str, chosen: Chosen, found: Found
+) -> Kind:
+    """Read a table under the models that are named; what is wrong with it is added to ``found``."""
+    section = cls.__new__(cls)
+    vars(section).update(read_fields(cls, data, path, chosen, found))
+    return section
+
+
+def read_fields(
+    cls: type[Section], data: Mapping[str, Any], path: str, chosen: Chosen, found: Found
+) -> dict[str, Any]:
+    """Values of the keys of a table, in the order of their declaration."""
+    values: dict[str, Any] = {}
+    model = chosen[path].model if path in chosen else None
+    # The options of a model go before keys of the same name.
+    options = {**cls.fields, **model.case_options} if model else cls.fields
+    for name, field in options.items():
+        key = f"{path}.{name}" if path else name
+        if isinstance(field, Table):
+            values[name] = _inner(field, data, key, chosen, found)
+        elif model and name == cls.selector:
+            values[name] = model.name
+        elif name in data:
+            try:
+                values[name] = read_value(field, name, data[name])
+            except FaultError as fault:
+                found.append((key, fault.problem))
+        elif name in cls.fields:
+            values[name] = cls.fields[name].default
+            if values[name] is REQUIRED:
+                values[name] = None
+                found.append((key, _missing(field, name, path)))
+        else:
+            values[name] = None
+    if not options.keys() >= data.keys():
+        found += _foreign(cls, data, options, path)
+    return values
+
+
+def _inner(
+    table: Table, data: Mapping[str, Any], key: str, chosen: Chosen, found: Found
+) -> Section | None:
+    name = key.rpartition(".")[2]
+    if name not in data:
+        if table.default == "none":
+            return None
+        if table.default == "required":
+            found.append((key, _missing_table(table.kind, key)))
+            return None
+    inner = data.get(name, {})
+    if isinstance(inner, Mapping):
+        return read_table(table.kind, inner, key, chosen, found)
+    what = f"{name} = {written(inner)}"
+    found.append((key, Problem(what, "", f"{name} is a table", f"Write [{key}]")))
+    return None
+
+
+def _foreign(
+    cls: type[Section], data: Mapping[str, Any], options: Mapping[str, Any], path: str
+) -> Iterator[tuple[str, Problem]]:
+    """Faults of keys that are not those of this table under its model."""
+    strange = [name for name in data if name not in options]
+    known = cls.known().keys if strange else {}
+    for name in strange:
+        key, option = (f"{path}.{name}" if path else name), known.get(name)
+        if isinstance(option, Option):
+            # That it belongs to another model is told with the other contradictions.
+            try:
+                read_value(option, name, data[name])
+            except FaultError as fault:
+                yield key, fault.problem
+        else:
+            yield key, unknown(tuple(key.split(".")), data[name])
+
+
+def _missing(option: Option, name: str, path: str) -> Problem:
+    example = option.example or '"..."'
+    place = f" to [{path}]" if path else ""
+    why = f"{option.meaning}: no default exists" if option.meaning else ""
+    return Problem(f"{name} is missing", "", why, f"Add for example {name} = {example}{place}")
+
+
+def _missing_table(kind: type[Section], path: str) -> Problem:
+    needed = [
+        name
+        for name, field in kind.fields.items()
+        if (field.required if isinstance(field, Option) else field.default == "required")
+    ]
+    remedy = f"Add it with {', '.join(needed)}" if needed else "Add it"
+    return Problem(f"the table [{path}] is missing", remedy=remedy)
+
+
+def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:
+    """List the tables that have a key called ``name``."""
+    section = section_at(path)
+    found = []
+    for key, field in section.known().keys.items() if section else ():
+        if isinstance(field, Table):
+            found += _homes(name, (*path, key))
+        elif key == name:
+            found.append(f"[{'.'.join(path)}]")
+    return found
+
+
+def unknown(path: tuple[str, ...], value: Any) -> Problem:
+    """Say that there is no such key, naming the nearest or the table that has it."""
+    *table, name = path
+    section = section_at(tuple(table))
+    known = list(section.known().keys) if section else []
+    known += [] if table else ["assumed"]
+    shown = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
+    place = f"[{'.'.join(table)}]" if table else "the top of the file"
+    why = f"{place} has: {', '.join(known)}"
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    if near:
+        return Problem(f"{shown}: unknown key", "", why, f'Did you mean "{near[0]}"?')
+    homes = _homes(name)
+    remedy = f"It belongs to {' or '.join(homes)}" if homes else "Remove it"
+    return Problem(f"{shown}: unknown key", "", why, remedy)

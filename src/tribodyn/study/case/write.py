@@ -1,0 +1,159 @@
+"""Write a case: as a commented case file that reads back, and as a table to look at."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+from tribodyn import units
+from tribodyn.model import Option
+from tribodyn.study.case.checks import DEFAULT_MARK
+from tribodyn.study.case.provenance import (
+    changed_keys,
+    derived_values,
+    effective,
+    provenance,
+    spec_of,
+)
+from tribodyn.study.case.section import Table, section_at
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+
+def _quantity(spec: Option, value: float) -> str:
+    """Text with a unit that reads back to exactly the same float."""
+    if not spec.unit:
+        return repr(value)
+    for unit in (spec.display_unit, spec.unit):
+        text = units.format_quantity(value, spec.unit, unit)
+        if units.parse(text, spec.unit) == value:
+            return f'"{text}"'
+    return f'"{value!r} {spec.unit}"'
+
+
+def _toml_value(spec: Option, value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return f"[{', '.join(_quantity(spec, item) for item in value)}]"
+    if spec.kind == "number":
+        return _quantity(spec, value)
+    return str(value) if spec.kind == "integer" else json.dumps(value, ensure_ascii=False)
+
+
+def _comment(spec: Option, note: str) -> str:
+    meaning = f"{spec.symbol}: {spec.meaning}" if spec.symbol else spec.meaning
+    limits = spec.allowed() if spec.names or math.isfinite(spec.low) else ""
+    return "; ".join(part for part in (meaning, limits, note) if part)
+
+
+def _line(spec: Option, name: str, value: Any, origin: str, derived: float | None) -> str:
+    if value is None and derived is not None:
+        note = f"default: from {spec.basis}"
+        return f'# {name} = "{spec.show(derived)}"  # {_comment(spec, note)}'
+    if value is None:
+        return f"# {name} = {_unset_example(spec)}  # {_comment(spec, 'not given')}"
+    note = origin if origin == DEFAULT_MARK else ""
+    return f"{name} = {_toml_value(spec, value)}  # {_comment(spec, note)}"
+
+
+def _unset_example(spec: Option) -> str:
+    if spec.kind == "numbers":
+        return f"[{spec.example}]"
+    return f'"{spec.names()[0]}"' if spec.names is not None else spec.example
+
+
+def case_toml(case: Case) -> str:
+    """Write the complete commented case file."""
+    values, origins, derived = effective(case), provenance(case), derived_values(case)
+    changed = changed_keys(case)
+    lines: list[str] = []
+    table = ""
+    for key, value in values.items():
+        spec = spec_of(case, key)
+        place, _, name = key.rpartition(".")
+        if spec is None:
+            if key.endswith(".modification"):
+                lines += ["", f"# [{key}] is not given: the flanks are involutes"]
+            continue
+        if place != table:
+            table = place
+            section = section_at(tuple(place.split("."))) if place else None
+            lines += ["", f"[{place}]  # {_table_meaning(case, place)}" if section else ""]
+        lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key)))
+        if key == "origin" and value is not None and changed:
+            lines[-1] += f"; {len(changed)} of the values have changed since: see [based_on]"
+    if case.lubricant is None:
+        lines += ["", "# [lubricant] is not given: nothing in this case needs an oil"]
+    marks = {key: case.assumed.get(key, DEFAULT_MARK) for key, origin in origins.items()
+             if origin != "given" and values[key] is not None}  # fmt: skip
+    return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case)]) + "\n"
+
+
+def _assumed_lines(case: Case, marks: dict[str, str]) -> list[str]:
+    """Reasons, each with the value that it belongs to."""
+    if not marks:
+        return []
+    values, lines = effective(case), []
+    for key, reason in marks.items():
+        value = _recorded(case, key, values[key])
+        why = json.dumps(reason, ensure_ascii=False)
+        lines.append(f'"{key}" = {{ value = {value}, reason = {why} }}')
+    return [
+        "",
+        "# Values above that the source of this case does not print, and defaults. A reason holds",
+        "# for the value beside it: change the value above alone, and the reason falls away.",
+        "[assumed]",
+        *lines,
+    ]
+
+
+def _base_lines(case: Case) -> list[str]:
+    """Values of the document that the case began with; without a document there are none."""
+    base = case.stated.base
+    if base.get("origin") is None:
+        return []
+    lines = [
+        f"{_quoted(key)} = {_recorded(case, key, value)}"
+        for key, value in base.items()
+        if value is not None and key != "title"
+    ]
+    return [
+        "",
+        "# What this case began with: leave it as it is, and reports name the values changed since",
+        "[based_on]",
+        *lines,
+    ]
+
+
+def _quoted(key: str) -> str:
+    return f'"{key}"' if "." in key else key
+
+
+def _recorded(case: Case, key: str, value: Any) -> str:
+    spec = spec_of(case, key)
+    return json.dumps(value) if spec is None else _toml_value(spec, value)
+
+
+def _table_meaning(case: Case, place: str) -> str:
+    *path, name = place.split(".")
+    parent = section_at(tuple(path))
+    table = parent.fields.get(name) if parent else None
+    return table.meaning if isinstance(table, Table) else ""
+
+
+def case_table(case: Case) -> str:
+    """Write the case as a table with units, one row for each value in force."""
+    origins, derived = provenance(case), derived_values(case)
+    values = {key: derived.get(key, value) for key, value in effective(case).items()}
+    rows = [
+        (key, spec.show(value), origins.get(key, "").partition(":")[0])
+        for key, value in values.items()
+        if value is not None and (spec := spec_of(case, key)) is not None and key != "title"
+    ]
+    widths = [max(len(row[column]) for row in rows) for column in range(2)]
+    head = f"Case: {case.title}"
+    body = [f"  {k:<{widths[0]}}  {v:<{widths[1]}}  {origin}" for k, v, origin in rows]
+    return "\n".join([head, *(line.rstrip() for line in body)])

@@ -1,0 +1,187 @@
+"""What runs but deserves a second look: gear bodies, oil film, pressure and contact loss."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribodyn.errors import ModelWarning, collected
+from tribodyn.study.case.derive import gear_warnings
+from tribodyn.study.case.provenance import body, changed_keys, effective
+from tribodyn.study.pipeline.record import (
+    compression,
+    first_touch,
+    is_steady,
+    measured,
+    mesh_force,
+)
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response, System
+    from tribodyn.gear import MassProperties, SpurGear
+    from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.study.case.case import Case
+
+
+#: Hertzian pressure that case-hardened steel does not survive [Pa].
+_STEEL = 3e9
+#: Rim under the root below which the body bends with the teeth [modules].
+_RIM = 1.0
+#: Ratio of a given mass or inertia to that of the solid, or the inverse, that is a slip.
+_UNLIKELY = 3.0
+#: What a gear weighs: key, unit shown, and how many of it make the SI unit.
+_INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
+
+
+def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
+    """Find what is odd about the gears of a case, before anything is computed."""
+    pair = case.gear_pair
+    found = list(gear_warnings(case.gears, case.dynamics.backlash))
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        found += [*_rim(case, name, gear), *_mass(case, name, gear), *_other_gear(case, name, gear)]
+    return (*found, *_starved(case))
+
+
+def _starved(case: Case) -> Iterator[ModelWarning]:
+    if case.film.inlet == "zero" and case.film.domain is not None:
+        yield ModelWarning(
+            "starved-inlet",
+            f"the oil of every contact begins {-case.film.domain[0]:g} Hertzian half widths before "
+            "its centre: a starved contact, whose film may rise with the load and is thinner than "
+            'a flooded one, which film.inlet = "flooded" gives',
+        )
+
+
+def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+    rim = gear.root_radius - 0.5 * gear.bore_diameter
+    if (
+        effective(case)["stiffness.reference"] == "bore"
+        and gear.bore_diameter > 0.0
+        and rim < _RIM * gear.normal_module
+    ):
+        yield ModelWarning(
+            "thin-rim",
+            f"{name}: the body under the root is {rim * 1e3:.4g} mm thick, less than one module of "
+            f"{gear.normal_module * 1e3:.4g} mm; such a ring bends as a whole, which the stiffness "
+            'model does not know. Reduce the bore, or set stiffness.reference = "rim"',
+        )
+
+
+def _solid(case: Case, gear: SpurGear) -> MassProperties:
+    from tribodyn.gear import mass_properties
+
+    with collected():  # What is odd about the shape has been said.
+        bare = replace(gear, mass=None, moment_of_inertia=None)
+    return mass_properties(bare, case.material.density)
+
+
+def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+    """A mass that stayed what it was while the shape of its gear has changed."""
+    changed, base = changed_keys(case), case.stated.base
+    shape = [key for key in changed if key in body(name)]
+    for key, unit, factor in _INERTIAS:
+        full, given = f"gears.{name}.{key}", getattr(gear, key)
+        if not shape or given is None or base.get(full) is None or full in changed:
+            continue
+        own = getattr(_solid(case, gear), key)
+        yield ModelWarning(
+            "mass-of-other-gear",
+            f"{name}: {key} = {given * factor:.4g} {unit} is that of the gear before "
+            f"{', '.join(shape)} changed; the solid gear now has {own * factor:.4g} {unit}. Give "
+            f"that of this gear, or leave {key} out for the solid one",
+        )
+
+
+def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+    """Compare given inertias with those of the solid: a wrong unit is far off."""
+    solid = _solid(case, gear)
+    for key, unit, factor in _INERTIAS:
+        given, own = getattr(gear, key), getattr(solid, key)
+        if given is not None and not 1.0 / _UNLIKELY <= given / own <= _UNLIKELY:
+            yield ModelWarning(
+                "mass-unlikely",
+                f"{name}: {key} = {given * factor:.4g} {unit}, {given / own:.3g} times that of the "
+                f"solid gear, {own * factor:.4g} {unit}. Check the unit, or whether it holds more "
+                "than the gear",
+            )
+
+
+def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
+    """Find a load that no gear stands, and flanks that the film does not keep apart."""
+    return (*_pressure(mesh), *_mixed(mesh))
+
+
+def friction_cautions(
+    friction: MeshFriction | None, response: Response
+) -> tuple[ModelWarning, ...]:
+    """Find loads of the teeth beyond those for which friction is known."""
+    if friction is None:
+        return ()
+    force = np.abs(mesh_force(measured(response)))
+    most = float(force.max()) / friction.load
+    if most <= friction.limit:
+        return ()
+    return (
+        ModelWarning(
+            "friction-load",
+            f"the teeth carry up to {most:.3g} times their nominal load of {friction.load:.4g} N. "
+            f"Friction is known up to {friction.limit:g} times: above, its coefficient is kept",
+        ),
+    )
+
+
+def _pressure(mesh: MeshTable) -> Iterator[ModelWarning]:
+    greatest = float(mesh.hertz_pressure.max())
+    if greatest > _STEEL:
+        yield ModelWarning(
+            "hertz-pressure",
+            f"the Hertzian pressure reaches {greatest * 1e-9:.4g} GPa; gear steel stands no more "
+            f"than {_STEEL * 1e-9:g} GPa. Check torque and face width",
+        )
+
+
+def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
+    """A film below the roughness carries only a part of the load; the models give it the whole."""
+    if mesh.film_ratio is None:
+        return
+    least = float(np.nanmin(mesh.film_ratio[mesh.in_contact]))
+    if least < 1.0:
+        yield ModelWarning(
+            "mixed-lubrication",
+            f"the film ratio falls to {least:.3g}: below 1 asperities touch and carry a part of "
+            "the load, while the film model gives the whole of it to the oil. Film and film "
+            "stiffness are those of smooth flanks; take a thicker oil, smoother flanks or more "
+            "speed",
+        )
+
+
+def motion_cautions(case: Case, system: System, response: Response) -> tuple[ModelWarning, ...]:
+    """Find flanks that part in a steady motion."""
+    if case.backlash == 0.0 or not is_steady(response):
+        return ()
+    samples = measured(response)
+    deflection, touch = compression(samples), first_touch(system, samples)
+    share = float(samples.mean((deflection <= touch).astype(float)))
+    if share == 0.0:
+        return ()
+    back = "the back flanks touch as well" if np.any(deflection < -touch) else ""
+    message = (
+        f"the flanks are apart for {share:.3g} of the mesh cycle; "
+        f"{back or 'no back flank touches'}. More load or damping "
+        "keeps them together; other steady motions may exist beside this one"
+    )
+    return (ModelWarning("contact-loss", message),)
+
+
+def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
+    """Say what the motion leaves out where teeth differ from each other."""
+    if not case.gear_pair.teeth_differ:
+        return ()
+    message = (
+        "pitch deviations and run-out differ from tooth to tooth: the static transmission error "
+        "runs over all teeth, the motion repeats with every mesh cycle and leaves them out"
+    )
+    return (ModelWarning("teeth-alike", message),)

@@ -1,0 +1,146 @@
+"""The papers behind the models of a case, as text and as BibTeX."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import tribodyn
+from tribodyn.errors import InputError, Problem
+from tribodyn.model import Model
+from tribodyn.study.case.provenance import changed_keys
+from tribodyn.study.case.section import section_at
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+
+STYLES = ("text", "bibtex")
+
+#: Methods of the solver and the papers behind them.
+_METHODS = {"steady": ("anderson",)}
+#: Changed values that a citation names.
+_NAMED = 12
+
+
+@lru_cache(maxsize=1)
+def _library() -> dict[str, dict[str, Any]]:
+    import tomllib
+    from importlib.resources import files
+
+    text = files("tribodyn.study.pipeline").joinpath("citations.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def papers(case: Case) -> dict[str, dict[str, Any]]:
+    """Papers behind the models that a case uses, each once."""
+    keys = ["iso-21771", "hertz"]
+    unlisted: dict[str, dict[str, Any]] = {}
+    for table in ("stiffness", "friction", "film", "dynamics", "solver"):
+        model = getattr(case, table).chosen
+        keys += model.papers
+        if not model.papers and model.source and not _is_built_in(model):
+            title = f"{model.name}: {model.source}"
+            unlisted[model.name] = {"type": "misc", "title": title}
+    keys += _METHODS.get(case.solver.method, ())
+    if case.friction.variant == "he-singh":
+        keys.append("he-gunda-singh")
+    own = {
+        "type": "misc",
+        "author": "The tribodyn developers",
+        "title": f"tribodyn {tribodyn.__version__}: gear tribo-dynamics",
+    }
+    return (
+        {"tribodyn": own}
+        | _data_sources(case)
+        | {key: _library()[key] for key in dict.fromkeys(keys)}
+        | unlisted
+    )
+
+
+def _is_built_in(model: Model) -> bool:
+    """Whether a model is one of the package, whose source stands in the bibliography."""
+    parts = (getattr(model, "function", None), getattr(model, "central", None))
+    homes = {getattr(part, "__module__", "") for part in parts if part is not None}
+    return not homes or any(home.startswith("tribodyn.") for home in homes)
+
+
+def _data_sources(case: Case) -> dict[str, dict[str, Any]]:
+    """Where the values of a case and those of its oil come from."""
+    oil = case.lubricant_properties
+    found = {}
+    if case.origin:
+        found["case"] = _origin(case)
+    if oil is not None and oil.source:
+        found["oil"] = {"type": "misc", "title": f"Oil {oil.name}: {oil.source}"}
+    return found
+
+
+def _origin(case: Case) -> dict[str, Any]:
+    """The document behind the values of a case, and the values that differ from its own."""
+    changed = changed_keys(case)
+    if not changed:
+        return {"type": "misc", "title": f"Values of the case: {case.origin}"}
+    named = ", ".join(changed[:_NAMED])
+    more = f" and {len(changed) - _NAMED} more" if len(changed) > _NAMED else ""
+    plural = "s" if len(changed) > 1 else ""
+    note = f"{len(changed)} value{plural} of the case differ{'' if plural else 's'}: {named}{more}"
+    return {"type": "misc", "title": f"Based on: {case.origin}", "note": note}
+
+
+def sources_of(section: str, name: str) -> list[str]:
+    """Name the papers behind one choice.
+
+    Parameters
+    ----------
+    section : str
+        Table of the case file.
+    name : str
+        Model, law or method.
+
+    Returns
+    -------
+    list of str
+        One line for each paper.
+
+    Examples
+    --------
+    >>> len(sources_of("friction", "xu-2007"))
+    1
+    """
+    kind = section_at((section,))
+    model = kind.model_named(name) if kind else None
+    keys = model.papers if model else _METHODS.get(name, ())
+    unlisted = [model.source] if model and not keys and model.source else []
+    return [*(_text(_library()[key]) for key in keys), *unlisted]
+
+
+def _text(entry: dict[str, Any]) -> str:
+    authors = entry.get("author", "").replace(" and ", ", ")
+    year = f" ({entry['year']})" if "year" in entry else ""
+    home = entry.get("journal") or entry.get("booktitle") or entry.get("publisher", "")
+    volume = " ".join(entry[part] for part in ("volume",) if part in entry)
+    home = " ".join(part for part in (home, volume) if part)
+    pages = f", {entry['pages']}" if "pages" in entry else ""
+    doi = f", doi:{entry['doi']}" if "doi" in entry else ""
+    head = f"{authors}{year}: " if authors else ""
+    note = f" {entry['note']}." if "note" in entry else ""
+    return f"{head}{entry['title'].rstrip('.')}." + (f" {home}{pages}{doi}." if home else "") + note
+
+
+def _bibtex(key: str, entry: dict[str, Any]) -> str:
+    entry = {**entry, "note": entry["note"].replace("_", r"\_")} if "note" in entry else entry
+    fields = [f"  {name} = {{{value}}}" for name, value in entry.items() if name != "type"]
+    return f"@{entry['type']}{{{key},\n" + ",\n".join(fields) + "\n}"
+
+
+def cite(case: Case, style: str = "text") -> str:
+    """Write the papers behind a case."""
+    found = papers(case)
+    if style == "bibtex":
+        return "\n\n".join(_bibtex(key, entry) for key, entry in found.items())
+    if style == "text":
+        return "\n".join(_text(entry) for entry in found.values())
+    raise InputError(
+        Problem(f'style = "{style}"', "argument style", f"Known: {', '.join(STYLES)}", "Choose one")
+    )

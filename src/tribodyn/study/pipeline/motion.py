@@ -1,0 +1,203 @@
+"""From the structure of a case to its motion: engine, steps, steady state or transient."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
+from tribodyn.progress import Progress
+from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.provenance import effective
+from tribodyn.study.case.sections import Solver
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response, System
+    from tribodyn.study.case.case import Case
+
+
+#: Engine whose orbits are found directly.
+_ORBITS = "runge-kutta-4"
+#: Change of the compression from one period to the next, over its size, that counts as none.
+_REPEATS = 1e-8
+#: Periods marched between two looks at that change, and mesh cycles marched at most.
+_AT_ONCE, _MOST_CYCLES = 32, 4096
+#: Mesh cycles after which a steady motion may repeat.
+_PERIODS = (1, 2, 3, 4)
+
+
+def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progress) -> Response:
+    """Compute the motion of a case."""
+    steps = steps_of(case, system, mesh_frequency)
+    if case.solver.method == "steady":
+        response = _steady(system, mesh_frequency, steps, progress)
+        if case.solver.engine != _ORBITS:
+            response = _marched_orbit(case, system, response, steps, progress)
+    else:
+        response = _transient(case, system, mesh_frequency, steps, progress)
+    _warn_of_tension(case, response)
+    return response
+
+
+def _transient(
+    case: Case, system: System, mesh_frequency: float, steps: int, progress: Progress
+) -> Response:
+    """March from the static equilibrium; a balancing torque is that of the steady state."""
+    from tribodyn.dynamics import simulate, steady_state
+    from tribodyn.dynamics.equations.compiled import compile_for
+    from tribodyn.dynamics.orbits.start import static_start
+
+    cycles = effective(case)["solver.cycles"]
+    extra = None
+    if system.balance is not None:
+        with collected():
+            extra = steady_state(system, mesh_frequency, steps=steps).extra_force
+    state = static_start(compile_for(system, mesh_frequency, steps))
+    start = (state[: system.size], state[system.size :])
+    return simulate(
+        system, mesh_frequency, cycles, start, steps=steps, extra_force=extra, progress=progress,
+        **engine_arguments(case),
+    )  # fmt: skip
+
+
+def engine_arguments(case: Case) -> dict[str, Any]:
+    """The engine of a case and its options, as :func:`tribodyn.dynamics.simulate` has them."""
+    from tribodyn.dynamics import ENGINES
+
+    engine, values = ENGINES[case.solver.engine], effective(case)
+    return engine.arguments({name: values[f"solver.{name}"] for name in engine.options})
+
+
+def _steady(system: System, mesh_frequency: float, steps: int, progress: Progress) -> Response:
+    """Search orbits of one to four mesh cycles; the first that is found is the answer."""
+    from tribodyn.dynamics import steady_state
+
+    for periods in _PERIODS:
+        with collected() as found:
+            orbit = steady_state(
+                system, mesh_frequency, steps=steps, periods=periods, progress=progress
+            )
+        if orbit.converged and orbit.stable:
+            _pass_on(found)
+            if periods > 1:
+                warn("subharmonic", f"the motion repeats only after {periods} mesh cycles")
+            return orbit
+    raise ComputationError(_lost(orbit))
+
+
+def _marched_orbit(
+    case: Case, system: System, orbit: Response, steps: int, progress: Progress
+) -> Response:
+    """March on from an orbit with the engine of the case until its own motion repeats."""
+    from tribodyn.dynamics import simulate
+
+    frequency, cycles = orbit.mesh_frequency, orbit.periods
+    extra = orbit.extra_force if orbit.extra_force.size else None
+    state, change, marched = (orbit.position[0], orbit.velocity[0]), np.inf, 0
+    while marched < _MOST_CYCLES:
+        motion = simulate(
+            system, frequency, _AT_ONCE * cycles, state, steps=steps, extra_force=extra,
+            progress=progress, **engine_arguments(case),
+        )  # fmt: skip
+        marched += _AT_ONCE * cycles
+        last, before = motion.deflection[-cycles * steps :], motion.deflection[: -cycles * steps]
+        size = float(np.abs(last).max())
+        change = float(np.abs(last - before[-cycles * steps :]).max()) / size
+        state = (motion.position[-cycles * steps], motion.velocity[-cycles * steps])
+        if change < _REPEATS:
+            break
+    else:
+        raise ComputationError(_restless(case, marched, change))
+    last_cycles = simulate(
+        system, frequency, cycles, state, steps=steps, extra_force=extra, **engine_arguments(case)
+    )
+    return replace(
+        last_cycles,
+        error=change,
+        converged=True,
+        floquet_multipliers=orbit.floquet_multipliers,
+        cycles_used=orbit.cycles_used + marched,
+        search_cycles=orbit.search_cycles,
+        period=orbit.period,
+        extra_force=orbit.extra_force,
+    )
+
+
+def _restless(case: Case, cycles: int, change: float) -> Problem:
+    engine = case.solver.engine
+    return Problem(
+        f'the motion still changes by {change:.2e} of its size after {cycles} mesh cycles of "'
+        f'{engine}"',
+        "solver.engine",
+        "This engine is marched from the orbit of Runge and Kutta until its own motion repeats",
+        f'Take the orbit itself with engine = "{_ORBITS}", add damping, or choose method = '
+        '"transient"',
+    )
+
+
+def _pass_on(found: list[ModelWarning]) -> None:
+    for warning in found:
+        warn(warning.code, warning.message, stacklevel=3)
+
+
+def _lost(orbit: Response) -> Problem:
+    multiplier = abs(orbit.floquet_multipliers[0]) if orbit.floquet_multipliers.size else 0.0
+    return Problem(
+        f"no stable motion repeats within {_PERIODS[-1]} mesh cycles: error {orbit.error:.2e}, "
+        f"largest multiplier {multiplier:.4g}",
+        "solver.method",
+        "The motion repeats after more cycles, or never",
+        'Look at it over time with solver.method = "transient", or add damping',
+    )
+
+
+def _warn_of_tension(case: Case, response: Response) -> None:
+    """A mesh without backlash pulls where real flanks would part."""
+    least = float(response.contact_force.sum(axis=1).min())
+    if case.backlash == 0.0 and least < 0.0:
+        linear = mesh_law_of(case) != "force-law"
+        kept = "makes the mesh linear" if linear else "lets the back flanks push at once"
+        warn(
+            "mesh-tension",
+            f"backlash 0 {kept}, and its force falls to {least:.4g} N: real flanks "
+            "part below 0 N. Give dynamics.backlash, for example 0.05 mm",
+        )
+
+
+_STEPS = "steps_per_mesh_cycle"
+#: Margin of the least speed that is recommended.
+_MARGIN = 1.05
+#: Steps at which the fastest motion is looked up.
+_COARSE = 1024
+
+
+def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
+    """Steps per mesh cycle that were asked for, else those that follow the fastest motion."""
+    from tribodyn.dynamics import recommended_steps
+    from tribodyn.dynamics.equations.program import compile_system
+    from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+
+    spec = Solver.spec(_STEPS)
+    most = spec.high if spec else float("inf")
+    needed = largest_rate(system, compile_system(system, _COARSE)[1]) / (LIMIT * mesh_frequency)
+    if needed > most:
+        raise InputError(_too_slow(case, needed, most))
+    return case.solver.steps_per_mesh_cycle or recommended_steps(system, mesh_frequency)
+
+
+def _too_slow(case: Case, needed: float, most: float) -> Problem:
+    from tribodyn import units
+
+    def rpm(speed: float) -> str:
+        return f"{units.convert(speed, 'rad/s', 'rpm'):.3g} rpm"
+
+    speed = case.operation.speed
+    return Problem(
+        f"speed = {rpm(speed)} needs {needed:.3g} steps per mesh cycle",
+        "argument pinion_speed",
+        f"The structure vibrates so fast within one slow mesh cycle; {most:.0f} steps are the most",
+        f"The least speed that works is {rpm(_MARGIN * speed * needed / most)}; slower gears carry "
+        "their load statically",
+    )

@@ -1,0 +1,210 @@
+"""The result: everything that came of one case, ready to be read, drawn, saved and cited."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cached_property, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from tribodyn.drawing import FIGURES, draw, figures_of
+from tribodyn.record import Parts, Record, record
+from tribodyn.reporting import write_report_of
+from tribodyn.study.case.provenance import Assumption, assumptions
+from tribodyn.study.pipeline.assembly import static_error
+from tribodyn.study.pipeline.save import new_directory
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response, System
+    from tribodyn.errors import ModelWarning
+    from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.stiffness import LoadedContact
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.pipeline.assembly import Damping
+
+
+_PLOT = "plot_"
+
+
+@record
+class Result(Record):
+    """What :func:`tribodyn.run` returns.
+
+    Every figure that draws a run is a method: ``result.plot_mesh_force()``.
+
+    Parameters
+    ----------
+    case : Case
+        What was computed.
+    mesh : MeshTable
+        The tooth contact over one mesh cycle.
+    system : System
+        The structure and its contact.
+    response : Response
+        Its motion.
+    damping : Damping
+        Damping in force [N*s/m].
+    warnings : tuple of ModelWarning
+        What the models said on the way.
+    friction : MeshFriction, optional
+        Friction over the load, where it follows the dynamic load of the teeth.
+    nominal_friction_response : Response, optional
+        The motion with the friction of the nominal load, to compare with.
+    """
+
+    case: Case
+    mesh: MeshTable
+    system: System
+    response: Response
+    damping: Damping
+    warnings: tuple[ModelWarning, ...]
+    friction: MeshFriction | None = None
+    nominal_friction_response: Response | None = None
+
+    @cached_property
+    def _summary(self) -> dict[str, float]:
+        from tribodyn.study.pipeline.summary import summarize
+
+        return summarize(self)
+
+    def summary(self) -> dict[str, float]:
+        """All figures as one flat dictionary.
+
+        Returns
+        -------
+        dict of str to float
+            In SI; :data:`tribodyn.study.SUMMARY` tells unit and meaning of each.
+        """
+        return dict(self._summary)
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """Values that were assumed or are defaults, each with its reason."""
+        return assumptions(self.case)
+
+    @property
+    def half_backlash(self) -> float:
+        """Half of the play on the line of action [m]; zero is a linear mesh."""
+        return 0.5 * self.case.backlash
+
+    def static_error(self, phase: Array | float) -> Array:
+        """Static transmission error that was prescribed.
+
+        Parameters
+        ----------
+        phase : float or array
+            Mesh phase.
+
+        Returns
+        -------
+        array [m]
+        """
+        return static_error(self.case, phase)
+
+    def loaded_contact(self) -> LoadedContact:
+        """Loaded tooth contact at rest: over all teeth where these differ, without oil film.
+
+        Returns
+        -------
+        LoadedContact
+        """
+        from tribodyn.study.pipeline.loaded_teeth import loaded_contact
+
+        return loaded_contact(self.case)
+
+    def _parts(self) -> Parts:
+        """Parts of the motion with the force of all ramps of a force law, and the summary."""
+        motion: Any = self.response.to_xarray()
+        force = ("time", self.response.contact_force.sum(axis=1), {"units": "N"})
+        facts = {**motion.attrs, "title": self.case.title, **self._summary}
+        return Parts({**motion.data_vars, "mesh_force": force}, dict(motion.coords), facts)
+
+    def cite(self, style: str = "text") -> str:
+        """Name the papers behind this result.
+
+        Parameters
+        ----------
+        style : str
+            ``"text"`` or ``"bibtex"``.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        InputError
+            If there is no such style.
+        """
+        from tribodyn.study.pipeline.citations import cite
+
+        return cite(self.case, style)
+
+    def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write case, summary, mesh table, motion and report into a new directory.
+
+        The directory appears complete or not at all.
+
+        Parameters
+        ----------
+        directory : str or path
+            Directory to make.
+        force : bool
+            Replace an earlier result there.
+
+        Returns
+        -------
+        Path
+            The directory.
+
+        Raises
+        ------
+        OutputExistsError
+            If it exists and is not to be replaced, or is no result.
+        InputError
+            If the place cannot be written to.
+        """
+        target = Path(directory)
+        with new_directory(target, force=force) as place:
+            (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
+            (place / "summary.json").write_text(_json(self._summary), encoding="utf-8")
+            self.mesh.save(place / "mesh.nc")
+            self.to_xarray().to_netcdf(place / "response.nc", engine="h5netcdf")
+            write_report_of(self, place / "report.html")
+        return target
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse to be pickled: a result holds functions of the models."""
+        raise TypeError("a Result cannot be pickled; keep it with save(), or pass its case")
+
+    def __getattr__(self, name: str) -> Any:
+        """Find ``plot_<name>`` among the figures that draw a run."""
+        if not name.startswith(_PLOT):
+            raise AttributeError(f"Result has no attribute {name!r}")
+        figure, known = name.removeprefix(_PLOT), figures_of(self)
+        if figure in known:
+            return partial(draw, self, figure)
+        if figure in FIGURES:
+            other: Any = FIGURES[figure]
+            raise AttributeError(f"Result has no {name}. {other.missing(self)}")
+        listed = ", ".join(f"{_PLOT}{each}" for each in known)
+        raise AttributeError(f"Result has no figure {name!r}; it has {listed}")
+
+    def __dir__(self) -> list[str]:
+        """Attributes and figures."""
+        return sorted({*super().__dir__(), *(f"{_PLOT}{name}" for name in figures_of(self))})
+
+    def __repr__(self) -> str:
+        """One line."""
+        figures = self._summary
+        swing = figures["peak_to_peak_dynamic_transmission_error"] * 1e6
+        return (
+            f'Result("{self.case.title}": peak mesh force {figures["peak_mesh_force"]:.5g} N, '
+            f"transmission error {swing:.4g} um peak to peak, {len(self.warnings)} warnings)"
+        )
+
+
+def _json(values: dict[str, float]) -> str:
+    return json.dumps(values, indent=2, allow_nan=False) + "\n"

@@ -1,0 +1,87 @@
+"""The one pipeline: case, gear pair, mesh cycle, motion, result."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+from tribodyn.errors import collected
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.derive import placed
+from tribodyn.study.pipeline.assembly import damping_of, system_of
+from tribodyn.study.pipeline.cautions import (
+    case_cautions,
+    friction_cautions,
+    mesh_cautions,
+    motion_cautions,
+    teeth_cautions,
+)
+from tribodyn.study.pipeline.motion import motion_of
+from tribodyn.study.pipeline.result import Result
+from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+
+def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Result:
+    """Compute a case.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    progress : Progress
+        Told how far the run has come; silent by default.
+    stacklevel : int
+        Frames to skip in warnings, as in :func:`warnings.warn`.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    InputError
+        If the case cannot be computed as it stands.
+    ComputationError
+        If no steady motion is found.
+
+    Warns
+    -----
+    ModelWarning
+        Everything that the models said, once each; also kept in ``Result.warnings``.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness")
+    >>> result = run(case)  # doctest: +SKIP
+    """
+    result = computed(case, progress)
+    for warning in result.warnings:
+        warnings.warn(warning, stacklevel=stacklevel)
+    return result
+
+
+def computed(case: Case, progress: Progress = SILENT) -> Result:
+    """Compute a case; what the models said is kept in the result alone."""
+    with placed(case), collected() as found:
+        progress.start("tooth contact")
+        mesh = mesh_of(case, progress)
+        friction = load_friction_of(case, mesh)
+        damping = damping_of(case, mesh)
+        system = system_of(case, mesh, damping, friction)
+        progress.finish()
+        response = motion_of(case, system, mesh.mesh_frequency, progress)
+        compared = None
+        if friction is not None:
+            table = system_of(case, mesh, damping)
+            compared = motion_of(case, table, mesh.mesh_frequency, progress)
+    noticed = (
+        *mesh_cautions(mesh), *motion_cautions(case, system, response),
+        *friction_cautions(friction, response),
+    )  # fmt: skip
+    everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
+    told = tuple({str(warning): warning for warning in everything}.values())
+    return Result(case, mesh, system, response, damping, told, friction, compared)

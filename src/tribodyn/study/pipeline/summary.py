@@ -1,0 +1,300 @@
+"""The figures of a result: their names and meaning, and how geometry, mesh and motion give them."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.model import Registry
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.pipeline.record import (
+    centre_column,
+    compression,
+    first_touch,
+    is_steady,
+    measured,
+    mesh_force,
+    one_sided_phase,
+    support_forces,
+    transmission_error,
+)
+from tribodyn.units import format_quantity
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import FineSamples
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.pipeline.result import Result
+
+
+#: Computes a figure of a result in SI; None leaves it out.
+Measure = Callable[["Result"], float | None]
+
+
+@dataclass(frozen=True)
+class SummaryFigure:
+    """One figure of a summary."""
+
+    name: str  #: key in the summary
+    unit: str
+    display_unit: str
+    meaning: str  #: one line
+
+    def show(self, value: float) -> str:
+        """Write the value in the display unit with six digits."""
+        if not self.unit:
+            return f"{value:.6g}"
+        number, _, unit = format_quantity(value, self.unit, self.display_unit).partition(" ")
+        return f"{float(number):.6g} {unit}"
+
+
+def _figure(name: str, quantity: str, meaning: str) -> SummaryFigure:
+    known = QUANTITIES[quantity] if quantity else None
+    unit, shown = (known.unit, known.display_unit) if known else ("", "")
+    return SummaryFigure(name, unit, shown, meaning)
+
+
+def _read() -> dict[str, SummaryFigure]:
+    text = files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
+    rows = tomllib.loads(text).items()
+    return {name: _figure(name, quantity, meaning) for name, (quantity, meaning) in rows}
+
+
+#: All figures of :meth:`tribodyn.Result.summary` and ``tribodyn check`` by name.
+SUMMARY: dict[str, SummaryFigure] = _read()
+#: Figures of third parties: functions of a result, open through the entry points of this group.
+MEASURES: Registry[Measure] = Registry("summary figure", "tribodyn.summary")
+
+
+def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measure], Measure]:
+    """Decorate a function of a result to make it a figure of every summary.
+
+    Parameters
+    ----------
+    name : str
+        Key in the summary.
+    meaning : str
+        One line.
+    of : str
+        Its quantity in :data:`tribodyn.nomenclature.QUANTITIES`, which knows its unit; empty for a
+        pure number.
+
+    Returns
+    -------
+    callable
+        Decorator that returns the function unchanged. The function takes a
+        :class:`tribodyn.Result` and returns the figure in SI, or None where there is none.
+
+    Examples
+    --------
+    >>> @summary_figure("teeth_of_both", meaning="teeth of both gears")  # doctest: +SKIP
+    ... def teeth(result):
+    ...     return result.case.gears.pinion.teeth + result.case.gears.wheel.teeth
+    """
+
+    def keep(measure: Measure) -> Measure:
+        SUMMARY[name] = _figure(name, of, meaning)
+        return MEASURES.register(name)(measure)
+
+    return keep
+
+
+#: Direction in the names of the summary -> letter of the coordinate.
+_DIRECTIONS = {"loa": "y", "oloa": "x"}
+_GEARS = ("pinion", "wheel")
+_HARMONICS = 5
+
+
+def summarize(result: Result) -> dict[str, float]:
+    """Compute all figures of a result."""
+    samples = measured(result.response)
+    values: dict[str, Any] = {
+        **geometry(result.case),
+        **_mesh_figures(result.mesh),
+        **_static_error_figures(result),
+        **_film_figures(result.mesh),
+        **_force_figures(result, samples),
+        **_error_figures(result, samples),
+        **_friction_figures(result, samples),
+        **_comparison(result),
+    }
+    if centre_column(result.response.names, "pinion", "x") is not None:
+        values |= _support_figures(result, samples)
+    if "shaft1_theta" in result.response.names:
+        values |= _shaft_figures(result, samples)
+    values["steps_per_mesh_cycle"] = result.response.time.size // result.response.periods
+    values["omega_max_dt"] = result.response.step_number
+    if is_steady(result.response):
+        values["steady_state_error"] = result.response.error
+    measures = MEASURES.all().items()
+    values |= {name: measure(result) for name, measure in measures}
+    return {name: float(value) for name, value in values.items() if value is not None}
+
+
+def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
+    return {
+        "mesh_frequency": mesh.mesh_frequency,
+        "static_mesh_force": mesh.total_normal_force,
+        "mean_mesh_stiffness": mesh.mean_mesh_stiffness,
+        "mean_mesh_stiffness_secant": mesh.mean_mesh_stiffness,
+        "mean_mesh_stiffness_tangent": mesh.mean_mesh_stiffness_tangent,
+        "maximum_single_pair_stiffness": mesh.maximum_single_pair_stiffness,
+        "mean_friction_coefficient": mesh.mean_friction_coefficient,
+        "maximum_hertz_pressure": mesh.hertz_pressure.max(),
+    }
+
+
+def _static_error_figures(result: Result) -> dict[str, Any]:
+    """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
+    name = "static_transmission_error"
+    figures: tuple[Any, Any, Any]
+    if result.case.gear_pair.teeth_differ:
+        loaded = result.loaded_contact()
+        figures = (
+            loaded.mean_transmission_error,
+            loaded.peak_to_peak_transmission_error,
+            loaded.transmission_error_harmonics(_HARMONICS),
+        )
+    else:
+        error = result.mesh.static_transmission_error
+        figures = (
+            result.mesh.grid.mean(error), np.ptp(error), result.mesh.harmonics(name, _HARMONICS),
+        )  # fmt: skip
+    mean, most, amplitudes = figures
+    return {
+        f"mean_{name}": mean,
+        f"peak_to_peak_{name}": most,
+        **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},
+    }
+
+
+def _film_figures(mesh: MeshTable) -> dict[str, Any]:
+    """What the film model gives: least values over the path, and the pair at the pitch point."""
+    least = {
+        "central_film": mesh.central_film,
+        "minimum_film_over_path": mesh.minimum_film,
+        "minimum_film_ratio": mesh.film_ratio,
+    }
+    figures: dict[str, Any] = {
+        name: np.nanmin(column[mesh.in_contact])
+        for name, column in least.items()
+        if column is not None
+    }
+    if mesh.film_pressure is not None:
+        figures["maximum_film_pressure"] = np.nanmax(mesh.film_pressure)
+    at_pitch_point = {
+        "central_film_pitch_point": mesh.at_pitch_point("central_film"),
+        "oil_film_stiffness_pitch_point": mesh.at_pitch_point("film_stiffness"),
+    }
+    return figures | {name: value for name, value in at_pitch_point.items() if value is not None}
+
+
+def _force_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    from tribodyn.analysis import extremes, mean, rms
+
+    force, touch = mesh_force(samples), first_touch(result.system, samples)
+    apart = (compression(samples) <= touch) & (touch > 0.0)
+    least, greatest = extremes(force)
+    return {
+        "mesh_damping": result.damping.mesh,
+        "mean_mesh_force": mean(samples, force),
+        "rms_mesh_force": rms(samples, force),
+        "peak_mesh_force": greatest,
+        "minimum_mesh_force": least,
+        "contact_loss_share": mean(samples, apart.astype(float)),
+    }
+
+
+def _error_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    from tribodyn.analysis import alternating_rms, mean, mesh_harmonics, peak_to_peak
+
+    error = transmission_error(result, samples)
+    name = "dynamic_transmission_error"
+    amplitudes = np.abs(mesh_harmonics(samples, error, _HARMONICS))
+    return {
+        f"mean_{name}": mean(samples, error),
+        f"rms_{name}": alternating_rms(samples, error),
+        f"peak_to_peak_{name}": peak_to_peak(error),
+        **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},
+    }
+
+
+def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    from tribodyn.analysis import mean, rms
+
+    mesh, force, phase = result.mesh, mesh_force(samples), one_sided_phase(samples)
+
+    def friction(name: str) -> Any:
+        """Friction or its moment: a friction sum times the force of the teeth."""
+        if result.friction is None:
+            return getattr(mesh.functions(), name)(phase) * force
+        return result.friction.value(name, phase, force) * force
+
+    # The surfaces of both gears move along the same friction: what one gains the other loses.
+    wheel_speed = mesh.pinion_speed / result.case.gear_pair.ratio
+    lost = mesh.pinion_speed * friction("friction_moment_pinion")
+    lost = lost - wheel_speed * friction("friction_moment_wheel")
+    return {
+        "rms_friction_force": rms(samples, friction("friction_sum")),
+        "mean_friction_power": mean(samples, lost),
+    }
+
+
+def _comparison(result: Result) -> dict[str, Any]:
+    """Figures of the same motion with the friction of the nominal load."""
+    if result.friction is None or result.nominal_friction_response is None:
+        return {}
+    other = replace(result, response=result.nominal_friction_response, friction=None)
+    samples = measured(other.response)
+    figures = {
+        **_force_figures(other, samples),
+        **_error_figures(other, samples),
+        **_friction_figures(other, samples),
+    }
+    names = ("rms_mesh_force", "peak_mesh_force", "peak_to_peak_dynamic_transmission_error",
+             "rms_friction_force", "mean_friction_power")  # fmt: skip
+    found = {f"{name}_nominal_friction": figures[name] for name in names}
+    return found | {"friction_fit_error": result.friction.fit_error}
+
+
+def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    """Forces on the supports and accelerations of the gear centres."""
+    from tribodyn.analysis import alternating_rms, line_of_action_indicator
+
+    def column(gear: str, letter: str) -> int | None:
+        return centre_column(result.response.names, gear, letter)
+
+    forces = support_forces(result.system, samples)
+    figures: dict[str, Any] = {
+        "bearing_damping_pinion": result.damping.bearing_pinion,
+        "bearing_damping_wheel": result.damping.bearing_wheel,
+    }
+    for kind, signals in (("bearing_force", forces), ("acceleration", samples.acceleration)):
+        for gear in _GEARS:
+            for direction, letter in _DIRECTIONS.items():
+                signal = signals[:, column(gear, letter)]
+                figures[f"rms_{kind}_{direction}_{gear}"] = alternating_rms(samples, signal)
+    along, across = (forces[:, column("pinion", letter)] for letter in "yx")
+    indicator = line_of_action_indicator(samples, along, across)
+    if np.isfinite(indicator):
+        figures["line_of_action_indicator"] = indicator
+    return figures
+
+
+def _shaft_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    """Torque in both shafts, from springs and dampers together."""
+    from tribodyn.analysis import alternating_rms, mean
+
+    forces, names = support_forces(result.system, samples), result.response.names
+    figures: dict[str, Any] = {}
+    for number in (1, 2):
+        # What twists a shaft turns its disc one way and the gear the other.
+        signal = forces[:, names.index(f"shaft{number}_theta")]
+        figures[f"mean_torque_shaft{number}"] = abs(mean(samples, signal))
+        figures[f"rms_torque_shaft{number}"] = alternating_rms(samples, signal)
+    return figures

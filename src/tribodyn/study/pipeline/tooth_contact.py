@@ -1,0 +1,77 @@
+"""The tooth contact of a case: its models and options, its mesh, its friction under any load."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.errors import ComputationError, collected
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case import derive
+from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.provenance import effective
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.study.case.case import Case
+
+
+#: Load over the nominal load below which friction may be missing.
+_LIGHT = 0.3
+
+
+def chosen_options(case: Case, section: str) -> dict[str, Any]:
+    """Options in force of the model that a table names, called as the model calls them."""
+    model, values = getattr(case, section).chosen, effective(case)
+    found = {
+        option.argument or name: values[f"{section}.{name}"]
+        for name, option in model.declared.items()
+        if option.in_case
+    }
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def model_settings(case: Case) -> dict[str, Any]:
+    """Material, oil, stiffness and film of a case, as the mesh asks for them."""
+    return {
+        "material": case.material_properties,
+        "stiffness_model": case.stiffness.model,
+        "stiffness_options": chosen_options(case, "stiffness"),
+        "lubricant": case.lubricant_properties or derive.unused_lubricant(),
+        "composite_roughness": case.composite_roughness or 0.0,
+        "film_model": case.film.model,
+        "film_options": chosen_options(case, "film"),
+    }
+
+
+def mesh_of(case: Case, progress: Progress = SILENT, *, load: float = 1.0) -> MeshTable:
+    """Compute the tooth contact of a case over one mesh cycle."""
+    from tribodyn.mesh import build
+
+    return build(
+        case.gear_pair,
+        friction_law=case.friction.law,
+        friction_options=chosen_options(case, "friction"),
+        pinion_speed=case.pinion_speed,
+        pinion_torque=case.pinion_torque * load,
+        force_law=mesh_law_of(case) == "force-law",
+        progress=progress,
+        **model_settings(case),
+    )
+
+
+def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
+    """Friction of a case under any load of the teeth."""
+    if case.dynamics.friction_load == "nominal":
+        return None
+    from tribodyn.mesh import LOADS, mesh_friction
+
+    tables = []
+    with collected():
+        for load in LOADS:
+            try:
+                tables.append(nominal if load == 1.0 else mesh_of(case, load=load))
+            except ComputationError:
+                # An oil film in series is softer than lightly loaded teeth. Light loads rub little.
+                if load > _LIGHT:
+                    raise
+    return mesh_friction(tables, nominal)

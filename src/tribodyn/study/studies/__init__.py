@@ -1,0 +1,1 @@
+"""Studies of a case: sweeps, bifurcation diagrams, run-ups, tooth contacts at rest."""

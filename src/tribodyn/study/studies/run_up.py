@@ -1,0 +1,158 @@
+"""Run-up and run-down of a case: its speed rises and falls as prescribed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from tribodyn.errors import InputError, Problem, collected
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.derive import placed
+from tribodyn.study.case.provenance import effective
+from tribodyn.study.studies.grid import varied
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import RunUp, System
+    from tribodyn.study.case.case import Case
+
+
+_SPEED = "operation.speed"
+
+
+def run_up(
+    case: Case,
+    between: tuple[Any, Any] | None = None,
+    duration: float = 10.0,
+    *,
+    down: bool = False,
+    hold: float = 0.0,
+    tables: int = 4,
+    samples: int = 128,
+    steps: int | None = None,
+    progress: Progress = SILENT,
+) -> RunUp:
+    """March a case while its speed rises evenly and, if asked for, falls again.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    between : tuple
+        Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
+    duration : float
+        Length of the rise, and of the fall [s].
+    down : bool
+        Whether the speed falls back as it rose.
+    hold : float
+        Time at the highest speed [s].
+    tables : int
+        Speeds, evenly spaced in the logarithm, at which the tooth contact is computed; film and
+        friction follow the speed between them in straight lines.
+    samples : int
+        Samples of each mesh cycle that are kept.
+    steps : int, optional
+        Steps per mesh cycle at all speeds; by default each speed has as many as it needs.
+    progress : Progress
+        Told how far the study has come; silent by default.
+
+    Returns
+    -------
+    RunUp
+        Its speed is that of the gear whose speed the case gives. Outputs are the forces of the
+        supports, where there are any. The inertia of the prescribed acceleration loads the teeth.
+
+    Raises
+    ------
+    InputError
+        If a speed is not positive, or the case cannot be computed there.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness")
+    >>> run_up(case, ("3000 rpm", "3300 rpm"), 0.1, tables=2)
+    RunUp(0.1 s, 84 mesh cycles from 800 over 880 to 880 Hz, 6 coordinates, 128 samples per cycle)
+    """
+    from tribodyn.dynamics import run_up as compute
+    from tribodyn.dynamics import speed_ramp
+
+    low, high = _ends(case, between)
+    count = int(tables)
+    if count != tables or count < 1:
+        raise InputError(Problem(f"tables = {tables}", "argument tables", "A whole number >= 1"))
+    speeds = np.geomspace(low, high, count) if count > 1 else np.array([np.sqrt(low * high)])
+    with placed(case), collected():
+        systems, per_speed = speed_systems(case, speeds, progress)
+        first = next(iter(systems.values()))
+        profile = speed_ramp(low * per_speed, high * per_speed, duration, hold=hold, down=down)
+        return compute(
+            systems if count > 1 else first,
+            profile,
+            teeth=round(2.0 * np.pi * per_speed),
+            samples=samples,
+            steps=steps or case.solver.steps_per_mesh_cycle,
+            outputs=_supports(first),
+            rotation=_rotation(case, first, per_speed),
+            progress=progress,
+        )
+
+
+def speed_systems(
+    case: Case, speeds: Any, progress: Progress = SILENT
+) -> tuple[dict[float, System], float]:
+    """Structures of a case at some speeds, by mesh frequency."""
+    members = varied(case, [{_SPEED: float(speed)} for speed in speeds], progress)
+    systems = {member.mesh.mesh_frequency: member.system for member in members}
+    return systems, members[-1].mesh.mesh_frequency / float(speeds[-1])
+
+
+def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
+    """Both speeds in SI, checked like the key of the case."""
+    if between is None or len(between) != 2:
+        raise InputError(
+            Problem(
+                f"between = {between}",
+                "argument between",
+                "A run-up goes from one speed to another",
+                'Write, for example, between=("400 rpm", "3500 rpm")',
+            )
+        )
+    found = [effective(case.replace({_SPEED: end})).get(_SPEED) for end in between]
+    low, high = cast("float", found[0]), cast("float", found[1])
+    if not low < high:
+        raise InputError(
+            Problem(
+                f"between = {between}",
+                "argument between",
+                "The first speed is the lowest",
+                "Turn them round; down=True adds the way back",
+            )
+        )
+    return low, high
+
+
+def _supports(system: System) -> dict[str, Any]:
+    """Forces on the supports of the gears as rows over positions and velocities."""
+    rows = {}
+    for column, name in enumerate(system.names):
+        both = (np.asarray(system.stiffness)[column], np.asarray(system.damping)[column])
+        if np.any(both[0]) and name.startswith(("pinion_", "wheel_")):
+            rows[f"bearing_force_{name}"] = np.concatenate(both)
+    return rows
+
+
+def _rotation(case: Case, system: System, per_speed: float) -> Any:
+    """Angles of the coordinates per angle of the shaft whose speed is given."""
+    from tribodyn.dynamics import STRUCTURES
+
+    pinion = per_speed * 2.0 * np.pi / case.gear_pair.pinion.teeth
+    wheel = pinion / case.gear_pair.ratio
+    gears = {"pinion": pinion, "wheel": wheel}
+    turns = {f"{gear}_theta": angle for gear, angle in gears.items()}
+    turns_with = STRUCTURES[case.dynamics.model].turns_with
+    turns |= {name: gears[gear] for name, gear in turns_with.items()}
+    turning = [name for name in system.names if name.endswith("theta")]
+    if any(name not in turns for name in turning):
+        return None
+    return np.array([turns[name] if name in turning else 0.0 for name in system.names])

@@ -1,0 +1,259 @@
+"""Studies of a case at rest: transmission error over torque, best tip relief, teeth and film."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.derive import placed
+from tribodyn.study.case.gears import Modification
+from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.pipeline.loaded_teeth import loaded_settings
+from tribodyn.study.pipeline.tooth_contact import model_settings
+from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import ComprehensiveStiffness, FilmOverOperation
+    from tribodyn.stiffness import HarrisMap, TipReliefOptimum
+    from tribodyn.study.case.case import Case
+
+
+#: Torques of a map over those of the case.
+_RANGE = (0.1, 2.0)
+_TORQUES = 20
+
+
+def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> HarrisMap:
+    """Find the static transmission error of a case over phase and torque (Harris map).
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`; its ``[stiffness]`` says how the teeth give way.
+    torque : list of float or str, optional
+        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
+        By default 20 of them up to twice that of the case.
+    phases : int, optional
+        Evenly spaced phases of a mesh cycle; 256 by default, or 64 where flanks vary over the face
+        width or from tooth to tooth.
+
+    Returns
+    -------
+    HarrisMap
+        Torques in it are those of the pinion; without oil film.
+
+    Raises
+    ------
+    InputError
+        If a torque is out of range.
+    ComputationError
+        If a load is beyond what the tooth contact covers.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+    >>> found = harris_map(case, torque=["60 N*m", "120 N*m"])
+    >>> bool(found.peak_to_peak_transmission_error[0] < found.peak_to_peak_transmission_error[1])
+    True
+    """
+    from tribodyn.stiffness import transmission_error_over_torque
+
+    torques = pinion_torques(case, torque)
+    if torque is None:
+        torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
+    with placed(case):
+        return transmission_error_over_torque(
+            case.gear_pair, torques, phases=phases, **loaded_settings(case)
+        )
+
+
+def optimize_tip_relief(
+    case: Case, torque: Any = None, *, amount: Any = None, length: Any = None, **options: Any
+) -> TipReliefOptimum:
+    """Find the tip relief of a case that leaves least transmission error over a torque range.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    torque : tuple or list, optional
+        Two ends of a range, or more torques, on the gear named by ``operation.speed_of``: floats
+        in N*m, or text with a unit. By default from half the torque of the case to all of it.
+    amount, length : tuple, optional
+        Least and greatest amount and roll length: floats in m, or text with a unit.
+    **options : object
+        ``gears``, ``shape``, ``objective``, ``weight``, ``grid`` and ``phases`` of
+        :func:`tribodyn.stiffness.optimize_tip_relief`.
+
+    Returns
+    -------
+    TipReliefOptimum
+        Torques in it are those of the pinion.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a relief longer than the flank.
+    ComputationError
+        If a load is beyond what the tooth contact covers.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+    >>> best = optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16)
+    >>> bool(best.objective < best.objective_before)
+    True
+    """
+    from tribodyn.stiffness import optimize_tip_relief as compute
+
+    torques = pinion_torques(case, torque)
+    if torque is None:
+        torques = [0.5 * torques[0], torques[0]]
+    with placed(case):
+        return compute(
+            case.gear_pair,
+            torques,
+            amount=_lengths("amount", amount),
+            length=_lengths("length", length),
+            **{**loaded_settings(case), **options},
+        )
+
+
+def _lengths(name: str, given: Any) -> tuple[float, float] | None:
+    """Read the two ends of a range of lengths."""
+    if given is None:
+        return None
+    spec = dict(Modification.specs())["tip_relief" if name == "amount" else "tip_relief_length"]
+    try:
+        low, high = (float(read_value(spec, name, Plain(item))) for item in given)
+    except FaultError as fault:
+        raise InputError(replace(fault.problem, where=f"argument {name}")) from None
+    return low, high
+
+
+def comprehensive_stiffness(
+    case: Case,
+    *,
+    torque: Any = None,
+    speed: Any = None,
+    kind: str | None = None,
+    steps: int = 128,
+    progress: Progress = SILENT,
+) -> ComprehensiveStiffness:
+    """Find the stiffness of oil film and teeth of a case over torques and speeds.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
+    torque : float, str or list, optional
+        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
+        That of the case where absent.
+    speed : float, str or list, optional
+        Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
+    kind : str, optional
+        ``"tangent"``, ``"secant"`` or ``"seed"``; by default ``film.stiffness`` of the case, or
+        ``"tangent"`` where that is ``"none"``.
+    steps : int
+        Phase intervals of a mesh cycle.
+    progress : Progress
+        Told how many films are solved; silent by default.
+
+    Returns
+    -------
+    ComprehensiveStiffness
+        Torques and speeds in it are those of the pinion.
+
+    Raises
+    ------
+    InputError
+        If a torque or speed is out of range, or the case has no film model.
+    ComputationError
+        If a film cannot be solved.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-film").replace({"film.model": "moes"})
+    >>> found = comprehensive_stiffness(case, torque=["50 N*m", "300 N*m"])
+    >>> bool(found.mean_mesh_stiffness[0, 0] < found.mean_mesh_stiffness[1, 0])
+    True
+    """
+    from tribodyn.mesh import comprehensive_stiffness as compute
+
+    settings = model_settings(case)
+    settings.pop("composite_roughness")
+    asked = settings["film_options"].get("stiffness", "none")
+    with placed(case):
+        return compute(
+            case.gear_pair,
+            pinion_torque=pinion_torques(case, torque),
+            pinion_speed=pinion_speeds(case, speed),
+            kind=kind or ("tangent" if asked == "none" else asked),
+            steps=steps,
+            progress=progress,
+            **settings,
+        )
+
+
+def film_over_operation(
+    case: Case,
+    *,
+    torque: Any = None,
+    speed: Any = None,
+    progress: Progress = SILENT,
+) -> FilmOverOperation:
+    """Find the films of a case along the path of contact, for every torque at every speed.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
+    torque : float, str or list, optional
+        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
+        That of the case where absent.
+    speed : float, str or list, optional
+        Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
+    progress : Progress
+        Told how many films are solved; silent by default.
+
+    Returns
+    -------
+    FilmOverOperation
+        Torques and speeds in it are those of the pinion.
+
+    Raises
+    ------
+    InputError
+        If a torque or speed is out of range, or the case has no film model.
+    ComputationError
+        If a film cannot be solved.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"film.model": "moes"})
+    >>> films = film_over_operation(case, torque=["50 N*m", "150 N*m"], speed=[90.0, 180.0])
+    >>> films.central_film.shape
+    (2, 2, 30)
+    """
+    from tribodyn.mesh import film_over_operation as compute
+
+    if case.film.model == "none":
+        remedy = 'Choose one: case.replace({"film.model": "newton"})'
+        raise InputError(Problem('film.model = "none"', "argument case", "No film", remedy))
+    pair = case.gear_pair
+    with placed(case):
+        return compute(
+            pair,
+            pinion_torque=pinion_torques(case, torque),
+            pinion_speed=pinion_speeds(case, speed),
+            progress=progress,
+            **model_settings(case),
+        )

@@ -1,0 +1,111 @@
+"""Sweeps: the whole pipeline over values of one key of the case, or over a grid of several."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.errors import ComputationError, InputError, Problem, quiet
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.pipeline.run import computed
+from tribodyn.study.studies.axes import Axis, read_axes
+from tribodyn.study.studies.grid import finished, over_cases
+from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+
+def sweep(
+    case: Case,
+    over: str | Mapping[str, Any] = "operation.speed",
+    between: tuple[Any, Any] | None = None,
+    points: int = 40,
+    *,
+    partial: bool = False,
+    by: str = "",
+    progress: Progress = SILENT,
+) -> Sweep:
+    """Compute a case at many values of one or several of its keys.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    over : str or mapping
+        Dotted key that varies; or several, each with ``(first, last, points)``, a tuple, or a
+        list of values. Several keys make a grid, in which the last one varies fastest.
+    between : tuple
+        Its two ends where ``over`` is one key: floats in SI, or text with a unit.
+    points : int
+        Values between them, evenly spaced, the ends included.
+    partial : bool
+        Return what is done when the computation is interrupted with Ctrl-C, in place of nothing.
+    by : str
+        What asks, for messages; then a bare number for a dimension is refused as in a file.
+    progress : Progress
+        Told how many values are done; silent by default.
+
+    Returns
+    -------
+    Sweep
+        Every figure of the summary over the keys. A value that cannot be computed leaves NaN and
+        the reason in ``failed``.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, or one of its values out of range.
+
+    Notes
+    -----
+    Several values are computed at a time, one by each processor. An interrupted sweep keeps those
+    that are finished, up to the first that is not.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("time-varying-friction")
+    >>> found = sweep(case, {"friction.law": ["none", "xu-2007"]})
+    >>> bool(found["mean_friction_power"][0] < found["mean_friction_power"][1])
+    True
+    """
+    axes = read_axes(case, _asked(over, between, points), by=by)
+    grid = list(product(*(axis.values for axis in axes)))
+    done: dict[int, SweepPoint] = {}
+    progress.start("computing", len(grid))
+    try:
+        over_cases(lambda values: _point(case, axes, values), grid, done, progress)
+    except KeyboardInterrupt:
+        if not (partial and 0 in done):
+            raise
+    progress.finish()
+    return Sweep(case, axes, tuple(finished(done)))
+
+
+def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[str, Any]:
+    if isinstance(over, str):
+        if between is None or len(between) != 2:
+            remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
+            raise InputError(Problem(f"between = {between}", "argument between", "", remedy))
+        return {over: (*between, points)}
+    if between is not None:
+        why = "Several keys have their ends in over"
+        raise InputError(Problem(f"between = {between}", "argument between", why, "Remove it"))
+    return over
+
+
+def _point(case: Case, axes: tuple[Axis, ...], values: tuple[Any, ...]) -> SweepPoint:
+    """Run the case at one place; what fails is told, and the sweep goes on."""
+    changes = {axis.key: value for axis, value in zip(axes, values, strict=True)}
+    try:
+        with quiet():  # what the models say is kept in the result
+            result = computed(case.replace(changes))
+            figures = result.summary()
+    except (InputError, ComputationError) as error:
+        first = error.problems[0]
+        place = str(first.where).removeprefix("replace: ")  # the sweep is what replaces
+        return SweepPoint(values, {}, str(dataclasses.replace(first, where=place)))
+    return SweepPoint(values, figures, "", tuple(warning.code for warning in result.warnings))

@@ -1,0 +1,211 @@
+"""What a sweep holds: the figures of every value, or why there are none."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import prod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribodyn.drawing import draw
+from tribodyn.errors import InputError, Problem
+from tribodyn.record import Parts, Record, record
+from tribodyn.reporting import write_report_of
+from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.studies.axes import Axis
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+
+#: Reason where a sweep was interrupted before.
+_NOT_REACHED = "not computed: the sweep was interrupted before"
+
+
+@dataclass(frozen=True)
+class SweepPoint:
+    """One value of a sweep."""
+
+    values: tuple[Any, ...]  #: of the keys that vary, in SI
+    figures: Mapping[str, float] = field(repr=False)  #: the summary
+    failed: str = ""  #: why it failed
+    warned: tuple[str, ...] = ()  #: codes of the warnings of the models
+
+
+@record
+class Sweep(Record):
+    """What :func:`tribodyn.sweep` returns; ``sweep["rms_mesh_force"]`` is one figure as an array.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was varied.
+    axes : tuple of Axis
+        Keys that vary, each with its values.
+    points : tuple of SweepPoint
+        What is done, the last key varying fastest; all of the grid unless it was interrupted.
+    """
+
+    case: Case
+    axes: tuple[Axis, ...]
+    points: tuple[SweepPoint, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each key."""
+        return tuple(len(axis.values) for axis in self.axes)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every value was reached."""
+        return len(self.points) == prod(self.shape)
+
+    @cached_property
+    def figures(self) -> tuple[str, ...]:
+        """Names of the summary that occur, in its order."""
+        seen = {name for point in self.points for name in point.figures}
+        return tuple(name for name in SUMMARY if name in seen)
+
+    @cached_property
+    def failed(self) -> NDArray[np.str_]:
+        """Why a value has no figures, in the shape of the grid; empty where it has."""
+        told = [point.failed for point in self.points]
+        return np.array(told + [_NOT_REACHED] * (prod(self.shape) - len(told))).reshape(self.shape)
+
+    def __getitem__(self, name: str) -> Array:
+        """Return one figure of the summary over the grid, in SI; NaN where ``failed`` says why."""
+        if name not in self.figures:
+            import difflib
+
+            near = difflib.get_close_matches(name, self.figures, n=1)
+            remedy = f'Did you mean "{near[0]}"?' if near else f"It has: {', '.join(self.figures)}"
+            raise InputError(Problem(f'there is no figure "{name}" in this sweep', remedy=remedy))
+        values = np.full(prod(self.shape), np.nan)
+        values[: len(self.points)] = [p.figures.get(name, np.nan) for p in self.points]
+        return values.reshape(self.shape)
+
+    def __repr__(self) -> str:
+        """One line."""
+        ranges = " x ".join(
+            f"{len(axis.values)} values of {axis.key} from {axis.show(axis.values[0])} to "
+            f"{axis.show(axis.values[-1])}"
+            for axis in self.axes
+        )
+        failed = sum(bool(point.failed) for point in self.points)
+        done = "" if self.complete else f", {len(self.points)} of {prod(self.shape)} done"
+        return f"Sweep({ranges}{done}{f', {failed} failed' if failed else ''})"
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Walk over what is done.
+
+        Yields
+        ------
+        dict
+            Keys and figures in SI, ``failed`` and ``warnings``; None where there is no figure.
+        """
+        for point in self.points:
+            keys = zip((axis.key for axis in self.axes), point.values, strict=True)
+            figures = {name: point.figures.get(name) for name in self.figures}
+            yield {**dict(keys), **figures, "failed": point.failed,
+                   "warnings": " ".join(dict.fromkeys(point.warned))}  # fmt: skip
+
+    def _parts(self) -> Parts:
+        names = self._dimensions()
+        axes: dict[str, Any] = {
+            name: (name, np.array(axis.values), {"units": axis.unit or "1", "key": axis.key})
+            for name, axis in zip(names, self.axes, strict=True)
+        }
+        data: dict[str, Any] = {
+            name: (names, self[name], {
+                "units": SUMMARY[name].unit or "1", "long_name": SUMMARY[name].meaning,
+            })
+            for name in self.figures
+        }  # fmt: skip
+        warned = [" ".join(dict.fromkeys(point.warned)) for point in self.points]
+        warned += [""] * (prod(self.shape) - len(warned))
+        data["failed"] = (names, self.failed.astype(object))
+        data["warnings"] = (names, np.array(warned, dtype=object).reshape(self.shape))
+        return Parts(data, axes, {"title": self.case.title})
+
+    def _dimensions(self) -> list[str]:
+        short = [axis.name for axis in self.axes]
+        taken = {*short, *self.figures}
+        alone = len(taken) == len(short) + len(self.figures)
+        return short if alone else [axis.key.replace(".", "_") for axis in self.axes]
+
+    def plot(self, figure: str = "rms_mesh_force", **options: Any) -> Any:
+        """Draw one figure of the summary over the keys.
+
+        Parameters
+        ----------
+        figure : str
+            Name in the summary.
+        **options
+            None are known.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, figure=figure, **options)
+
+    def to_csv(self) -> str:
+        """Write what is done as comma-separated values in SI.
+
+        Returns
+        -------
+        str
+            One line for each value; units are in brackets in the first line.
+        """
+        import csv
+        import io
+
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        units = {axis.key: axis.unit for axis in self.axes}
+        units |= {name: SUMMARY[name].unit for name in self.figures}
+        names = [*units, "failed", "warnings"]
+        writer.writerow([f"{n} [{units[n]}]" if units.get(n) else n for n in names])
+        for row in self.rows():
+            writer.writerow(["" if row[name] is None else row[name] for name in names])
+        return text.getvalue()
+
+    def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write case, table and report into a new directory.
+
+        The directory appears complete or not at all.
+
+        Parameters
+        ----------
+        directory : str or path
+            Directory to make.
+        force : bool
+            Replace an earlier result there.
+
+        Returns
+        -------
+        Path
+            The directory.
+
+        Raises
+        ------
+        OutputExistsError
+            If it exists and is not to be replaced, or is no result.
+        InputError
+            If the place cannot be written to.
+        """
+        target = Path(directory)
+        with new_directory(target, force=force) as place:
+            (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
+            (place / "sweep.csv").write_text(self.to_csv(), encoding="utf-8")
+            self.to_xarray().to_netcdf(place / "sweep.nc", engine="h5netcdf")
+            write_report_of(self, place / "report.html")
+        return target

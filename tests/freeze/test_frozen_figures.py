@@ -1,0 +1,28 @@
+"""The built-in cases give the figures that they gave."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from frozen_figures import case_figures, differences
+from write_snapshot import read
+
+
+@pytest.fixture(scope="module")
+def current() -> dict[str, dict[str, Any]]:
+    return case_figures()
+
+
+@pytest.mark.parametrize("case", list(read("figures")))
+def test_figures_of_built_in_cases(case: str, current: dict[str, dict[str, Any]]) -> None:
+    frozen = read("figures")[case]
+    found = differences(case, frozen["summary"], current[case]["summary"])
+    assert not found, "\n".join(found)
+    assert set(frozen["warnings"]) <= set(current[case]["warnings"])
+
+
+def test_differences_are_found() -> None:
+    assert differences("a", {"x": 1.0}, {})
+    assert differences("a", {"x": 1.0}, {"x": 1.0 + 2e-9})
+    assert not differences("a", {"x": 1.0}, {"x": 1.0 + 5e-10, "y": 2.0})

@@ -1,0 +1,123 @@
+"""Files that an earlier state wrote are read, and are written with the same columns and values."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+from frozen_figures import differences
+from write_stored import COMMANDS, MESHES, write_results
+
+import tribodyn as td
+from tribodyn.mesh import MeshTable
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+_ARCHIVE = Path(__file__).parent / "stored.zip"
+_RESULTS = sorted(COMMANDS)
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("stored")
+    with zipfile.ZipFile(_ARCHIVE) as archive:
+        archive.extractall(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder: Path = tmp_path_factory.mktemp("written")
+    write_results(folder)
+    return folder
+
+
+def _entries(table: dict[str, Any], place: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from _entries(value, f"{place}{name}.")
+        else:
+            yield place + name, value
+
+
+def _open(path: Path) -> xarray.Dataset:
+    with xarray.open_dataset(path, engine="h5netcdf") as data:
+        return data.load()
+
+
+def _assert_same_data(old: xarray.Dataset, new: xarray.Dataset) -> None:
+    assert set(old.variables) <= set(new.variables)
+    assert set(old.attrs) <= set(new.attrs)
+    for name, column in old.variables.items():
+        other = new.variables[name]
+        assert other.dims == column.dims, name
+        assert other.attrs.get("units") == column.attrs.get("units"), name
+        if column.dtype.kind in "fc":
+            scale = float(np.nanmax(np.abs(column.values), initial=0.0))
+            assert other.values == pytest.approx(
+                column.values, rel=1e-9, abs=1e-9 * scale + 1e-15, nan_ok=True
+            ), name
+        else:
+            assert (other.values == column.values).all(), name
+
+
+@pytest.mark.parametrize("name", list(td.cases()))
+def test_stored_cases_read_back(name: str, stored: Path) -> None:
+    path = stored / "cases" / f"{name}.toml"
+    again = dict(_entries(tomllib.loads(td.load_case(path).to_toml())))
+    for key, value in _entries(tomllib.loads(path.read_text("utf-8"))):
+        assert again[key] == value, key
+
+
+@pytest.mark.parametrize("name", _RESULTS)
+def test_stored_data_are_those_of_today(name: str, stored: Path, written: Path) -> None:
+    for path in sorted((stored / name).iterdir()):
+        today = written / name / path.name
+        assert today.exists(), path.name
+        if path.suffix == ".nc":
+            _assert_same_data(_open(path), _open(today))
+
+
+@pytest.mark.parametrize("name", ["result", "transient"])
+def test_stored_summary_is_that_of_today(name: str, stored: Path, written: Path) -> None:
+    old, new = (json.loads((f / name / "summary.json").read_text()) for f in (stored, written))
+    assert not differences(name, old, new)
+
+
+def test_columns_of_a_sweep_keep_their_names(stored: Path, written: Path) -> None:
+    old, new = (
+        (folder / "sweep" / "sweep.csv").read_text("utf-8").splitlines()
+        for folder in (stored, written)
+    )
+    rows = [i for i, line in enumerate(old) if line and not line.startswith("#")]
+    assert set(old[rows[0]].split(",")) <= set(new[rows[0]].split(","))
+
+
+@pytest.mark.parametrize("name", _RESULTS)
+def test_case_of_a_stored_result_reads_back(name: str, stored: Path) -> None:
+    path = stored / name / "case.toml"
+    again = dict(_entries(tomllib.loads(td.load_case(path).to_toml())))
+    for key, value in _entries(tomllib.loads(path.read_text("utf-8"))):
+        assert again[key] == value, key
+
+
+@pytest.mark.parametrize("name", [*MESHES, "result"])
+def test_stored_mesh_tables_are_read(name: str, stored: Path, tmp_path: Path) -> None:
+    path = stored / ("result/mesh.nc" if name == "result" else f"meshes/{name}.nc")
+    table = MeshTable.load(path)
+    _assert_same_data(_open(path), table.to_xarray())
+    again = tmp_path / "mesh.nc"
+    table.save(again)
+    _assert_same_data(_open(path), _open(again))
+
+
+@pytest.mark.parametrize("name", list(MESHES))
+def test_stored_mesh_tables_are_those_of_today(name: str, stored: Path) -> None:
+    _assert_same_data(_open(stored / "meshes" / f"{name}.nc"), MESHES[name]().to_xarray())

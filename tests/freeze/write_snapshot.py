@@ -1,0 +1,50 @@
+"""Write the snapshot anew and say what changed: ``python tests/freeze/write_snapshot.py``.
+
+Names and figures that are new come in by this. What is gone or differs is told on the way: such a
+change breaks what users wrote, and belongs into the change log.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from frozen_figures import case_figures, differences
+from frozen_surface import losses, surface
+
+FOLDER = Path(__file__).resolve().parent / "snapshot"
+
+
+def read(name: str) -> Any:
+    """One part of the snapshot; nothing if it was not written yet."""
+    path = FOLDER / f"{name}.json"
+    return json.loads(path.read_text("utf-8")) if path.exists() else {}
+
+
+def write(name: str, data: Any) -> None:
+    """Write one part of the snapshot."""
+    FOLDER.mkdir(exist_ok=True)
+    text = json.dumps(data, indent=1, ensure_ascii=False, sort_keys=True)
+    (FOLDER / f"{name}.json").write_text(text + "\n", "utf-8")
+
+
+def main() -> None:
+    """Write both parts and print what differs from before."""
+    old, old_figures = read("surface"), read("figures")
+    new, new_figures = surface(old.get("pages")), case_figures()
+    for line in losses(old, new):
+        print("-", line)
+    for line in losses(new, old):
+        print("+", line.replace(": gone", ""))
+    for case, values in old_figures.items():
+        for line in differences(
+            case, values["summary"], new_figures.get(case, {}).get("summary", {})
+        ):
+            print("*", line)
+    write("surface", new)
+    write("figures", new_figures)
+
+
+if __name__ == "__main__":
+    main()

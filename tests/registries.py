@@ -1,0 +1,34 @@
+"""What tests register is forgotten afterwards, so that no other test sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from tribodyn.drawing import FIGURES
+from tribodyn.dynamics import STRUCTURES
+from tribodyn.ehl import FILM_MODELS
+from tribodyn.friction import LAWS
+from tribodyn.stiffness import MODELS
+from tribodyn.study import SUMMARY
+from tribodyn.study.pipeline.summary import MEASURES
+
+__all__ = ["as_before"]
+
+
+@contextmanager
+def as_before() -> Iterator[None]:
+    """Bring the registries back to what they held."""
+    registries: list[Any] = [FIGURES, STRUCTURES, FILM_MODELS, LAWS, MODELS, MEASURES]
+    before = [dict(registry.all()) for registry in registries]
+    figures = dict(SUMMARY)
+    try:
+        yield
+    finally:
+        for registry, items in zip(registries, before, strict=True):
+            registry._items.clear()
+            registry._items.update(items)
+            registry.version += 1
+        SUMMARY.clear()
+        SUMMARY.update(figures)

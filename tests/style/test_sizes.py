@@ -1,0 +1,74 @@
+"""Sizes that may only shrink, and what was over them when they were set."""
+
+from __future__ import annotations
+
+import size_checks
+from source_tree import modules, read
+
+#: Inner docstrings of several lines: formulas of papers, help texts, pages of single files.
+LONG_DOCSTRINGS = 150
+
+#: Folder -> files that it had when the limit was set. Lower a number when a folder shrinks.
+FOLDERS = {
+    "src/tribodyn/analysis": 42,
+    "src/tribodyn/cli": 17,
+    "src/tribodyn/dynamics": 82,
+    "src/tribodyn/ehl": 45,
+    "src/tribodyn/ehl/kernel": 25,
+    "src/tribodyn/gear": 23,
+    "src/tribodyn/mesh": 26,
+    "src/tribodyn/plot": 62,
+    "src/tribodyn/stiffness": 25,
+    "src/tribodyn/study": 51,
+}
+
+#: Inner function -> arguments that it had when the limit was set.
+FUNCTIONS = {
+    "_march_block": 11,
+    "bifurcation": 10,
+    "follow": 9,
+    "march": 14,
+    "march_adaptive": 10,
+    "march_newmark": 12,
+    "number": 9,
+    "report_divergence": 9,
+    "solved_films": 12,
+}
+
+
+def test_folders_can_be_looked_over() -> None:
+    crowded = size_checks.crowded_folders([module.path for module in modules()], FOLDERS)
+    assert not crowded, "\n".join(crowded)
+
+
+def test_inner_functions_take_few_arguments() -> None:
+    crowded = size_checks.crowded_functions(modules(), FUNCTIONS)
+    assert not crowded, "\n".join(crowded)
+
+
+def test_inner_names_have_short_docstrings() -> None:
+    long = [place for m in modules() for place in size_checks.long_inner_docstrings(m)]
+    assert len(long) <= LONG_DOCSTRINGS, "\n".join(long)
+
+
+def test_a_new_crowded_folder_and_a_grown_one_are_found() -> None:
+    paths = [f"a/b/{number}.py" for number in range(17)]
+    assert size_checks.crowded_folders(paths, {})
+    assert not size_checks.crowded_folders(paths, {"a/b": 17})
+    assert size_checks.crowded_folders([*paths, "a/b/more.py"], {"a/b": 17})
+    assert not size_checks.crowded_folders([*paths[:16], "a/b/__init__.py"], {})
+
+
+def test_a_function_of_many_arguments_is_found() -> None:
+    text = f"def f({', '.join('abcdefghi')}):\n    return a\n"
+    assert size_checks.crowded_functions([read(text)], {})
+    assert not size_checks.crowded_functions([read(text)], {"f": 9})
+    assert not size_checks.crowded_functions([read(text, page='__all__ = ["f"]\n')], {})
+    assert not size_checks.crowded_functions([read(f"@njit(cache=True)\n{text}")], {})
+
+
+def test_a_long_docstring_off_the_page_is_found() -> None:
+    text = 'def f():\n    """One.\n\n    Two.\n    """\n'
+    assert size_checks.long_inner_docstrings(read(text))
+    assert not size_checks.long_inner_docstrings(read(text, page='__all__ = ["f"]\n'))
+    assert size_checks.long_inner_docstrings(read('class A:\n    """One.\n\n    Two."""\n'))

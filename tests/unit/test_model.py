@@ -1,0 +1,76 @@
+"""Things picked by name, with third parties let in through entry points."""
+
+import pytest
+
+from tribodyn import model as module
+from tribodyn.errors import InputError
+from tribodyn.model import Registry
+
+
+class Entry:
+    """An entry point without an installed package."""
+
+    def __init__(self, name: str, value: str) -> None:
+        self.name = name
+        self.value = value
+        self.loads = 0
+
+    def load(self) -> str:
+        self.loads += 1
+        return self.value
+
+
+def filled() -> Registry[str]:
+    laws: Registry[str] = Registry("friction law")
+    laws.register("constant")("c")
+    laws.register("xu-2007")("x")
+    return laws
+
+
+def test_names_keep_the_order_of_registration() -> None:
+    laws = filled()
+    assert laws.names() == ["constant", "xu-2007"]
+    assert list(laws) == laws.names()
+    assert "constant" in laws
+    assert "else" not in laws
+    assert laws["xu-2007"] == "x"
+
+
+def test_register_returns_what_it_decorates() -> None:
+    def law() -> None: ...
+
+    assert Registry("law").register("a")(law) is law
+
+
+def test_misspelt_name_names_the_nearest() -> None:
+    with pytest.raises(InputError) as caught:
+        filled()["xu-2070"]
+    message = str(caught.value)
+    assert 'no friction law is called "xu-2070"' in message
+    assert "Known: constant, xu-2007" in message
+    assert 'Did you mean "xu-2007"?' in message
+
+
+def test_entry_points_extend_but_never_replace(monkeypatch: pytest.MonkeyPatch) -> None:
+    entries = [Entry("mine", "third party"), Entry("constant", "impostor")]
+    asked = []
+
+    def entry_points(group: str) -> list[Entry]:
+        asked.append(group)
+        return entries
+
+    monkeypatch.setattr(module, "entry_points", entry_points)
+    laws: Registry[str] = Registry("friction law", "tribodyn.friction")
+    laws.register("constant")("own")
+    assert laws["mine"] == "third party"
+    assert laws["constant"] == "own"
+    assert laws.names() == ["constant", "mine"]
+    assert asked == ["tribodyn.friction"]
+
+
+def test_without_a_group_nothing_is_searched(monkeypatch: pytest.MonkeyPatch) -> None:
+    def entry_points(group: str) -> list[Entry]:
+        raise AssertionError("searched")
+
+    monkeypatch.setattr(module, "entry_points", entry_points)
+    assert Registry("law").names() == []
