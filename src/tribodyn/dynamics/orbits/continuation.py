@@ -145,9 +145,9 @@ def continuation(
     names = signal_names(function.at(low).compiled.system, signals)
     first = _first(function, start, between, tolerance)
     stepping = Stepping(longest_step, points, tolerance)
-    found, ending, complete = follow(function, first, stepping, progress)
-    found = with_values(function, found, np.asarray(at, dtype=float), tolerance)
-    branch = _collect(function, found, names, parameter, (ending, complete), tolerance)
+    orbits, ending, complete = follow(function, first, stepping, progress)
+    orbits = with_values(function, orbits, np.asarray(at, dtype=float), tolerance)
+    branch = _collect(function, orbits, names, parameter, (ending, complete), tolerance)
     progress.finish()
     if not complete:
         warn("steady-state", f"the branch over {parameter} {ending}", stacklevel=2)
@@ -257,7 +257,7 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
 
 def _collect(
     function: FamilyMap,
-    found: list[BranchPoint],
+    orbits: list[BranchPoint],
     signals: tuple[str, ...],
     name: str,
     ending: tuple[str, bool],
@@ -268,11 +268,11 @@ def _collect(
         mapping = function.at(value)
         return measure(mapping, function.reduced(point.x), signals)
 
-    measured = [figures(point) for point in found]
-    opening = {id(point): item.opening for point, item in zip(found, measured, strict=True)}
-    located = _located(function, found, figures, opening, tolerance)
-    values = np.array([function.parameter(point.x) for point in found])
-    multipliers = np.array([point.multipliers for point in found])
+    measured = [figures(point) for point in orbits]
+    opening = {id(point): item.opening for point, item in zip(orbits, measured, strict=True)}
+    located = _located(function, orbits, figures, opening, tolerance)
+    values = np.array([function.parameter(point.x) for point in orbits])
+    multipliers = np.array([point.multipliers for point in orbits])
     return Branch(
         name=name,
         parameter=values,
@@ -283,7 +283,7 @@ def _collect(
         **{name: np.array([getattr(item, name) for item in measured]) for name in _COLUMNS},
         floquet_multipliers=multipliers,
         stable=np.abs(multipliers).max(axis=1, initial=0.0) < 1.0,
-        error=np.array([point.error for point in found]),
+        error=np.array([point.error for point in orbits]),
         special_points=tuple(_special(function, item, figures(item.point)) for item in located),
         ending=ending[0],
         complete=ending[1],
@@ -293,7 +293,7 @@ def _collect(
 
 def _located(
     function: FamilyMap,
-    found: list[BranchPoint],
+    orbits: list[BranchPoint],
     figures: Callable[[BranchPoint], OrbitFigures],
     openings: dict[int, float],
     tolerance: float,
@@ -301,16 +301,16 @@ def _located(
     """Special points in the order of the branch."""
     located: list[Located] = []
     for kind, (test, holds) in tests_of_multipliers().items():
-        located += locate(function, found, kind, test, holds, tolerance)
-    if np.isfinite(openings[id(found[0])]):
+        located += locate(function, orbits, kind, test, holds, tolerance)
+    if np.isfinite(openings[id(orbits[0])]):
 
         def opening(point: BranchPoint) -> float:
             known = openings.get(id(point))
             return figures(point).opening if known is None else known
 
-        located += locate(function, found, "grazing", opening, lambda point: True, tolerance)
+        located += locate(function, orbits, "grazing", opening, lambda point: True, tolerance)
     return sorted(
-        located, key=lambda item: (item.after, np.linalg.norm(item.point.x - found[item.after].x))
+        located, key=lambda item: (item.after, np.linalg.norm(item.point.x - orbits[item.after].x))
     )
 
 

@@ -125,11 +125,11 @@ def speed_sweep(
     linear = read_outputs(outputs, systems[0])
     tables = Tables(systems, 1, float(frequency[0]), steps)
     family = SpeedFamily(tables, known, frequency)
-    found = _follow_all(
+    followed = _follow_all(
         family, directions, start, tolerance, patience, sorted({1, *periods}), progress
     )
     return _result(
-        family, found, linear, tuple(outputs or ()), output_unit, tuple(directions), teeth
+        family, followed, linear, tuple(outputs or ()), output_unit, tuple(directions), teeth
     )
 
 
@@ -165,7 +165,7 @@ def _follow_all(
         with lock:
             progress.advance()
 
-    def one(direction: str) -> list[Followed]:
+    def follow_direction(direction: str) -> list[Followed]:
         order = range(count) if direction == "up" else range(count)[::-1]
         met = follow(
             family,
@@ -180,9 +180,9 @@ def _follow_all(
         )
         return met if direction == "up" else met[::-1]
 
-    found = in_threads(one, directions, len(directions))
+    followed = in_threads(follow_direction, directions, len(directions))
     progress.finish()
-    return found
+    return followed
 
 
 def _shut(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
@@ -199,7 +199,7 @@ def _shut(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
 
 def _result(
     family: SpeedFamily,
-    found: list[list[Followed]],
+    followed: list[list[Followed]],
     linear: Array,
     outputs: tuple[str, ...],
     output_unit: str,
@@ -207,8 +207,8 @@ def _result(
     teeth: int,
 ) -> SpeedSweep:
     system, count = family.system, family.frequency.size
-    flat = [each for met in found for each in met]
-    number = np.tile(np.arange(count), len(found))
+    flat = [each for met in followed for each in met]
+    number = np.tile(np.arange(count), len(followed))
     point = np.array([each.point for each in flat])
     period = np.array([each.period for each in flat], dtype=np.int64)
     figures = family.statistics(number, point, period, _IRREGULAR, linear)
@@ -218,7 +218,7 @@ def _result(
     def shaped(values: Any) -> Any:
         """Directions, speeds and the rest."""
         values = np.asarray(values)
-        return values.reshape(len(found), count, *values.shape[1:])
+        return values.reshape(len(followed), count, *values.shape[1:])
 
     contacts = len(system.contacts)
     names, units = _signals(system, outputs, output_unit)
@@ -240,7 +240,7 @@ def _result(
         position=shaped(state[:, : system.size]),
         velocity=shaped(state[:, system.size :]),
         extra_force=shaped(extra),
-        jumps=_jumps(family.frequency, found, directions),
+        jumps=_jumps(family.frequency, followed, directions),
         names=tuple(system.names),
         step_number=max(
             family.compiled(k).step_number / float(family.frequency[k]) for k in range(count)
@@ -260,10 +260,10 @@ def _signals(
 
 
 def _jumps(
-    frequency: Array, found: list[list[Followed]], directions: tuple[str, ...]
+    frequency: Array, followed: list[list[Followed]], directions: tuple[str, ...]
 ) -> tuple[Jump, ...]:
     jumps: list[Jump] = []
-    for direction, met in zip(directions, found, strict=True):
+    for direction, met in zip(directions, followed, strict=True):
         turn = 1 if direction == "up" else -1
         beats, orbits = frequency[::turn], met[::turn]
         for k in range(1, len(orbits)):

@@ -290,29 +290,29 @@ def follow(
     told: Callable[[], None],
 ) -> list[Followed]:
     """Follow the motion over the speeds in one direction."""
-    one = _Follower(family, closed, valid, tolerance, patience, periods)
+    follower = _Follower(family, closed, valid, tolerance, patience, periods)
     done: list[Followed] = []
     shut = False
     for place, number in enumerate(order):
         orbit: Followed | None = None
         if place == 0:
-            orbit = one.shut(number) if start is None else None
+            orbit = follower.shut(number) if start is None else None
             shut = orbit is not None
             begin = family.start(number) if start is None else start
-            orbit = orbit or _settled(one, number, begin)
+            orbit = orbit or _settled(follower, number, begin)
             orbit.jumped = False
         else:
             last = done[-1]
-            orbit = one.shut(number) if shut else None
+            orbit = follower.shut(number) if shut else None
             if orbit is None and last.period > 0:
                 shut = False
                 guess = _guess(family.frequency, order, place, done)
-                orbit = one.continued(number, last, guess)
-                shut = orbit is not None and one.is_shut(number, orbit)
+                orbit = follower.continued(number, last, guess)
+                shut = orbit is not None and follower.is_shut(number, orbit)
             if orbit is None:
                 share = _IRREGULAR if last.period == 0 else 1.0
                 begin = family.mapping(number, 1).rescaled(last.point, max(last.period, 1))
-                orbit = _settled(one, number, begin, share)
+                orbit = _settled(follower, number, begin, share)
                 orbit.jumped = _is_jump(done, orbit)
         done.append(orbit)
         told()
@@ -332,13 +332,13 @@ def _is_jump(done: Sequence[Followed], orbit: Followed) -> bool:
     return away > max(_JUMP * float(np.linalg.norm(last.point)), 3.0 * usual)
 
 
-def _settled(one: _Follower, number: int, begin: Array, share: float = 1.0) -> Followed:
-    patience = max(int(share * one.patience), _LOOK)
+def _settled(follower: _Follower, number: int, begin: Array, share: float = 1.0) -> Followed:
+    patience = max(int(share * follower.patience), _LOOK)
     try:
-        return one.lost(number, begin, patience)
+        return follower.lost(number, begin, patience)
     except ComputationError:
         # The motion grew beyond all bounds: begin again at rest.
-        return one.lost(number, one.family.start(number), patience)
+        return follower.lost(number, follower.family.start(number), patience)
 
 
 def _guess(frequency: Array, order: Sequence[int], place: int, done: Sequence[Followed]) -> Array:
