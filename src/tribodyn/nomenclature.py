@@ -127,6 +127,7 @@ shaft_damping | c_s | N*m*s/rad | N*m*s/rad | torsional damping of a shaft | "1 
 bearing_force | F_b | N | N | force of a gear on its support
 backlash | j_bt | m | mm | total play along the line of action | "0.05 mm"
 static_transmission_error | STE | m | um | approach of the gears along the line of action under load at rest
+unloaded_transmission_error | e_0 | m | um | transmission error of the mesh without load
 transmission_error | e | m | um | displacement of the wheel behind its ideal place on the line of action | "2 um"
 dynamic_transmission_error | DTE | m | um | compression of the mesh along the line of action while running
 deflection | delta | m | um | compression of a contact
@@ -149,6 +150,8 @@ pinion_speed | n_1 | rad/s | rpm | rotational speed of the pinion
 pinion_torque | T_1 | N*m | N*m | torque on the pinion
 base_radius_pinion | r_b1 | m | mm | base radius of the pinion
 base_radius_wheel | r_b2 | m | mm | base radius of the wheel
+direction | h | | | change of the compression with a coordinate of the structure
+friction_direction | s | | | generalized force of one newton of friction with its sign
 single_pair_stiffness | | N/m | N/um | stiffness of the mesh while one tooth pair is in contact
 double_pair_stiffness | | N/m | N/um | stiffness of the mesh while two tooth pairs are in contact
 mean_mesh_stiffness | | N/m | N/um | mean of the mesh stiffness over the mesh cycle

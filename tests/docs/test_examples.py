@@ -207,6 +207,14 @@ def jump(text: str) -> None:
     assert "jump-basins.html jump-branch.html" in text
 
 
+def mesh_table(text: str) -> None:
+    # 29 teeth at 50 Hz; 150 N*m over 42.5 mm, which an orbit without friction has as its mean
+    assert figure(text, "mesh frequency") == pytest.approx(1450.0, abs=1e-6)
+    assert figure(text, "static mesh force") == pytest.approx(150.0 / 0.0425, abs=0.06)
+    assert figure(text, "mean mesh force") == pytest.approx(150.0 / 0.0425, abs=0.06)
+    assert figure(text, "peak mesh force") > figure(text, "mean mesh force")
+
+
 EXPECTED: dict[str, Callable[[str], None]] = {
     "01_first_light.py": first_light,
     "02_roughness_study.py": roughness_study,
@@ -224,9 +232,11 @@ EXPECTED: dict[str, Callable[[str], None]] = {
     "14_fifth_harmonic.py": fifth_harmonic,
     "15_run_up.py": run_up,
     "16_jump.py": jump,
+    "17_mesh_table.py": mesh_table,
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_example_prints_known_figures(path: Path, tmp_path: Path) -> None:
     done = subprocess.run(

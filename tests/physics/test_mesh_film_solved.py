@@ -17,9 +17,8 @@ from tribodyn.friction import LAWS
 from tribodyn.gear import BasicRack, FlankModification, Material, SpurPair, spur_pair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import build, film_columns, film_over_operation
-from tribodyn.mesh.cycle import mesh_cycle
+from tribodyn.mesh.cycle import mesh_cycle, pairs_in_contact
 from tribodyn.mesh.loads import tribological_contact
-from tribodyn.mesh.touching import touching_pairs
 from tribodyn.stiffness import loaded_contact
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)
@@ -73,7 +72,7 @@ def table(name: str = "pinion drives", **changes: Any) -> Any:
 def touching(mesh: Any) -> Any:
     cycle = mesh_cycle(mesh.gear_pair, 32)
     motion = cycle.motion(mesh.pinion_speed)
-    return touching_pairs(cycle, motion, OIL, STEEL), motion
+    return pairs_in_contact(cycle, motion, OIL, STEEL), motion
 
 
 @pytest.mark.parametrize("name", PAIRS)
@@ -300,6 +299,7 @@ def test_the_printed_sum_is_shown_once_and_is_no_spring() -> None:
     assert np.all(mesh.film_stiffness[mesh.in_contact] < 1e6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["tangent", "secant"])
 def test_coupled_pairs_with_tip_contact_need_no_more_positions(kind: str) -> None:
     # Zones end where a tip corner begins or ceases to carry: no warning, and more change nothing.

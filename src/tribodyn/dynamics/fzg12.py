@@ -14,9 +14,15 @@ from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.force_law import MeshForce, carried
 from tribodyn.dynamics.fzg12_mesh import BASE_RADIUS, RectangularMesh
-from tribodyn.dynamics.gear_pair import Driver, TorqueBalance, balance_direction, torques
+from tribodyn.dynamics.gear_pair import (
+    Driver,
+    TorqueBalance,
+    balance_direction,
+    torques,
+    with_error_of,
+)
 from tribodyn.dynamics.shafts import Body, GearMesh, assemble, row_of, shaft_chain
-from tribodyn.errors import require_between
+from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -136,6 +142,15 @@ def fzg12(
     """
     radii = row_of("base_radius", base_radius, 2, "m")
     require_between("torque", torque, 0.0, np.inf, "N*m")
+    if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
+        raise InputError(
+            Problem(
+                what="the mesh has contact directions of its own",
+                where="argument mesh",
+                why="The shafts of this structure move in one plane, with levers of base circles",
+                remedy="Take spur6, or a mesh with base radii",
+            )
+        )
     teeth = mesh or RectangularMesh(
         single_pair_stiffness,
         double_pair_stiffness,
@@ -148,7 +163,7 @@ def fzg12(
         radii,
         stiffness=teeth.stiffness,
         damping=mesh_damping,
-        error=error,
+        error=with_error_of(teeth, error),
         backlash=backlash,
         events=tuple(teeth.event_phases),
         driver=driver,

@@ -79,16 +79,33 @@ def gear_contact(
         )
 
     keep = slice(None) if supports else [2, 5]
+    towards: Entry = direction[keep]
+    if (varying := getattr(mesh, "direction", None)) is not None:
+        towards = _columns(varying, keep)
+    of_mesh = getattr(mesh, "friction", None) or friction
     return Contact(
-        direction=direction[keep],
+        direction=towards,
         stiffness=mesh.stiffness,
         damping=mesh_damping,
-        error=error,
+        error=with_error_of(mesh, error),
         gap=0.5 * backlash,
-        friction=_columns(friction, keep),
+        friction=_columns(of_mesh, keep),
         events=tuple(mesh.event_phases),
         damping_in_gap=damping_in_gap,
     )
+
+
+def with_error_of(mesh: MeshFunctions, error: Entry) -> Entry:
+    """Error of a contact: the one prescribed, and that of a mesh that has one of its own."""
+    of_mesh = getattr(mesh, "error", None)
+    if of_mesh is None:
+        return error
+
+    def both(phase: Array) -> Array:
+        given = error(phase) if callable(error) else error
+        return np.asarray(np.asarray(given, dtype=float) + of_mesh(phase))
+
+    return both
 
 
 def _columns(function: Callable[[Array], Array], keep: slice | list[int]) -> Callable[..., Array]:

@@ -3,13 +3,10 @@
 from tribodyn.mesh.build import build
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.comprehensive import ComprehensiveStiffness, comprehensive_stiffness
-from tribodyn.mesh.film import film_columns
+from tribodyn.mesh.film import film_columns, moving_film
 from tribodyn.mesh.force_law import MeshForceLaw
-from tribodyn.mesh.functions import MeshFunctions
-from tribodyn.mesh.grid import PhaseFunction, PhaseGrid, phase_grid
-from tribodyn.mesh.mesh_friction import LOADS, MeshFriction, mesh_friction
-from tribodyn.mesh.monotone_phase import MonotonePhaseFunction
-from tribodyn.mesh.moving_film import moving_film
+from tribodyn.mesh.functions import LOADS, MeshFriction, MeshFunctions, mesh_friction
+from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction, PhaseGrid, phase_grid
 from tribodyn.mesh.operation import FilmOverOperation, film_over_operation
 from tribodyn.mesh.table import MeshTable
 

@@ -3,40 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from tribodyn.contact import Kinematics
-from tribodyn.ehl import FILM_MODELS
-from tribodyn.errors import require_between, require_positive
-from tribodyn.friction import LAWS, TribologicalContact
+from tribodyn.errors import require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.carried import carried_columns
-from tribodyn.mesh.cycle import mesh_cycle
+from tribodyn.mesh.cycle import GearData, mesh_cycle, pairs_in_contact
 from tribodyn.mesh.film import FILM_COLUMNS, as_columns
-from tribodyn.mesh.film_friction import film_friction
 from tribodyn.mesh.loads import (
-    IN_SERIES,
-    Loads,
     quasi_static_loads,
     reported_films,
     tribological_contact,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.path_film import SolvedPath
+from tribodyn.mesh.sharing import shared_load_columns, teeth_of
 from tribodyn.mesh.table import MeshTable
-from tribodyn.mesh.teeth import teeth_of
-from tribodyn.mesh.touching import touching_pairs
+from tribodyn.mesh.tooth_contact import NO_OPTIONS, ToothContact
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
 from tribodyn.types import Array, Mask
-
-#: Largest composite roughness that is a roughness and not a slip of the unit [m].
-_LARGEST_ROUGHNESS = 1e-4
-_NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
 def build(
@@ -44,13 +32,13 @@ def build(
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
-    stiffness_options: Mapping[str, Any] = _NO_OPTIONS,
+    stiffness_options: Mapping[str, Any] = NO_OPTIONS,
     lubricant: Lubricant,
     friction_law: str,
-    friction_options: Mapping[str, Any] = _NO_OPTIONS,
+    friction_options: Mapping[str, Any] = NO_OPTIONS,
     composite_roughness: float,
     film_model: str = "none",
-    film_options: Mapping[str, Any] = _NO_OPTIONS,
+    film_options: Mapping[str, Any] = NO_OPTIONS,
     pinion_speed: float,
     pinion_torque: float,
     steps: int | None = None,
@@ -129,72 +117,84 @@ def build(
     ...       composite_roughness=0.0, pinion_speed=100.0, pinion_torque=90.0)  # doctest: +ELLIPSIS
     MeshTable(contact ratio 1.5477, mesh frequency 270.6 Hz, mean stiffness 7.739e+08 N/m, ...)
     """
-    _check(pinion_speed, pinion_torque, composite_roughness)
-    options = FILM_MODELS[film_model].complete(film_options)
-    cycle = mesh_cycle(pair, steps or _steps(pair, stiffness_model))
-    total_force = pinion_torque / pair.pinion.base_radius
+    settings = ToothContact(
+        material=material,
+        lubricant=lubricant,
+        stiffness_model=stiffness_model,
+        stiffness_options=stiffness_options,
+        composite_roughness=float(composite_roughness),
+        film_model=film_model,
+        film_options=film_options,
+        friction_law=friction_law,
+        friction_options=friction_options,
+    )
+    return mesh_table(
+        pair,
+        settings,
+        pinion_speed=pinion_speed,
+        pinion_torque=pinion_torque,
+        steps=steps,
+        force_law=force_law,
+        progress=progress,
+    )
+
+
+def mesh_table(
+    pair: SpurPair,
+    settings: ToothContact,
+    *,
+    pinion_speed: float,
+    pinion_torque: float,
+    steps: int | None = None,
+    force_law: bool = False,
+    progress: Progress = SILENT,
+) -> MeshTable:
+    """Compute the tooth contact with these settings at one speed and torque, as :func:`build`."""
+    require_positive("pinion_speed", pinion_speed, "rad/s")
+    require_positive("pinion_torque", pinion_torque, "N*m")
+    cycle = mesh_cycle(pair, steps or _steps(pair, settings.stiffness_model))
+    normal_force = pinion_torque / pair.pinion.base_radius
     places = (cycle.grid.phase, cycle.path, cycle.in_contact)
-    teeth = teeth_of(
-        cycle.contact, places, material, total_force, stiffness_model, stiffness_options
-    )
+    teeth = teeth_of(cycle.contact, places, settings, normal_force)
     motion = cycle.motion(pinion_speed)
-    touching = touching_pairs(cycle, motion, lubricant, material)
-    total_load = total_force / pair.common_face_width
-    loads = quasi_static_loads(
-        cycle, teeth, total_load, touching, pinion_speed, film_model, options, progress
-    )
+    pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
+    loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)
     warn_of_rigid_films(loads.film_at)
-    tribology = tribological_contact(motion, touching, loads.tribological, composite_roughness)
-    load_per_width = total_load * loads.carried.share[cycle.in_contact]
-    films, least = loads.film_at(loads.tribological), teeth.least_share * total_load
-    reported = reported_films(films, loads.film_at, load_per_width, least)
+    roughness = settings.composite_roughness
+    contact = tribological_contact(motion, pairs, loads.tribological, roughness)
+    films = loads.film_at(loads.tribological)
+    reported = reported_films(films, loads, teeth.least_share * teeth.load_per_width)
     columns: dict[str, Array] = {
         **_motion_columns(motion, cycle.sliding_direction),
-        "load_per_width": load_per_width,
-        "hertz_pressure": np.where(load_per_width > 0.0, tribology.hertz_pressure, 0.0),
-        "friction_coefficient": _friction(friction_law, friction_options, tribology, motion, loads),
-        **as_columns(reported, composite_roughness),
+        "load_per_width": loads.load_per_width,
+        "hertz_pressure": np.where(loads.load_per_width > 0.0, contact.hertz_pressure, 0.0),
+        "friction_coefficient": loads.film_at.friction(contact, motion),
+        **as_columns(reported, roughness),
     }
-    in_series = films.film_stiffness if options["stiffness"] in IN_SERIES else None
+    in_series = films.film_stiffness if settings.film_in_series else None
+    gears = GearData(pair)
     return MeshTable(
         grid=cycle.grid,
         path=cycle.path,
         in_contact=cycle.in_contact,
-        **carried_columns(teeth, loads.carried, in_series, force_law=force_law),
-        gear_pair=pair,
+        **shared_load_columns(teeth, loads.shared, in_series, force_law=force_law),
+        mesh_order=pair.pinion.teeth,
+        direction=gears.direction,
+        gears=gears,
         pinion_speed=float(pinion_speed),
         pinion_torque=float(pinion_torque),
-        composite_roughness=float(composite_roughness),
-        stiffness_model=stiffness_model,
-        friction_law=friction_law,
-        film_model=film_model,
-        film_stiffness_kind=options["stiffness"],
+        composite_roughness=roughness,
+        stiffness_model=settings.stiffness_model,
+        friction_law=settings.friction_law,
+        film_model=settings.film_model,
+        film_stiffness_kind=settings.film["stiffness"],
         **_spread(columns, cycle.in_contact),
     )
-
-
-def _check(pinion_speed: float, pinion_torque: float, composite_roughness: float) -> None:
-    require_positive("pinion_speed", pinion_speed, "rad/s")
-    require_positive("pinion_torque", pinion_torque, "N*m")
-    require_between("composite_roughness", composite_roughness, 0.0, _LARGEST_ROUGHNESS, "m")
 
 
 def _steps(pair: SpurPair, model: str) -> int:
     together = MODELS[model].coupled or pair.has_modification
     return 1024 if together else 512
-
-
-def _friction(
-    law: str,
-    options: Mapping[str, Any],
-    contact: TribologicalContact,
-    motion: Kinematics,
-    loads: Loads,
-) -> Array:
-    """Friction of every contact; a law of the solved film knows it at the positions first."""
-    if LAWS[law].needs_film and isinstance(loads.film_at, SolvedPath):
-        return film_friction(law, options, loads.film_at, motion, contact.composite_roughness)
-    return LAWS[law](contact, **options)
 
 
 def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
@@ -209,10 +209,10 @@ def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
     }
 
 
-def _spread(touching: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
+def _spread(known: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
     """Put the values of the touching pairs in their places, with zeros elsewhere."""
     columns: dict[str, Any] = dict.fromkeys(FILM_COLUMNS)
-    for name, values in touching.items():
+    for name, values in known.items():
         columns[name] = np.zeros(in_contact.shape)
         columns[name][in_contact] = values
     return columns

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tribodyn.errors import InputError, Problem
 from tribodyn.gear import SpurPair
+from tribodyn.mesh.cycle import COORDINATES, GearData
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.types import Array, Mask
 
@@ -71,8 +73,14 @@ class MeshColumns:
         film that does not fall with the load counts as rigid: its stiffness has a bound.
     maximum_single_pair_stiffness : float [N/m]
         Greatest stiffness of one pair that carries the whole load alone.
-    gear_pair : SpurPair
-        Both gears in their working position.
+    mesh_order : int
+        Mesh cycles in one turn of the pinion: its number of teeth.
+    direction : array (6,) or (n, 6)
+        Change of the compression with the coordinates ``pinion_x``, ``pinion_y``,
+        ``pinion_theta``, ``wheel_x``, ``wheel_y``, ``wheel_theta`` [1 or m]: y along, x across
+        the line of action.
+    gears : GearData, optional
+        The spur gears that the table was computed for; a table of another program has none.
     pinion_speed : float [rad/s]
         Speed of the pinion.
     pinion_torque : float [N*m]
@@ -84,6 +92,13 @@ class MeshColumns:
     film_stiffness_kind : str
         Film stiffness asked for: ``"tangent"`` and ``"secant"`` are in series with the teeth,
         ``"none"`` and ``"seed"`` are not.
+    friction_direction : array (n, pairs, 6) or None
+        Generalized force of one newton of friction of each contact, with the sign of sliding
+        [1 or m]. Where None, friction acts across the line of action, with the radii of curvature
+        as levers.
+    unloaded_transmission_error : array (n,) [m] or None
+        Transmission error without load that is no part of the force law, taken off the
+        compression.
     """
 
     grid: PhaseGrid
@@ -114,7 +129,9 @@ class MeshColumns:
     film_pressure: Array | None
     film_stiffness: Array | None
     maximum_single_pair_stiffness: float
-    gear_pair: SpurPair
+    mesh_order: int
+    direction: Array
+    gears: GearData | None
     pinion_speed: float
     pinion_torque: float
     composite_roughness: float
@@ -122,11 +139,28 @@ class MeshColumns:
     friction_law: str
     film_model: str
     film_stiffness_kind: str
+    friction_direction: Array | None = None
+    unloaded_transmission_error: Array | None = None
+
+    @property
+    def gear_pair(self) -> SpurPair:
+        """Both gears in their working position, of a table that was computed for spur gears."""
+        if self.gears is None:
+            raise InputError(
+                Problem(
+                    what="this mesh table has no gear pair",
+                    where="MeshTable.gear_pair",
+                    why="Another program made it, and such a table knows contacts, not gears",
+                    remedy="Ask for what is a column of the table",
+                )
+            )
+        return self.gears.pair
 
     @property
     def driver(self) -> str:
         """Which gear drives: ``"pinion"`` or ``"wheel"``."""
-        return self.gear_pair.driver
+        along = np.atleast_2d(self.direction)[:, COORDINATES.index("pinion_theta")]
+        return "pinion" if float(along.mean()) > 0.0 else "wheel"
 
     @property
     def transverse_contact_ratio(self) -> float:
@@ -140,18 +174,22 @@ class MeshColumns:
 
     @property
     def base_radius_pinion(self) -> float:
-        """Base radius of the pinion [m]."""
-        return self.gear_pair.pinion.base_radius
+        """Lever of the normal force on the pinion: for spur gears the base radius [m]."""
+        return self._lever("pinion_theta")
 
     @property
     def base_radius_wheel(self) -> float:
-        """Base radius of the wheel [m]."""
-        return self.gear_pair.wheel.base_radius
+        """Lever of the normal force on the wheel: for spur gears the base radius [m]."""
+        return self._lever("wheel_theta")
+
+    def _lever(self, coordinate: str) -> float:
+        column = self.direction[..., COORDINATES.index(coordinate)]
+        return abs(float(column if column.ndim == 0 else self.grid.mean(column)))
 
     @property
     def mesh_frequency(self) -> float:
         """Tooth engagements per second [Hz]."""
-        return self.pinion_speed * self.gear_pair.pinion.teeth / (2.0 * math.pi)
+        return self.pinion_speed * self.mesh_order / (2.0 * math.pi)
 
     @property
     def total_normal_force(self) -> float:
@@ -182,17 +220,33 @@ class MeshColumns:
     @property
     def friction_sum(self) -> Array:
         """Friction over normal force of all pairs together, with direction (n,)."""
+        if self.friction_direction is not None:
+            return np.asarray(self.friction[:, COORDINATES.index("pinion_x")])
         return self.by_share(self._directed_friction)
 
     @property
     def friction_moment_pinion(self) -> Array:
         """Friction moment on the pinion over total normal force (n,) [m]."""
+        if self.friction_direction is not None:
+            return np.asarray(self.friction[:, COORDINATES.index("pinion_theta")])
         return self.by_share(self._directed_friction * self.pinion_curvature_radius)
 
     @property
     def friction_moment_wheel(self) -> Array:
         """Friction moment on the wheel over total normal force (n,) [m]."""
+        if self.friction_direction is not None:
+            return -np.asarray(self.friction[:, COORDINATES.index("wheel_theta")])
         return self.by_share(self._directed_friction * self.wheel_curvature_radius)
+
+    @property
+    def friction(self) -> Array:
+        """Generalized friction force of all pairs over their normal force (n, 6) [1 or m]."""
+        if self.friction_direction is None:
+            across, zero = self.friction_sum, np.zeros(self.phase.size)
+            levers = (self.friction_moment_pinion, -self.friction_moment_wheel)
+            return np.stack((across, zero, levers[0], -across, zero, levers[1]), axis=1)
+        share = self.friction_coefficient * self.load_share
+        return np.asarray((share[:, :, None] * self.friction_direction).sum(axis=1))
 
     @property
     def _directed_friction(self) -> Array:

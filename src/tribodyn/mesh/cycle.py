@@ -2,15 +2,52 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from tribodyn.contact import Kinematics, PathOfContact, path_of_contact
-from tribodyn.gear import SpurPair
+from tribodyn.contact import (
+    Kinematics,
+    PathOfContact,
+    effective_modulus,
+    hertz_line,
+    path_of_contact,
+)
+from tribodyn.ehl import FILM_MODELS, moes_central
+from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.errors import require_between
+from tribodyn.gear import Material, SpurPair
+from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Index, Mask
+
+#: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
+COORDINATES = (
+    "pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class GearData:
+    """The spur gears behind a mesh table; tables of other programs have none."""
+
+    pair: SpurPair  #: both gears in their working position
+
+    @property
+    def direction(self) -> Array:
+        """Change of the compression with each of the :data:`COORDINATES` [1 or m]."""
+        sign = 1.0 if self.pair.driver == "pinion" else -1.0
+        radii = (self.pair.pinion.base_radius, self.pair.wheel.base_radius)
+        return np.asarray(sign * np.array([0.0, 1.0, radii[0], 0.0, -1.0, -radii[1]]))
+
+    @property
+    def pitch_point_age(self) -> float | None:
+        """Mesh cycles from entry to pitch point; None where that is outside of the contact."""
+        contact = path_of_contact(self.pair)
+        age = contact.direction * (contact.C - contact.A) / self.pair.base_pitch
+        return float(age) if 0.0 <= age < contact.contact_ratio else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,3 +97,207 @@ def mesh_cycle(pair: SpurPair, steps: int) -> MeshCycle:
     # Advance from the middle of the segment, so that both of its ends keep its pairs.
     path = middle + contact.direction * pair.base_pitch * (grid.phase - grid.middle)[:, None]
     return MeshCycle(contact, grid, path, in_contact)
+
+
+@dataclass(frozen=True, eq=False)
+class PairsInContact:
+    """Pairs in contact without their load, as arrays of one shape."""
+
+    age: Array  #: mesh cycles since the pair entered contact
+    equivalent_radius: Array  #: reduced radius of curvature [m]
+    entrainment_speed: Array  #: HALF the sum of the surface speeds [m/s]
+    lubricant: Lubricant  #: oil at working temperature
+    effective_modulus: float  #: ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2`` [Pa]
+    common_face_width: float  #: length of the contact line [m]
+
+    def some(self, index: Index) -> PairsInContact:
+        """A part of these contacts."""
+        return replace(
+            self,
+            age=self.age[index],
+            equivalent_radius=self.equivalent_radius[index],
+            entrainment_speed=self.entrainment_speed[index],
+        )
+
+    def joined(self, others: PairsInContact) -> PairsInContact:
+        """These contacts and others of the same pair."""
+        return replace(
+            self,
+            age=np.concatenate([self.age, others.age]),
+            equivalent_radius=np.concatenate([self.equivalent_radius, others.equivalent_radius]),
+            entrainment_speed=np.concatenate([self.entrainment_speed, others.entrainment_speed]),
+        )
+
+    def films(self, model: str, load_per_width: Array, **options: Any) -> Films:
+        """Films of every one of these contacts."""
+        return FILM_MODELS[model].films(
+            load_per_width,
+            self.equivalent_radius,
+            self.entrainment_speed,
+            self.lubricant,
+            self.effective_modulus,
+            length=self.common_face_width,
+            **options,
+        )
+
+    def scales(self, load_per_width: Array) -> dict[str, Array]:
+        """Estimates of the films, right in every regime but for a factor that is smooth."""
+        arguments = (
+            load_per_width, self.equivalent_radius, self.entrainment_speed,
+            self.lubricant.dynamic_viscosity, self.lubricant.pressure_viscosity_coefficient,
+            self.effective_modulus,
+        )  # fmt: skip
+        film = moes_central(*arguments)
+        hertz = hertz_line(load_per_width, self.equivalent_radius, self.effective_modulus)
+        return {
+            "central_film": film,
+            "minimum_film": film,
+            "film_pressure": hertz.maximum_pressure,
+            "film_stiffness": self.common_face_width * load_per_width / film,
+        }
+
+
+def pairs_in_contact(
+    cycle: MeshCycle, motion: Kinematics, lubricant: Lubricant, material: Material
+) -> PairsInContact:
+    """Gather what the films of the touching pairs depend on, their loads excepted."""
+    return PairsInContact(
+        age=cycle.age,
+        equivalent_radius=motion.equivalent_radius,
+        entrainment_speed=motion.entrainment_speed,
+        lubricant=lubricant,
+        effective_modulus=effective_modulus(material, material),
+        common_face_width=cycle.contact.pair.common_face_width,
+    )
+
+
+#: Number of positions that can be asked for.
+LEAST, MOST = 8, 200
+#: A zone with fewer points is not worth a polynomial.
+_LEAST_IN_ZONE = 4
+#: Zones narrower than this are rounding [mesh cycles].
+_ROUNDING = 1e-9
+#: A bend this near to an edge is left to it [mesh cycles].
+_NARROW = 0.01
+#: Distance from the end of a zone that tells its two sides apart [mesh cycles].
+_SIDE = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class PathPositions:
+    """Positions of one tooth pair from its entry to its exit, counted in mesh cycles."""
+
+    edges: tuple[float, ...]  #: [mesh cycles]
+    counts: tuple[int, ...]  #: positions in each zone
+
+    @cached_property
+    def age(self) -> Array:
+        """Mesh cycles since the pair entered; an edge between two zones occurs twice."""
+        zones = zip(self.edges[:-1], self.edges[1:], self.counts, strict=True)
+        parts = [0.5 * (a + b) + 0.5 * (b - a) * lobatto_points(count) for a, b, count in zones]
+        for part, start, end in zip(parts, self.edges[:-1], self.edges[1:], strict=True):
+            part[0], part[-1] = start, end
+        return np.concatenate(parts)
+
+    @cached_property
+    def sided_age(self) -> Array:
+        """The same ages moved by a hair into their own zone, so that edges have two sides."""
+        first = np.repeat(self.edges[:-1], self.counts) + _SIDE
+        last = np.repeat(self.edges[1:], self.counts) - _SIDE
+        return np.asarray(np.clip(self.age, first, last))
+
+    @property
+    def zones(self) -> tuple[slice, ...]:
+        """Positions of each zone."""
+        stops = np.cumsum(self.counts)
+        return tuple(
+            slice(int(stop) - count, int(stop))
+            for stop, count in zip(stops, self.counts, strict=True)
+        )
+
+    @property
+    def zone(self) -> Index:
+        """Zone of each position."""
+        return np.repeat(np.arange(len(self.counts)), self.counts)
+
+    def zone_of(self, age: Array) -> Index:
+        """Find the zone of a pair."""
+        inner = np.array(self.edges[1:-1])
+        return np.asarray(np.searchsorted(inner, age, side="right"), dtype=np.int64)
+
+    def interpolate(self, values: Array, age: Array, zone: Index) -> Array:
+        """Evaluate the polynomial through the positions of a zone."""
+        found = np.zeros(age.shape + values.shape[1:])
+        for number, part in enumerate(self.zones):
+            here = zone == number
+            matrix = lobatto_polynomial(self.age[part], age[here])
+            found[here] = np.tensordot(matrix, values[part], axes=(1, 0))
+        return found
+
+
+def lobatto_points(count: int) -> Array:
+    """Gauss-Lobatto points of Chebyshev between -1 and 1, rising."""
+    return np.asarray(-np.cos(np.pi * np.arange(count) / (count - 1)))
+
+
+def lobatto_polynomial(knots: Array, at: Array) -> Array:
+    """Weights of the values at Gauss-Lobatto points in the polynomial through them.
+
+    Parameters
+    ----------
+    knots : array (count,)
+        Points of :func:`lobatto_points`, shifted and scaled.
+    at : array (m,)
+        Where the polynomial is evaluated.
+
+    Returns
+    -------
+    array (m, count)
+
+    Notes
+    -----
+    Source: barycentric formula, Berrut and Trefethen (2004).
+    """
+    weight = (-1.0) ** np.arange(knots.size)
+    weight[[0, -1]] *= 0.5
+    distance = at[:, None] - knots
+    hit = distance == 0.0
+    parts = weight / np.where(hit, 1.0, distance)
+    parts = np.where(hit.any(axis=1, keepdims=True), hit, parts)
+    return np.asarray(parts / parts.sum(axis=1, keepdims=True))
+
+
+def path_positions(
+    contact: PathOfContact, positions: int, bends: tuple[float, ...] = ()
+) -> PathPositions:
+    """Spread positions over the zones of the path of contact."""
+    require_between("positions", positions, LEAST, MOST)
+    ratio = contact.contact_ratio
+    found = [0.0, ratio]
+    for number in range(1, contact.pairs):
+        found += [float(number), ratio - number]
+    pitch_point = contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
+    found.append(pitch_point)
+    for number in range(contact.pairs):
+        wide = [number + bend for bend in bends]
+        found += [age for age in wide if np.min(np.abs(np.array(found) - age)) > _NARROW]
+    edges = [0.0]
+    for edge in sorted(edge for edge in found if 0.0 < edge <= ratio):
+        if edge - edges[-1] > _ROUNDING:
+            edges.append(edge)
+    edges[-1] = ratio
+    return PathPositions(tuple(edges), _shares(np.diff(edges), int(positions)))
+
+
+def _shares(lengths: Array, total: int) -> tuple[int, ...]:
+    """Whole numbers in proportion to the lengths, at least four each, by the largest remainder."""
+    free = np.maximum(total * lengths / lengths.sum(), _LEAST_IN_ZONE)
+    wide = free > _LEAST_IN_ZONE
+    room = total - _LEAST_IN_ZONE * int(np.sum(~wide))
+    if not np.any(wide) or room < _LEAST_IN_ZONE * int(np.sum(wide)):
+        return (_LEAST_IN_ZONE,) * lengths.size
+    wanted = np.where(wide, room * lengths / lengths[wide].sum(), _LEAST_IN_ZONE)
+    counts = np.maximum(np.floor(wanted), _LEAST_IN_ZONE).astype(int)
+    for index in np.argsort(counts - wanted)[: max(total - int(counts.sum()), 0)]:
+        counts[index] += 1
+    return tuple(int(count) for count in counts)

@@ -7,28 +7,27 @@ there. Where both differ, the two halves and their neighbours are looked at in t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tribodyn.mesh.positions import PathPositions
-from tribodyn.mesh.solved_places import (
-    GOOD,
-    PRESSURE,
-    PROMISED,
-    QUANTITIES,
-    RIGID,
-    STIFFNESS,
-    Memory,
-    Places,
-    between,
-    deviation,
-)
-from tribodyn.mesh.touching import Touching
+from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.mesh.cycle import PairsInContact, PathPositions, lobatto_polynomial
 from tribodyn.types import Array, Index, Mask
 
+#: What is interpolated, in this order; the last as compliance, which has no pole.
+QUANTITIES = ("central_film", "minimum_film", "film_pressure", "film_stiffness")
+PRESSURE, STIFFNESS = 2, 3
+ALL = (0, 1, 2, 3)
+#: Compliance over its estimate below which a film counts as rigid: its stiffness has a bound.
+RIGID = 1e-3
+#: Error of a value between the places above which more of them are solved, and what is promised.
+GOOD, PROMISED = 0.006, 0.02
+#: Difference of logarithms beyond which more is as bad.
+_FAR = 20.0
 #: Contacts that are solved beside the positions at most.
 MOST_ADDED = 800
 #: Ages nearer than this are one place [mesh cycles].
@@ -37,6 +36,135 @@ _SAME = 1e-8
 _NEARLY_RIGID, _SOARS = 5.0 * RIGID, 1.4
 #: Times that the contact with the greatest pressure or the least film is looked for anew.
 _EXTREMES = 6
+
+
+#: Solved films, one for each place.
+Solutions = NDArray[np.object_]
+
+
+class Places(NamedTuple):
+    """Solved contacts: the positions first, then those of the mesh table that were added."""
+
+    age: Array
+    zone: Index
+    equivalent_radius: Array
+    entrainment_speed: Array
+    load_per_width: Array
+    values: Array
+    peak_node: Index
+    peak_drop: Array
+    yielding: Mask  #: whether the stiffness of the film is taken from here too
+    solution: Solutions  #: of each of them
+
+    def joined(self, others: Places) -> Places:
+        """Both together."""
+        return Places(*(np.concatenate(pair, axis=-1) for pair in zip(self, others, strict=True)))
+
+
+@dataclass(eq=False)
+class Memory:
+    """What the solutions before have shown, so that the next ones begin with it."""
+
+    contacts: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    yielding: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    curves: dict[tuple[int, int], bool] = field(default_factory=dict)
+
+    def add(self, contacts: Index, yielding: Mask) -> None:
+        """Keep contacts, and whether the stiffness of their films is needed."""
+        self.contacts = np.concatenate([self.contacts, contacts])
+        self.yielding = np.concatenate([self.yielding, yielding])
+
+
+def places_of(
+    pairs: PairsInContact, zone: Index, load: Array, films: Films, yielding: Mask
+) -> Places:
+    """Solved films over their scales, as logarithms, and where their pressure is greatest."""
+    scales = pairs.scales(load)
+    values = [np.log(getattr(films, name) / scales[name]) for name in QUANTITIES[:STIFFNESS]]
+    # The compliance and not the stiffness, which has a pole where the compliance is zero.
+    values.append(scales["film_stiffness"] / np.asarray(films.film_stiffness))
+    peaks = [_peak(solution.pressure) for solution in films.solutions]
+    node, drop = np.array(peaks).reshape(-1, 2).T
+    solution = np.empty(zone.size, dtype=object)
+    solution[:] = films.solutions
+    nodes = node.astype(np.int64)
+    return Places(
+        pairs.age, zone, pairs.equivalent_radius, pairs.entrainment_speed, load, np.stack(values),
+        nodes, drop, yielding, solution,
+    )  # fmt: skip
+
+
+def _peak(pressure: Array) -> tuple[int, float]:
+    """Node of the greatest pressure, and how far it falls to its neighbours."""
+    node = int(np.clip(np.argmax(pressure), 1, pressure.size - 2))
+    before, most, after = pressure[node - 1 : node + 2]
+    return node, float((2.0 * most - before - after) / (2.0 * most))
+
+
+def between(
+    positions: PathPositions, memory: Memory, places: Places, age: Array, zone: Index
+) -> Array:
+    """Values (4, m) at other ages."""
+    count = positions.age.size
+    base = places.values[:, :count].T
+    found = positions.interpolate(base, age, zone).T
+    rest = places.values - positions.interpolate(base, places.age, places.zone).T
+    added = np.arange(places.age.size) >= count
+    for number, quantity in np.ndindex(len(positions.counts), len(QUANTITIES)):
+        here, near = zone == number, places.zone == number
+        if quantity == STIFFNESS:
+            # Where only the pressure was in doubt the stiffness is left as it was.
+            near &= ~added | places.yielding
+        if memory.curves.get((number, quantity), False):
+            found[quantity, here] = _curve(
+                places.age[near], places.values[quantity, near], age[here]
+            )
+        elif (near & added).any():
+            order = np.flatnonzero(near)[np.argsort(places.age[near])]
+            found[quantity, here] += np.interp(age[here], places.age[order], rest[quantity, order])
+    return found
+
+
+def _curve(knots: Array, values: Array, age: Array) -> Array:
+    """Monotone cubic through the places of a zone."""
+    from scipy.interpolate import PchipInterpolator
+
+    at, first = np.unique(knots, return_index=True)
+    return np.asarray(PchipInterpolator(at, values[first])(age))
+
+
+def joined_over_age(
+    positions: PathPositions, places: Places, values: Array, age: Array, zone: int, *, curve: bool
+) -> Array:
+    """Values (m, ...) of one zone at other ages, from those (places, ...) of all places in it."""
+    here = np.flatnonzero(places.zone == zone)
+    base, added = here[here < positions.age.size], here[here >= positions.age.size]
+    known = values[base - base[0]]
+    if not added.size:
+        return np.tensordot(_polynomial(positions, base, age), known, axes=(1, 0))
+    order = here[np.argsort(places.age[here], kind="stable")]
+    at, first = np.unique(places.age[order], return_index=True)
+    sorted_values = values[np.searchsorted(here, order[first])]
+    if curve:
+        return _curve(at, sorted_values, age)
+    smooth = np.tensordot(_polynomial(positions, base, at), known, axes=(1, 0))
+    rest = sorted_values - smooth
+    flat = rest.reshape(at.size, -1)
+    remainder = np.stack([np.interp(age, at, column) for column in flat.T], axis=1)
+    whole = np.tensordot(_polynomial(positions, base, age), known, axes=(1, 0))
+    return np.asarray(whole + remainder.reshape(age.size, *rest.shape[1:]))
+
+
+def _polynomial(positions: PathPositions, base: Index, age: Array) -> Array:
+    return lobatto_polynomial(positions.age[base], age)
+
+
+def deviation(expected: Array, solved: Array) -> Array:
+    """Relative error of each quantity (4, m); films that do not yield all count as rigid."""
+    error = np.abs(np.expm1(np.clip(expected - solved, -_FAR, _FAR)))
+    yielding, solved_yielding = (np.maximum(v[STIFFNESS], RIGID) for v in (expected, solved))
+    error[STIFFNESS] = np.abs(solved_yielding / yielding - 1.0)
+    return np.asarray(error)
 
 
 class PathLoads(NamedTuple):
@@ -62,7 +190,7 @@ class Refinement:
     """Solved places of one set of loads, to which contacts of the mesh table are added."""
 
     positions: PathPositions
-    touching: Touching  #: contacts of the mesh table
+    pairs: PairsInContact  #: contacts of the mesh table
     zone: Index  #: zone of each of them
     loads: PathLoads
     memory: Memory
@@ -74,7 +202,7 @@ class Refinement:
 
     def values(self, contacts: Index) -> Array:
         """Logarithms of the films over their scales, and the compliance over its own."""
-        age, zone = self.touching.age[contacts], self.zone[contacts]
+        age, zone = self.pairs.age[contacts], self.zone[contacts]
         return between(self.positions, self.memory, self.places, age, zone)
 
     def refine(self, quantities: tuple[int, ...]) -> None:
@@ -104,7 +232,7 @@ class Refinement:
     def solve_extremes(self) -> None:
         """Solve the contacts with the least films and the greatest pressure themselves."""
         every = np.arange(self.zone.size)
-        scales = self.touching.scales(self.loads.of_contacts)
+        scales = self.pairs.scales(self.loads.of_contacts)
         for _ in range(_EXTREMES):
             values = self.values(every)
             wanted = set()
@@ -125,7 +253,7 @@ class Refinement:
 
     def _is_solved(self, contact: int) -> bool:
         same_zone = self.places.zone == self.zone[contact]
-        near = np.abs(self.places.age - self.touching.age[contact]) < _SAME
+        near = np.abs(self.places.age - self.pairs.age[contact]) < _SAME
         return bool((same_zone & near).any())
 
     def _between_places(self) -> list[_Interval]:
@@ -137,7 +265,7 @@ class Refinement:
         return found
 
     def _inside(self, interval: _Interval) -> Index:
-        age = self.touching.age
+        age = self.pairs.age
         inside = (age > interval.start + _SAME) & (age < interval.end - _SAME)
         return np.flatnonzero(inside & self.loads.scored & (self.zone == interval.zone))
 
@@ -147,7 +275,7 @@ class Refinement:
         if not inside.size:
             return -1
         middle = 0.5 * (interval.start + interval.end)
-        return int(inside[np.argmin(np.abs(self.touching.age[inside] - middle))])
+        return int(inside[np.argmin(np.abs(self.pairs.age[inside] - middle))])
 
     def _choose_curves(self, contacts: Index, solved: Places, errors: Array) -> None:
         """Leave the polynomial of a zone where a curve through its positions is nearer."""
@@ -159,7 +287,7 @@ class Refinement:
                 if worst <= GOOD or known.get((int(zone), quantity), False):
                     continue
                 trial = with_curve(self.memory, int(zone), quantity)
-                age = self.touching.age[contacts[here]]
+                age = self.pairs.age[contacts[here]]
                 of_curve = between(
                     self.positions, trial, self.places, age, self.zone[contacts[here]]
                 )
@@ -186,7 +314,7 @@ class Refinement:
     ) -> list[_Interval]:
         found = []
         for number, (interval, contact) in enumerate(pairs):
-            age = float(self.touching.age[contact])
+            age = float(self.pairs.age[contact])
             for start, end in ((interval.start, age), (age, interval.end)):
                 half = _Interval(interval.zone, start, end, errors[:, number])
                 uneven = spikes and self._passes_nodes(half)

@@ -8,8 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.errors import InputError, Problem, require_between
-from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
-from tribodyn.mesh.monotone_phase import MonotonePhaseFunction
+from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction, PhaseGrid
 from tribodyn.types import Array
 
 #: Fall of the slope from one point to the next, relative to the largest, that is rounding.
@@ -252,18 +251,7 @@ class MeshForceLaw:
             If a force is negative.
         """
         require_between("force", force, 0.0, np.inf, "N")
-        place, stiffness = self.ramps(phase)
-        order = np.argsort(place, axis=-1)
-        place = np.take_along_axis(place, order, axis=-1)
-        total = np.take_along_axis(stiffness, order, axis=-1).cumsum(axis=-1)
-        risen = (total[..., :-1] * np.diff(place, axis=-1)).cumsum(axis=-1)
-        risen = np.concatenate((np.zeros((*risen.shape[:-1], 1)), risen), axis=-1)
-        wanted = np.asarray(force, dtype=float)[..., None]
-        # A convex law is the largest of its straight pieces, its inverse the smallest of theirs.
-        carries = total > _FAINT * total[..., -1:]
-        soft = np.where(carries, total, 1.0)
-        reached = np.where(carries, place + (wanted - risen) / soft, np.inf)
-        return np.asarray(reached.min(axis=-1))
+        return _inverse(*self.ramps(phase), np.asarray(force, dtype=float))
 
     @cached_property
     def lowest(self) -> int | None:
@@ -300,6 +288,27 @@ class MeshForceLaw:
             f"MeshForceLaw({self.knot_deflection.shape[1]} ramps, first touch at {low:.4g} to "
             f"{high:.4g} um)"
         )
+
+
+def _inverse(place: Array, stiffness: Array, force: Array) -> Array:
+    """Deflection at which ramps (..., m) carry a force."""
+    order = np.argsort(place, axis=-1)
+    place = np.take_along_axis(place, order, axis=-1)
+    total = np.take_along_axis(stiffness, order, axis=-1).cumsum(axis=-1)
+    risen = (total[..., :-1] * np.diff(place, axis=-1)).cumsum(axis=-1)
+    risen = np.concatenate((np.zeros((*risen.shape[:-1], 1)), risen), axis=-1)
+    # A convex law is the largest of its straight pieces, its inverse the smallest of theirs.
+    carries = total > _FAINT * total[..., -1:]
+    soft = np.where(carries, total, 1.0)
+    reached = np.where(carries, place + (force[..., None] - risen) / soft, np.inf)
+    return np.asarray(reached.min(axis=-1))
+
+
+def at_rest(place: Array, stiffness: Array, force: float) -> tuple[Array, Array]:
+    """Deflection [m] of ramps (n, m) under a force, and the slope there [N/m]."""
+    deflection = _inverse(place, stiffness, np.full(place.shape[0], force))
+    carries = place < deflection[:, None]
+    return deflection, np.asarray(np.where(carries, stiffness, 0.0).sum(axis=1))
 
 
 def _refuse(what: str, why: str) -> None:

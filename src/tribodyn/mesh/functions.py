@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -37,6 +40,14 @@ class MeshFunctions:
         Nominal load along the line of action [N].
     force_law : MeshForceLaw, optional
         Force over deflection at every phase.
+    direction : callable, optional
+        Change of the compression with the six coordinates of the pair (phases, 6); that of the
+        base radii where there is none.
+    friction : callable, optional
+        Generalized friction force over the normal force (phases, 6); that of the three sums where
+        there is none.
+    error : callable, optional
+        Transmission error without load, taken off the compression [m].
     """
 
     stiffness: Callable[[Array | float], Array]
@@ -48,6 +59,9 @@ class MeshFunctions:
     static_transmission_error: Callable[[Array | float], Array] | None = None
     total_normal_force: float | None = None
     force_law: MeshForceLaw | None = None
+    direction: Callable[[Array], Array] | None = None
+    friction: Callable[[Array], Array] | None = None
+    error: Callable[[Array], Array] | None = None
 
     def tangent_error(self, phase: Array | float) -> Array:
         """Error that makes the tangent stiffness deflect like the force law at the nominal load.
@@ -80,3 +94,164 @@ class MeshFunctions:
                 )
             )
         return np.asarray(static(phase) - self.total_normal_force / np.asarray(tangent(phase)))
+
+
+#: The sums of a mesh table that act on a structure, in this order.
+CHANNELS = ("friction_sum", "friction_moment_pinion", "friction_moment_wheel")
+#: Loads over the nominal load at which a mesh is looked at: dense where friction laws bend.
+LOADS = (0.04, 0.12, 0.27, 0.48, 0.74, 1.0, 1.3, 1.65, 2.05, 2.45, 2.8, 3.0)
+_TERMS = 7
+
+
+@dataclass(frozen=True, eq=False)
+class MeshFriction:
+    """Friction sums ``f(phase, N) = sum_k c_k(phase) x^k`` with ``x = min(N/load, limit)``.
+
+    Parameters
+    ----------
+    grid : PhaseGrid
+        Knots on the mesh phase, twice at each event.
+    coefficients : array (n, terms, 3)
+        Coefficients ``c_k`` of the sum of friction over normal force [1], and of its moments on
+        pinion and wheel over it [m].
+    load : float [N]
+        Nominal normal force of all pairs.
+    limit : float
+        Load over the nominal load above which friction over normal force stays [1].
+    fit_error : float
+        Largest distance of a friction force from its polynomial, over the largest one [1].
+    """
+
+    grid: PhaseGrid
+    coefficients: Array
+    load: float
+    limit: float
+    fit_error: float
+
+    def channel(self, name: str) -> PhaseFunction:
+        """Coefficients of one of the sums as a function of phase.
+
+        Parameters
+        ----------
+        name : str
+            One of ``CHANNELS``.
+
+        Returns
+        -------
+        PhaseFunction
+            Gives arrays whose last axis is the power of the load.
+        """
+        return PhaseFunction(self.grid, self.coefficients[:, :, CHANNELS.index(name)])
+
+    def value(self, name: str, phase: ArrayLike, normal_force: ArrayLike) -> Array:
+        """Friction sum at a phase under a load.
+
+        Parameters
+        ----------
+        name : str
+            One of ``CHANNELS``.
+        phase : float or array
+            Mesh phase.
+        normal_force : float or array [N]
+            Normal force of all pairs; of the same shape.
+
+        Returns
+        -------
+        array
+            Over the normal force; moments in m.
+        """
+        found = self.channel(name)(np.asarray(phase, dtype=float))
+        ratio = np.clip(np.abs(np.asarray(normal_force, dtype=float)) / self.load, 0.0, self.limit)
+        powers = ratio[..., None] ** np.arange(found.shape[-1])
+        return np.asarray((found * powers).sum(axis=-1))
+
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"MeshFriction(loads to {self.limit:g} times {self.load:.5g} N, "
+            f"fitted within {100.0 * self.fit_error:.2g} %)"
+        )
+
+
+def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFriction:
+    """Join the friction of one mesh at several loads.
+
+    Parameters
+    ----------
+    tables : sequence of MeshColumns
+        The same mesh at the same speed under different torques, on one phase grid.
+    nominal : MeshColumns
+        The one at the nominal torque.
+
+    Returns
+    -------
+    MeshFriction
+
+    Raises
+    ------
+    InputError
+        If there are too few loads, or the tables are not of the same mesh.
+
+    Notes
+    -----
+    Least squares in the friction force, so that light loads, which rub little, count little. The
+    quotient of friction and normal force is a polynomial of the sixth degree in the load.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import Material, spur_pair
+    >>> from tribodyn.lubricant import Lubricant
+    >>> from tribodyn.mesh import build
+    >>> pair = spur_pair(pinion_teeth=17, wheel_teeth=22, normal_module=4e-3,
+    ...                  normal_pressure_angle=0.349, pinion_face_width=50e-3)
+    >>> settings = dict(material=Material(), stiffness_model="rectangular",
+    ...     stiffness_options={"pair_stiffness": 5e8}, lubricant=Lubricant(0.08, 880.0, 2e-8),
+    ...     friction_law="constant", friction_options={"coefficient": 0.05},
+    ...     composite_roughness=0.0, pinion_speed=100.0, steps=64)
+    >>> tables = [build(pair, pinion_torque=90.0 * x, **settings) for x in LOADS]
+    >>> found = mesh_friction(tables, tables[LOADS.index(1.0)])
+    >>> round(float(found.value("friction_sum", 0.6, 2.0 * found.load)), 12)
+    -0.05
+    """
+    ratio = np.array([table.total_normal_force for table in tables]) / nominal.total_normal_force
+    _check(tables, nominal, ratio)
+    sums = np.array([[getattr(table, name) for name in CHANNELS] for table in tables])
+    powers = ratio[:, None] ** np.arange(_TERMS)
+    by_force = np.linalg.lstsq(
+        ratio[:, None] * powers, ratio[:, None] * sums.reshape(ratio.size, -1), rcond=None
+    )[0]
+    apart = ratio[:, None] * (powers @ by_force - sums.reshape(ratio.size, -1))
+    force = ratio[:, None, None] * sums
+    largest = np.abs(force).max(axis=(0, 2))[None, :, None]
+    fit = np.abs(apart.reshape(force.shape)) / np.where(largest > 0.0, largest, 1.0)
+    return MeshFriction(
+        grid=nominal.grid,
+        coefficients=np.moveaxis(by_force.reshape(_TERMS, 3, -1), -1, 0),
+        load=nominal.total_normal_force,
+        limit=float(ratio.max()),
+        fit_error=float(fit.max()),
+    )
+
+
+def _check(tables: Sequence[MeshColumns], nominal: MeshColumns, ratio: Array) -> None:
+    if np.unique(ratio).size <= _TERMS:
+        raise InputError(
+            Problem(
+                what=f"{np.unique(ratio).size} different loads",
+                where="argument tables",
+                why=f"A polynomial with {_TERMS} terms goes through more than {_TERMS} loads",
+                remedy="Build the mesh at the loads in tribodyn.mesh.LOADS",
+            )
+        )
+    require_between("load over the nominal load", ratio, 0.0, np.inf, "")
+    for number, table in enumerate(tables):
+        same = np.array_equal(table.phase, nominal.phase)
+        if not (same and np.isclose(table.pinion_speed, nominal.pinion_speed)):
+            raise InputError(
+                Problem(
+                    what=f"table {number} is of another mesh or another speed",
+                    where="argument tables",
+                    why="Friction is joined over the load alone",
+                    remedy="Change nothing but pinion_torque between the tables",
+                )
+            )

@@ -2,90 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
-from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.solved_films import Films
-from tribodyn.errors import warn
+from tribodyn.errors import ComputationError, Problem, quiet, warn
 from tribodyn.friction import TribologicalContact
-from tribodyn.mesh.cycle import MeshCycle
-from tribodyn.mesh.film_refinement import PathLoads
-from tribodyn.mesh.path_film import FilmAt, PathFilm, SolvedPath, path_film
-from tribodyn.mesh.positions import MOST
-from tribodyn.mesh.series import FilmOf, in_series
-from tribodyn.mesh.solved_places import ALL, PROMISED, QUANTITIES
-from tribodyn.mesh.teeth import Carried, Teeth
-from tribodyn.mesh.touching import Touching
+from tribodyn.mesh.cycle import MeshCycle, PairsInContact
+from tribodyn.mesh.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
+from tribodyn.mesh.path_film import FilmAt, film_of
+from tribodyn.mesh.sharing import SharedLoad, Teeth
+from tribodyn.mesh.tooth_contact import ToothContact
 from tribodyn.progress import Progress
-from tribodyn.types import Array
-
-#: Kinds of film stiffness that are springs; the printed sum of one source has the unit of a length.
-IN_SERIES = ("tangent", "secant")
+from tribodyn.types import Array, Mask
 
 
 @dataclass(frozen=True, eq=False)
 class Loads:
     """Loads, stiffness and film of every tooth pair."""
 
-    carried: Carried  #: how the mesh carries its load, film included where it counts
-    tribological: Array  #: [N/m]
-    film_at: FilmAt  #: films of the touching pairs as a function of their loads per width
+    shared: SharedLoad  #: how the mesh carries its load, film included where it counts
+    load_per_width: Array  #: of the pairs in contact [N/m]
+    tribological: Array  #: the same, no less than a film needs [N/m]
+    film_at: FilmAt  #: films of the pairs in contact as a function of their loads per width
 
 
 def quasi_static_loads(
     cycle: MeshCycle,
     teeth: Teeth,
-    total_load: float,
-    touching: Touching,
+    pairs: PairsInContact,
+    settings: ToothContact,
     pinion_speed: float,
-    model: str,
-    options: Mapping[str, Any],
     progress: Progress,
 ) -> Loads:
     """Share the load among the pairs and find their films."""
-    least = teeth.least_share * total_load
+    film = film_of(settings, cycle, teeth, pairs, pinion_speed, progress)
 
-    def raised(loads: Array) -> Array:
-        return np.where(cycle.in_contact, np.maximum(loads, least), 0.0)
+    def solve(loads: Array, checked: tuple[int, ...]) -> FilmAt:
+        raised = np.maximum(loads, film.least_load)
+        return film.solve(np.where(cycle.in_contact, raised, 0.0), checked)
 
-    def of_formula(loads: Array, checked: tuple[int, ...]) -> FilmAt:
-        return lambda load: touching.films(model, np.maximum(load, least), **options)
-
-    def of_path(loads: Array, checked: tuple[int, ...]) -> FilmAt:
-        every = raised(loads)
-        at_places = np.maximum(along.load_of(cycle.grid, every), least)
-        of_contacts = every[cycle.in_contact]
-        path_loads = PathLoads(at_places, of_contacts, of_contacts > least)
-        return along.solve(path_loads, checked, progress)
-
-    film_of: FilmOf = of_formula
-    if FILM_MODELS[model].method:
-        along: PathFilm = path_film(
-            model, options, cycle.contact, pinion_speed, touching, cycle.side, teeth.bends
-        )
-        film_of = of_path
-    if options["stiffness"] in IN_SERIES:
-        carried, film_at = in_series(teeth, total_load, film_of, cycle.named)
+    if settings.film_in_series:
+        shared, film_at = in_series(teeth, solve, cycle.named)
     else:
-        carried = teeth.carried()
-        film_at = film_of(total_load * carried.share, ALL)
-    return Loads(carried, raised(total_load * carried.share)[cycle.in_contact], film_at)
+        shared = teeth.shared_load()
+        film_at = solve(teeth.load_per_width * shared.share, ALL)
+    load = teeth.load_per_width * shared.share[cycle.in_contact]
+    return Loads(shared, load, np.maximum(load, film.least_load), film_at)
 
 
-def reported_films(
-    films: Films, film_at: FilmAt, load_per_width: Array, least_load: float
-) -> Films:
+def reported_films(films: Films, loads: Loads, least_load: float) -> Films:
     """Leave out pairs that hardly touch, and what is not known well enough."""
-    touches = load_per_width > least_load
-    known = np.broadcast_to(touches, (len(QUANTITIES), touches.size)).copy()
-    if isinstance(film_at, SolvedPath):
-        known &= ~film_at.doubtful
-        _warn_of_doubt(film_at)
+    loads.film_at.warn_of_doubt()
+    known = (loads.load_per_width > least_load) & ~loads.film_at.doubtful
     columns: dict[str, Any] = {}
     for row, name in zip(known, QUANTITIES, strict=True):
         column = getattr(films, name)
@@ -93,29 +66,9 @@ def reported_films(
     return replace(films, **columns)
 
 
-def _warn_of_doubt(film: SolvedPath) -> None:
-    doubtful = film.doubtful & film.scored
-    count = int(doubtful.any(axis=0).sum())
-    if not count:
-        return
-    names = [
-        name.replace("_", " ") for name, row in zip(QUANTITIES, doubtful, strict=True) if row.any()
-    ]
-    positions = film.path.options["positions"]
-    more = f" More positions help: film.positions = {min(2 * positions, MOST)}."
-    warn(
-        "film-positions",
-        f"at {count} of {int(film.scored.sum())} contacts of the mesh cycle the {', '.join(names)} "
-        f"is not told, because it may be more than {100.0 * PROMISED:g} % from a solution there: "
-        f"it changes so much along the path of contact that {len(film.films.solutions)} solved "
-        f"contacts are too few.{more if positions < MOST else ''}",
-        stacklevel=5,
-    )
-
-
 def warn_of_rigid_films(film_at: FilmAt) -> None:
     """Say where a solved film has no tangent stiffness, because it does not fall with the load."""
-    share = film_at.rigid_share if isinstance(film_at, SolvedPath) else 0.0
+    share = film_at.rigid_share
     if share > 0.0:
         warn(
             "film-stiffness",
@@ -127,10 +80,10 @@ def warn_of_rigid_films(film_at: FilmAt) -> None:
 
 
 def tribological_contact(
-    motion: Kinematics, touching: Touching, load_per_width: Array, composite_roughness: float
+    motion: Kinematics, pairs: PairsInContact, load_per_width: Array, composite_roughness: float
 ) -> TribologicalContact:
     """Loaded contacts as the friction laws see them."""
-    hertz = hertz_line(load_per_width, motion.equivalent_radius, touching.effective_modulus)
+    hertz = hertz_line(load_per_width, motion.equivalent_radius, pairs.effective_modulus)
     return TribologicalContact(
         load_per_width=load_per_width,
         hertz_pressure=hertz.maximum_pressure,
@@ -138,6 +91,157 @@ def tribological_contact(
         entrainment_speed=motion.entrainment_speed,
         slide_to_roll_ratio=motion.slide_to_roll_ratio,
         equivalent_radius=motion.equivalent_radius,
-        dynamic_viscosity=touching.lubricant.dynamic_viscosity,
+        dynamic_viscosity=pairs.lubricant.dynamic_viscosity,
         composite_roughness=composite_roughness,
+    )
+
+
+#: Films of the loads given, with the quantities in which they are checked between the positions.
+SolveFilm = Callable[[Array, tuple[int, ...]], FilmAt]
+
+#: The film is solved anew until the load shares move by less than this.
+_TOLERANCE = 1e-6
+#: Where pairs are solved together one may be about to lose its load to its film: there it is this.
+_TOLERANCE_TOGETHER = 1e-5
+_PASSES = 60
+#: What is checked between the positions, first and whenever the shares have settled. At last the
+#: stiffness stays as it is, so that an end is reached where a pair is about to lose its load.
+_STAGES = ((STIFFNESS,), ALL, ALL, ALL[:STIFFNESS])
+#: Part of the last change to which the next shares settle.
+_ENOUGH = 1e-3
+#: Between two solutions the shares settle to this; each pass gains one digit or two, and after
+#: every few of them the limit is extrapolated.
+_SETTLED = 1e-13
+#: Pairs that are solved together are solved to this.
+_SETTLED_TOGETHER = 1e-9
+_STEPS = 300
+#: Steps that tell a slope, and bounds of that slope: 1 is a share that does not act on itself.
+_TOLD, _FALLS, _FALLS_OF_PASSES = 1e-11, (0.2, 50.0), (0.4, 3.0)
+_ROUND = 4
+#: Change of the steps, relative to them, without which nothing can be extrapolated.
+_BENT = 1e-3
+#: Load share below which a pair has lost its load to a film that is softer than its teeth.
+_LOST = 1e-9
+
+
+def in_series(
+    teeth: Teeth,
+    solve: SolveFilm,
+    where: Callable[[int, int], str],
+) -> tuple[SharedLoad, FilmAt]:
+    """Put the film of each pair in series with its teeth, at the load share that follows."""
+    tolerance = _TOLERANCE_TOGETHER if teeth.coupled else _TOLERANCE
+    share, stages = teeth.shared_load().share, list(_STAGES)
+    checked, change = stages.pop(0), 1.0
+    before, step, slope = share, np.zeros(share.shape), np.ones(share.shape)
+    for _ in range(_PASSES):
+        film_at = solve(teeth.load_per_width * share, checked)
+        enough = _ENOUGH * min(change, 1.0)
+        shared = _settle(teeth, film_at, share, where, enough)
+        earlier, step = step, shared.share - share
+        change = float(np.max(np.abs(step)))
+        if change < tolerance and PRESSURE in checked:
+            return shared, film_at
+        checked = stages.pop(0) if change < tolerance and stages else ()
+        slope = _secant(share - before, step - earlier, slope, _FALLS_OF_PASSES)
+        before, share = share, np.clip(share + step / slope, 0.0, 1.0)
+    raise _unsettled(f"the load share still moves by {change:.2g} after {_PASSES} solutions")
+
+
+def _settle(
+    teeth: Teeth,
+    film_at: FilmAt,
+    share: Array,
+    where: Callable[[int, int], str],
+    enough: float,
+) -> SharedLoad:
+    """Find the fixed point of share and stiffness with the films as a function of their load."""
+    if teeth.coupled:
+        return _settle_together(teeth, film_at, share, where, enough)
+    earlier = [share]
+    loaded = teeth.in_contact & (share > _LOST)
+    for _ in range(_STEPS):
+        shared = teeth.shared_load(
+            _film_stiffness(teeth.in_contact, teeth.load_per_width * share, film_at)
+        )
+        share = shared.share
+        change = np.abs(share - earlier[-1])
+        if change.max() < _SETTLED:
+            return shared
+        lost = loaded & (share < _LOST)
+        if lost.any():
+            row, pair = np.argwhere(lost)[0]
+            raise _unsettled(f"{where(row, pair)} loses its whole load to its film")
+        earlier.append(share)
+        if len(earlier) == _ROUND:
+            share = _extrapolated(earlier, teeth.in_contact)
+            earlier = [share]
+    raise _still_moving(change, where)
+
+
+def _settle_together(
+    teeth: Teeth,
+    film_at: FilmAt,
+    share: Array,
+    where: Callable[[int, int], str],
+    enough: float,
+) -> SharedLoad:
+    """The same for pairs solved together; a share that swings to and fro is slowed down."""
+    least = teeth.least_share * teeth.load_per_width
+    before, step = share, np.zeros(share.shape)
+    slope = np.ones(share.shape)
+    for _ in range(_STEPS):
+        load = np.maximum(teeth.load_per_width * share, least)
+        shared = teeth.shared_load(_film_stiffness(teeth.in_contact, load, film_at))
+        earlier, step = step, shared.share - share
+        if np.abs(step).max() < max(enough, _SETTLED_TOGETHER):
+            return shared
+        slope = _secant(share - before, step - earlier, slope, _FALLS)
+        before, share = share, np.clip(share + step / slope, 0.0, 1.0)
+    raise _still_moving(np.abs(step), where)
+
+
+def _secant(moved: Array, change: Array, slope: Array, bounds: tuple[float, float]) -> Array:
+    """Fall of the step over the share, within bounds that neither stop it nor let it jump."""
+    told = np.abs(moved) > _TOLD
+    fall = -change / np.where(told, moved, 1.0)
+    return np.where(told, np.clip(fall, *bounds), slope)
+
+
+def _still_moving(change: Array, where: Callable[[int, int], str]) -> ComputationError:
+    row, pair = np.unravel_index(int(np.argmax(change)), change.shape)
+    return _unsettled(
+        f"the load share of {where(int(row), int(pair))} still moves by {change.max():.2g} after "
+        f"{_STEPS} steps"
+    )
+
+
+def _film_stiffness(in_contact: Mask, load_per_width: Array, film_at: FilmAt) -> Array:
+    """Stiffness of the films, zero where the pair is not in contact."""
+    with quiet():
+        # What a formula has to say, it says of the load share that is found.
+        film = film_at(load_per_width[in_contact]).film_stiffness
+    stiffness = np.zeros(load_per_width.shape)
+    stiffness[in_contact] = np.asarray(film)
+    return stiffness
+
+
+def _extrapolated(earlier: list[Array], in_contact: Mask) -> Array:
+    """Limit of the last three shares by the rule of Aitken, where it lies nearby."""
+    first, second, third = earlier[-3:]
+    step, bend = third - second, third - 2.0 * second + first
+    safe = np.where(np.abs(bend) > _BENT * np.abs(step), bend, 1.0)
+    limit = np.where(np.abs(bend) > _BENT * np.abs(step), third - step * step / safe, third)
+    limit = np.where(in_contact & (limit > 0.5 * third), limit, third)
+    return np.asarray(limit * (third.sum(axis=1) / limit.sum(axis=1))[:, None])
+
+
+def _unsettled(what: str) -> ComputationError:
+    return ComputationError(
+        Problem(
+            what=what,
+            where="film stiffness in series with the teeth",
+            why="The film of a lightly loaded pair is softer than its teeth",
+            remedy='Give more torque, or set film.stiffness = "none"',
+        )
     )

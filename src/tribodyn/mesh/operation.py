@@ -14,10 +14,10 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.film import as_columns
-from tribodyn.mesh.film_places import film_places
-from tribodyn.mesh.positions import PathPositions, path_positions
-from tribodyn.mesh.teeth import LEAST_SHARE, teeth_of
+from tribodyn.mesh.cycle import PathPositions, path_positions
+from tribodyn.mesh.film import as_columns, film_places
+from tribodyn.mesh.sharing import LEAST_SHARE, teeth_of
+from tribodyn.mesh.tooth_contact import ToothContact
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, quantity, record
@@ -169,7 +169,13 @@ def film_over_operation(
     contact = path_of_contact(pair)
     places = path_positions(contact, options.get("positions", _POSITIONS))
     path = contact.A + contact.direction * places.age * pair.base_pitch
-    share = _shares(pair, material, places, torque, stiffness_model, stiffness_options)
+    settings = ToothContact(
+        material=material,
+        lubricant=lubricant,
+        stiffness_model=stiffness_model,
+        stiffness_options=stiffness_options,
+    )
+    share = _shares(pair, settings, places, torque)
     total_load = torque / (pair.pinion.base_radius * pair.common_face_width)
     # A pair that its relief keeps apart has no film; the solver is given a little load instead.
     load = total_load[:, None] * np.maximum(share, LEAST_SHARE)
@@ -226,14 +232,7 @@ def _roll_angle(pair: SpurPair, motion: Kinematics) -> Array:
     return np.asarray(radius / pair.driving.base_radius)
 
 
-def _shares(
-    pair: SpurPair,
-    material: Material,
-    places: PathPositions,
-    torque: Array,
-    model: str,
-    options: Mapping[str, Any],
-) -> Array:
+def _shares(pair: SpurPair, settings: ToothContact, places: PathPositions, torque: Array) -> Array:
     """Load share of the pair at each position for each torque (torques, positions)."""
     contact, age = path_of_contact(pair), places.sided_age
     number = np.floor(age).astype(int)
@@ -241,7 +240,7 @@ def _shares(
     path, in_contact = contact.pair_paths(phase)
     found = []
     for force in torque / pair.pinion.base_radius:
-        teeth = teeth_of(contact, (phase, path, in_contact), material, force, model, options)
-        share = teeth.carried().share[np.arange(age.size), number]
+        teeth = teeth_of(contact, (phase, path, in_contact), settings, force)
+        share = teeth.shared_load().share[np.arange(age.size), number]
         found.append(share)
     return np.array(found)

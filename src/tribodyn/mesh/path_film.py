@@ -8,76 +8,147 @@ formula follows every change of load, radius and speed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 
-from tribodyn.contact import PathOfContact
+from tribodyn.contact import Kinematics, hertz_line
+from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.solved_films import Films
-from tribodyn.errors import quiet
-from tribodyn.mesh.film_places import film_places
-from tribodyn.mesh.film_refinement import PathLoads, Refinement
-from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
-from tribodyn.mesh.positions import PathPositions, path_positions
-from tribodyn.mesh.solved_places import (
+from tribodyn.ehl.traction.film_state import FilmState
+from tribodyn.errors import quiet, warn
+from tribodyn.friction import LAWS, TribologicalContact
+from tribodyn.mesh.cycle import (
+    MOST,
+    MeshCycle,
+    PairsInContact,
+    PathPositions,
+    lobatto_points,
+    lobatto_polynomial,
+    path_positions,
+)
+from tribodyn.mesh.film import film_places
+from tribodyn.mesh.film_refinement import (
     PRESSURE,
+    PROMISED,
+    QUANTITIES,
     RIGID,
     STIFFNESS,
     Memory,
+    PathLoads,
     Places,
+    Refinement,
+    joined_over_age,
     places_of,
 )
-from tribodyn.mesh.touching import Touching
-from tribodyn.progress import SILENT, Progress
+from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
+from tribodyn.mesh.sharing import Teeth
+from tribodyn.mesh.tooth_contact import ToothContact
+from tribodyn.progress import Progress
 from tribodyn.types import Array, Index, Mask
-
-#: Films of all touching pairs under the loads per width given.
-FilmAt = Callable[[Array], Films]
 
 #: Distance from an event that tells its two sides apart [mesh cycles].
 _BESIDE = 1e-9
+#: Sliding speed up to which friction is about linear in it, for any oil under pressure [m/s].
+_SLOW = 1e-4
+#: Samples for each unit of asinh(v/_SLOW), and the least number of them.
+_DENSITY, _LEAST = 4.0, 8
+#: Sliding speed over entrainment speed, below the 2 at which one surface stands still.
+_MOST_SLIDING = 1.99
+
+
+class FilmAt(Protocol):
+    """Films of all pairs in contact as a function of their loads per width."""
+
+    def __call__(self, load_per_width: Array) -> Films:
+        """Films under these loads."""
+
+    @property
+    def rigid_share(self) -> float:
+        """Part of the contacts whose film does not fall with the load."""
+
+    @property
+    def doubtful(self) -> Mask:
+        """Quantities (4, contacts or 1) that may be further from a solution than promised."""
+
+    def warn_of_doubt(self) -> None:
+        """Say where quantities are in doubt."""
+
+    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
+        """Friction coefficient of every pair in contact."""
+
+
+@dataclass(frozen=True, eq=False)
+class FormulaFilm:
+    """The film by a formula, which needs no solution."""
+
+    settings: ToothContact
+    pairs: PairsInContact
+    least_load: float  #: load for which the film of a pair is found at least [N/m]
+
+    rigid_share = 0.0
+    doubtful = np.zeros((len(QUANTITIES), 1), dtype=bool)
+
+    def solve(self, loads: Array, checked: tuple[int, ...] = ()) -> FilmAt:
+        """Answer with itself: nothing has to be solved."""
+        return self
+
+    def __call__(self, load_per_width: Array) -> Films:
+        """Films of all contacts of the mesh table."""
+        load = np.maximum(load_per_width, self.least_load)
+        return self.pairs.films(self.settings.film_model, load, **self.settings.film)
+
+    def warn_of_doubt(self) -> None:
+        """Say nothing: a formula is what it is."""
+
+    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
+        """Ask the friction law."""
+        law, options = self.settings.friction_law, self.settings.friction_options
+        return LAWS[law](contact, **options)
 
 
 @dataclass(frozen=True, eq=False)
 class PathFilm:
     """A solved film along the path of contact, as a function of the load of every contact."""
 
-    model: str  #: name of the model in ``tribodyn.ehl.FILM_MODELS``
-    options: Mapping[str, Any]  #: options of the model, with its defaults
+    settings: ToothContact
+    grid: PhaseGrid
+    in_contact: Mask
+    least_load: float  #: load for which the film of a pair is found at least [N/m]
+    progress: Progress
     places: PathPositions  #: positions at which the film is solved
     first_angle: float  #: roll angle of the driving gear where a pair enters [rad]
     angle_per_cycle: float  #: and its change over a mesh cycle [rad]
-    solved: Touching  #: the pair at these positions
-    touching: Touching  #: contacts of the mesh table
+    solved: PairsInContact  #: the pair at these positions
+    pairs: PairsInContact  #: contacts of the mesh table
     zone: Index  #: zone of each contact of the mesh table
     memory: Memory = field(default_factory=Memory)
 
-    def load_of(self, grid: PhaseGrid, load_per_width: Array) -> Array:
+    def _loads(self, load_per_width: Array) -> PathLoads:
         """Read the loads at the positions from those of a mesh table."""
-        age = self.places.sided_age
-        at = PhaseFunction(grid, load_per_width)(age)
-        return np.asarray(at[np.arange(age.size), np.floor(age).astype(int)])
+        age, least = self.places.sided_age, self.least_load
+        over_age = PhaseFunction(self.grid, load_per_width)(age)
+        at_places = over_age[np.arange(age.size), np.floor(age).astype(int)]
+        of_contacts = load_per_width[self.in_contact]
+        return PathLoads(np.maximum(at_places, least), of_contacts, of_contacts > least)
 
-    def solve(
-        self, loads: PathLoads, checked: tuple[int, ...] = (), progress: Progress = SILENT
-    ) -> SolvedPath:
+    def solve(self, load_per_width: Array, checked: tuple[int, ...] = ()) -> FilmAt:
         """Solve the film at the positions, and beside them where checked quantities need it."""
+        loads = self._loads(load_per_width)
         count, known = self.places.age.size, self.memory
         # A pass that checks no pressure does without the places that only the pressure needs.
         again = known.contacts if PRESSURE in checked else known.contacts[known.yielding]
-        films, first = self._solve(
-            self.solved.joined(self.touching.some(again)),
+        first = self._solve(
+            self.solved.joined(self.pairs.some(again)),
             np.concatenate([self.places.zone, self.zone[again]]),
             np.concatenate([loads.at_positions, loads.of_contacts[again]]),
-            progress,
         )
         yielding = known.yielding if PRESSURE in checked else np.ones(again.size, dtype=bool)
         first.yielding[count:] = yielding
         refinement = Refinement(
-            self.places, self.touching, self.zone, loads, known, first,
-            lambda new: self._solve_more(new, loads, progress),
+            self.places, self.pairs, self.zone, loads, known, first,
+            lambda new: self._solve_more(new, loads),
         )  # fmt: skip
         if checked:
             refinement.refine(checked)
@@ -86,27 +157,26 @@ class PathFilm:
         values = refinement.values(np.arange(self.zone.size))
         return SolvedPath(
             path=self,
-            load_per_width=loads.at_positions,
-            films=films,
+            places=refinement.places,
             factors=np.exp(values[:STIFFNESS]),
             yielding=values[STIFFNESS],
             doubtful=refinement.doubtful,
             scored=loads.scored,
         )
 
-    def _solve_more(self, contacts: Index, loads: PathLoads, progress: Progress) -> Places:
-        touching, zone = self.touching.some(contacts), self.zone[contacts]
+    def _solve_more(self, contacts: Index, loads: PathLoads) -> Places:
+        pairs, zone = self.pairs.some(contacts), self.zone[contacts]
         with quiet("seed-film-stiffness"):
             # The positions have said it already.
-            return self._solve(touching, zone, loads.of_contacts[contacts], progress)[1]
+            return self._solve(pairs, zone, loads.of_contacts[contacts])
 
-    def _solve(
-        self, touching: Touching, zone: Index, loads: Array, progress: Progress
-    ) -> tuple[Films, Places]:
-        angles = self.first_angle + self.angle_per_cycle * touching.age
+    def _solve(self, pairs: PairsInContact, zone: Index, loads: Array) -> Places:
+        angles = self.first_angle + self.angle_per_cycle * pairs.age
         with film_places(lambda index: f"at the roll angle {angles[index]:.4f} rad"):
-            films = touching.films(self.model, loads, **self.options, progress=progress)
-        return films, places_of(touching, zone, loads, films, np.ones(zone.size, dtype=bool))
+            films = pairs.films(
+                self.settings.film_model, loads, **self.settings.film, progress=self.progress
+            )
+        return places_of(pairs, zone, loads, films, np.ones(zone.size, dtype=bool))
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,8 +184,7 @@ class SolvedPath:
     """Films solved along the path of contact; called with loads it gives those of all contacts."""
 
     path: PathFilm  #: positions and contacts
-    load_per_width: Array  #: load at each position [N/m]
-    films: Films  #: films at the positions, then at contacts that were added
+    places: Places  #: solved contacts: the positions first, then those that were added
     factors: Array
     yielding: Array  #: compliance of their films over its scale
     doubtful: Mask  #: quantities (4, contacts) that may be further from a solution than promised
@@ -128,27 +197,57 @@ class SolvedPath:
 
     def __call__(self, load_per_width: Array) -> Films:
         """Films of all contacts of the mesh table."""
-        *scales, stiffness = self.path.touching.scales(load_per_width).values()
+        *scales, stiffness = self.path.pairs.scales(load_per_width).values()
         central, minimum, pressure = np.stack(scales) * self.factors
         film_stiffness = stiffness / np.maximum(self.yielding, RIGID)
         return Films(central, minimum, pressure, film_stiffness)
 
+    def warn_of_doubt(self) -> None:
+        """Say at how many contacts which quantities are not told."""
+        doubtful = self.doubtful & self.scored
+        count = int(doubtful.any(axis=0).sum())
+        if not count:
+            return
+        rows = zip(QUANTITIES, doubtful, strict=True)
+        names = [name.replace("_", " ") for name, row in rows if row.any()]
+        positions = self.path.settings.film["positions"]
+        more = f" More positions help: film.positions = {min(2 * positions, MOST)}."
+        warn(
+            "film-positions",
+            f"at {count} of {int(self.scored.sum())} contacts of the mesh cycle the "
+            f"{', '.join(names)} is not told, because it may be more than {100.0 * PROMISED:g} % "
+            "from a solution there: it changes so much along the path of contact that "
+            f"{self.places.age.size} solved contacts are too few."
+            f"{more if positions < MOST else ''}",
+            stacklevel=6,
+        )
 
-def path_film(
-    model: str,
-    options: Mapping[str, Any],
-    contact: PathOfContact,
+    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
+        """Friction of every pair; a law that shears the film knows it at solved places first."""
+        settings = self.path.settings
+        if LAWS[settings.friction_law].needs_film:
+            return film_friction(self, motion)
+        return LAWS[settings.friction_law](contact, **settings.friction_options)
+
+
+def film_of(
+    settings: ToothContact,
+    cycle: MeshCycle,
+    teeth: Teeth,
+    pairs: PairsInContact,
     pinion_speed: float,
-    touching: Touching,
-    side: Array,
-    bends: tuple[float, ...] = (),
-) -> PathFilm:
-    """Choose the positions at which a solved film is computed."""
-    places = path_positions(contact, options["positions"], bends)
+    progress: Progress,
+) -> FormulaFilm | PathFilm:
+    """Film of the settings: a formula, or solutions at positions along the path of contact."""
+    least_load = teeth.least_share * teeth.load_per_width
+    if not FILM_MODELS[settings.film_model].method:
+        return FormulaFilm(settings, pairs, least_load)
+    contact, side = cycle.contact, cycle.side
+    places = path_positions(contact, settings.film["positions"], teeth.bends)
     path = contact.A + contact.direction * places.age * contact.pair.base_pitch
     motion = contact.kinematics(path, pinion_speed)
     solved = replace(
-        touching,
+        pairs,
         age=places.age,
         equivalent_radius=motion.equivalent_radius,
         entrainment_speed=motion.entrainment_speed,
@@ -156,13 +255,70 @@ def path_film(
     radius = getattr(motion, f"{contact.pair.driver}_curvature_radius")
     angle = radius / contact.pair.driving.base_radius
     return PathFilm(
-        model=model,
-        options=options,
+        settings=settings,
+        grid=cycle.grid,
+        in_contact=cycle.in_contact,
+        least_load=least_load,
+        progress=progress,
         places=places,
         first_angle=float(angle[0]),
         angle_per_cycle=float((angle[-1] - angle[0]) / (places.age[-1] - places.age[0])),
         solved=solved,
-        touching=touching,
+        pairs=pairs,
         # On an event the side tells the zone; bends lie between the knots.
-        zone=places.zone_of(touching.age + np.clip(side - touching.age, -_BESIDE, _BESIDE)),
+        zone=places.zone_of(pairs.age + np.clip(side - pairs.age, -_BESIDE, _BESIDE)),
     )
+
+
+def film_friction(solved: SolvedPath, motion: Kinematics) -> Array:
+    """Friction of the film: asked at every solved place, for a range of sliding speeds.
+
+    A contact between two places takes its own sliding speed, so that the steep reversal at the
+    pitch point is followed although no place is near it. Over the path friction is joined as the
+    pressure is.
+    """
+    path, places = solved.path, solved.places
+    friction = np.zeros(path.zone.size)
+    for zone in range(len(path.places.counts)):
+        here = path.zone == zone
+        sliding = np.abs(motion.sliding_speed[here])
+        speeds = _speeds(sliding)
+        values = _asked(solved, np.flatnonzero(places.zone == zone), speeds)
+        over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
+        curve = path.memory.curves.get((zone, PRESSURE), False)
+        along = joined_over_age(
+            path.places, places, values, path.pairs.age[here], zone, curve=curve
+        )
+        friction[here] = np.einsum("ks,ks->k", along, over_speed)
+    return np.maximum(friction, 0.0)
+
+
+def _speeds(sliding: Array) -> Array:
+    """Sliding speeds of a zone [m/s], dense near zero, from its least to its greatest."""
+    ends = np.arcsinh(np.array([np.min(sliding), np.max(sliding)]) / _SLOW)
+    count = max(_LEAST, int(np.ceil(_DENSITY * (ends[1] - ends[0]))) + 1)
+    inner = ends.mean() + 0.5 * (ends[1] - ends[0]) * lobatto_points(count)
+    return np.asarray(_SLOW * np.sinh(inner))
+
+
+def _asked(solved: SolvedPath, chosen: Index, speeds: Array) -> Array:
+    """Friction coefficient (places, speeds) of some of the solved places."""
+    settings, places = solved.path.settings, solved.places
+    index, speed = np.repeat(chosen, speeds.size), np.tile(speeds, chosen.size)
+    load, radius = places.load_per_width[index], places.equivalent_radius[index]
+    entrainment = places.entrainment_speed[index]
+    speed = np.minimum(speed, _MOST_SLIDING * entrainment)
+    pairs = solved.path.pairs
+    contact = TribologicalContact(
+        load_per_width=load,
+        hertz_pressure=hertz_line(load, radius, pairs.effective_modulus).maximum_pressure,
+        sliding_speed=speed,
+        entrainment_speed=entrainment,
+        slide_to_roll_ratio=speed / entrainment,
+        equivalent_radius=radius,
+        dynamic_viscosity=pairs.lubricant.dynamic_viscosity,
+        composite_roughness=settings.composite_roughness,
+        film=FilmState.from_solutions(places.solution, index),
+    )
+    found = LAWS[settings.friction_law](contact, **settings.friction_options)
+    return np.asarray(found).reshape(chosen.size, speeds.size)

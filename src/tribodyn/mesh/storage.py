@@ -12,15 +12,19 @@ import numpy as np
 
 from tribodyn.errors import InputError, OutputExistsError, Problem, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
+from tribodyn.mesh.cycle import GearData
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
 
 _FORMAT = "tribodyn mesh table 3"
+#: A table without gears, which earlier versions cannot read.
+_FORMAT_WITHOUT_GEARS = "tribodyn mesh table 4"
 #: Tables of independent pairs, as they were written before; the first without a film in series.
 _EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
 #: Columns whose quantity has another name in the nomenclature.
@@ -40,13 +44,17 @@ def to_xarray(table: MeshTable) -> xarray.Dataset:
     import xarray
 
     variables: dict[str, Any] = {}
-    attributes: dict[str, Any] = {"format": _FORMAT, "gear_pair": _write_pair(table.gear_pair)}
+    attributes: dict[str, Any] = {"format": _FORMAT, "mesh_order": table.mesh_order}
+    if table.gears is None:
+        attributes["format"] = _FORMAT_WITHOUT_GEARS
+    else:
+        attributes["gear_pair"] = _write_pair(table.gears.pair)
     for field in fields(table):
         value = getattr(table, field.name)
+        if field.name == "direction" and table.gears is not None:
+            continue  # It follows from the gears.
         if isinstance(value, np.ndarray):
-            over = _OVER.get(field.name, "pair")
-            dimensions = ("knot", over)[: value.ndim]
-            variables[field.name] = (dimensions, value, _describe(field.name))
+            variables[field.name] = (_dimensions(field.name, value), value, _describe(field.name))
         elif isinstance(value, float | str):
             attributes[field.name] = value
     for name in _DERIVED:
@@ -57,6 +65,12 @@ def to_xarray(table: MeshTable) -> xarray.Dataset:
         "intervals": (("event",), np.array(table.grid.intervals)),
     }
     return xarray.Dataset(variables, coordinates, attributes)
+
+
+def _dimensions(name: str, values: Array) -> tuple[str, ...]:
+    if name == "direction":
+        return ("knot", "coordinate")[-values.ndim :]
+    return ("knot", _OVER.get(name, "pair"), "coordinate")[: values.ndim]
 
 
 def _describe(column: str) -> dict[str, str]:
@@ -78,6 +92,17 @@ def save(table: MeshTable, path: str | PathLike[str]) -> None:
     to_xarray(table).to_netcdf(Path(path), engine="h5netcdf")
 
 
+def is_mesh_table(path: Path) -> bool:
+    """Whether this library wrote a netCDF file."""
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf") as opened:
+            return str(opened.attrs.get("format", "")).startswith("tribodyn mesh table")
+    except (OSError, ValueError):
+        return False
+
+
 def load(path: str | PathLike[str]) -> MeshTable:
     """Read a mesh table from a netCDF file."""
     import xarray
@@ -87,19 +112,26 @@ def load(path: str | PathLike[str]) -> MeshTable:
             data = opened.load()
     except (OSError, ValueError) as error:
         raise _unreadable(path, str(error)) from error
-    if data.attrs.get("format") not in (_FORMAT, *_EARLIER):
+    if data.attrs.get("format") not in (_FORMAT, _FORMAT_WITHOUT_GEARS, *_EARLIER):
         raise _unreadable(path, f"its format is {data.attrs.get('format', 'not named')}")
     grid = PhaseGrid(
         tuple(float(value) for value in data["event_phase"].values),
         tuple(int(value) for value in data["intervals"].values),
     )
-    values: dict[str, Any] = {"grid": grid, "gear_pair": _read_pair(data.attrs["gear_pair"])}
+    values: dict[str, Any] = {"grid": grid, "gears": None}
+    if "gear_pair" in data.attrs:
+        gears = GearData(_read_pair(data.attrs["gear_pair"]))
+        values |= {
+            "gears": gears,
+            "direction": gears.direction,
+            "mesh_order": gears.pair.pinion.teeth,
+        }
     for field in fields(MeshTable):
         if field.name in data:
             values[field.name] = data[field.name].values
         elif field.name not in values:
             values[field.name] = _plain(data.attrs.get(field.name))
-    if data.attrs["format"] != _FORMAT:
+    if data.attrs["format"] in _EARLIER:
         values = _earlier(values)
     return MeshTable(**values)
 
@@ -107,7 +139,7 @@ def load(path: str | PathLike[str]) -> MeshTable:
 def _earlier(values: dict[str, Any]) -> dict[str, Any]:
     """Add what earlier tables did not have: their pairs were independent springs."""
     whole = values["stiffness"].sum(axis=1)
-    force = values["pinion_torque"] / values["gear_pair"].pinion.base_radius
+    force = values["pinion_torque"] / values["gears"].pair.pinion.base_radius
     new = {
         "tooth_stiffness": values["stiffness"],
         "film_stiffness_kind": "none",

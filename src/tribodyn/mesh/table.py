@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.contact import path_of_contact
 from tribodyn.drawing import draw
 from tribodyn.errors import InputError, Problem
 from tribodyn.mesh.columns import MeshColumns
@@ -121,10 +120,9 @@ class MeshTable(MeshColumns):
             leaves at the same time, the value after that; ``None`` where the pitch point is
             outside of the contact, or there is no such column in this table.
         """
-        contact = path_of_contact(self.gear_pair)
-        age = contact.direction * (contact.C - contact.A) / self.gear_pair.base_pitch
+        age = None if self.gears is None else self.gears.pitch_point_age
         values = getattr(self, column, None)
-        if values is None or not 0.0 <= age < contact.contact_ratio:
+        if values is None or age is None:
             return None
         # The event that is nearest: its phase and this one may differ by rounding.
         phases = np.array(self.event_phases)
@@ -156,7 +154,17 @@ class MeshTable(MeshColumns):
             static_transmission_error=PhaseFunction(self.grid, self.static_transmission_error),
             total_normal_force=self.total_normal_force,
             force_law=self.force_law,
+            **self._foreign_functions(),
         )
+
+    def _foreign_functions(self) -> dict[str, PhaseFunction]:
+        """Directions and error of their own, which tables of other programs may have."""
+        columns = {
+            "direction": self.direction if self.direction.ndim == 2 else None,
+            "friction": None if self.friction_direction is None else self.friction,
+            "error": self.unloaded_transmission_error,
+        }
+        return {n: PhaseFunction(self.grid, c) for n, c in columns.items() if c is not None}
 
     @property
     def force_law(self) -> MeshForceLaw:
@@ -191,6 +199,25 @@ class MeshTable(MeshColumns):
         from tribodyn.mesh.storage import save
 
         save(self, path)
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write the columns of the force law, of friction and of the contacts as text.
+
+        A case with ``gears.kind = "table"`` runs such a file.
+
+        Parameters
+        ----------
+        path : str or path
+            File to write; an existing one is an error.
+
+        Raises
+        ------
+        OutputExistsError
+            If the file exists.
+        """
+        from tribodyn.mesh.table_file import write_csv
+
+        write_csv(self, path)
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> MeshTable:
@@ -251,10 +278,15 @@ class MeshTable(MeshColumns):
         """
         return draw(self, "film_stiffness")
 
+    def _contacts(self) -> str:
+        if self.gears is None:
+            return f"{self.stiffness.shape[1]} contacts"
+        return f"contact ratio {self.transverse_contact_ratio:.4f}"
+
     def __repr__(self) -> str:
         """One line with the figures that tell tables apart."""
         return (
-            f"MeshTable(contact ratio {self.transverse_contact_ratio:.4f}, "
+            f"MeshTable({self._contacts()}, "
             f"mesh frequency {self.mesh_frequency:.4g} Hz, "
             f"mean stiffness {self.mean_mesh_stiffness:.4g} N/m, "
             f"mean friction coefficient {self.mean_friction_coefficient:.4g})"

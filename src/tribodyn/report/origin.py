@@ -24,17 +24,21 @@ def _shown(name: str, value: float) -> str:
     return f"{float(displayed(name, value)):.5g} {display_unit(name)}"
 
 
+def _stiffness(case: Any) -> str:
+    return f"table {case.gears.table}" if case.gears.kind == "table" else str(case.stiffness.model)
+
+
 def operating_point(case: Any) -> list[tuple[str, str]]:
     """Speed, load, surfaces, oil and models of a case, ready to be printed."""
-    pair, operation = case.gear_pair, case.operation
+    gears, operation = case.gears, case.operation
     point = [
-        ("Teeth", f"{pair.pinion.teeth} : {pair.wheel.teeth}"),
+        ("Teeth", f"{gears.pinion.teeth} : {gears.wheel.teeth}"),
         ("Speed", f"{_shown('speed', operation.speed)} ({operation.speed_of})"),
         ("Torque", f"{_shown('torque', operation.torque)} ({operation.speed_of})"),
-        ("Driver", pair.driver),
+        ("Driver", gears.driver),
         ("Film model", case.film.model),
         ("Friction law", case.friction.law),
-        ("Stiffness model", case.stiffness.model),
+        ("Stiffness model", _stiffness(case)),
         ("Structure", case.dynamics.model),
         ("Method", case.solver.method),
     ]

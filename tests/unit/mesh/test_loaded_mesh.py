@@ -11,7 +11,7 @@ from known_pairs import pair_of, standard, type_c
 from tribodyn.gear import FlankModification, Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, build
-from tribodyn.mesh.force_ramps import LARGEST_ERROR, LARGEST_GRADUAL_ERROR
+from tribodyn.mesh.sharing import LARGEST_ERROR, LARGEST_GRADUAL_ERROR
 from tribodyn.stiffness import loaded_contact
 
 OIL = Lubricant(0.08, 880.0, 2e-8)

@@ -8,7 +8,7 @@ import pytest
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError
 from tribodyn.mesh import phase_grid
-from tribodyn.mesh.positions import path_positions
+from tribodyn.mesh.cycle import path_positions
 
 
 @pytest.fixture(params=["pinion", "wheel", "high contact ratio"])

@@ -13,8 +13,8 @@ from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, build
-from tribodyn.mesh.series import in_series
-from tribodyn.mesh.teeth import Teeth
+from tribodyn.mesh.loads import in_series
+from tribodyn.mesh.sharing import SpringTeeth
 from tribodyn.stiffness import ContactProblem
 from tribodyn.stiffness.loaded.problem import Compliance, independent_compliance
 
@@ -159,7 +159,7 @@ def test_a_table_of_the_earlier_format_is_read(fzg, tmp_path):
 
 def _film(stiffness_of):
     """A film that is solved for any load, with a stiffness that follows from it."""
-    return lambda _: lambda load: types.SimpleNamespace(film_stiffness=stiffness_of(load))
+    return lambda *_: lambda load: types.SimpleNamespace(film_stiffness=stiffness_of(load))
 
 
 def springs(*stiffness):
@@ -168,11 +168,11 @@ def springs(*stiffness):
     gaps = np.zeros((1, 1, each.size))
     compliance = Compliance(independent_compliance(each, 1.0), np.zeros(each.shape), 0.0)
     problem = ContactProblem(None, compliance, gaps, np.ones(1))
-    return Teeth(each > 0.0, 1e5, each, problem)
+    return SpringTeeth(each > 0.0, 1e5, problem, each)
 
 
 def solved(teeth, film):
-    carried, _ = in_series(teeth, 1e5, film, named)
+    carried, _ = in_series(teeth, film, named)
     # the tangent of springs is their sum, and so is the secant
     assert carried.tangent == pytest.approx(carried.stiffness.sum(axis=1), rel=1e-9)
     assert carried.transmission_error == pytest.approx(1e5 / carried.tangent, rel=1e-9)
@@ -203,7 +203,7 @@ def test_a_film_softer_than_its_teeth_takes_the_load_away():
 def test_a_film_that_is_never_the_same_is_refused():
     films = iter(range(1000))
 
-    def restless(_):
+    def restless(*_):
         factor = 1.0 + 0.1 * (next(films) % 2)
         return lambda load: types.SimpleNamespace(film_stiffness=np.array([factor, 1.0]) * 1e8)
 

@@ -8,7 +8,7 @@ from tribodyn.errors import InputError
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import LOADS, build, mesh_friction
-from tribodyn.mesh.mesh_friction import CHANNELS
+from tribodyn.mesh.functions import CHANNELS
 
 # The regression is continued to the lightest and heaviest loads.
 pytestmark = pytest.mark.filterwarnings(r"ignore:\[friction-range\]:tribodyn.errors.ModelWarning")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, SpeedFamily, follow
+from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, Follower, SpeedFamily, follow
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.simulate import read_start
@@ -159,6 +159,7 @@ def _follow_all(
     begin = None
     if start is not None:
         begin = family.mapping(0, 1).start(read_start(family.system, start))
+    follower = Follower(family, closed, valid, tolerance, patience, periods)
     lock = Lock()
 
     def told() -> None:
@@ -167,17 +168,7 @@ def _follow_all(
 
     def follow_direction(direction: str) -> list[Followed]:
         order = range(count) if direction == "up" else range(count)[::-1]
-        met = follow(
-            family,
-            order,
-            closed,
-            valid,
-            start=begin,
-            tolerance=tolerance,
-            patience=patience,
-            periods=periods,
-            told=told,
-        )
+        met = follow(follower, order, begin, told)
         return met if direction == "up" else met[::-1]
 
     followed = in_threads(follow_direction, directions, len(directions))

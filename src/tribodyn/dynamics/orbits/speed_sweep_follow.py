@@ -180,7 +180,9 @@ def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
     return mapping(y)
 
 
-class _Follower:
+class Follower:
+    """Finds the motion of one speed from that of the speed before."""
+
     def __init__(
         self,
         family: SpeedFamily,
@@ -278,19 +280,10 @@ class _Follower:
 
 
 def follow(
-    family: SpeedFamily,
-    order: Sequence[int],
-    closed: Orbits | None,
-    valid: Mask,
-    *,
-    start: Array | None,
-    tolerance: float,
-    patience: int,
-    periods: Sequence[int],
-    told: Callable[[], None],
+    follower: Follower, order: Sequence[int], start: Array | None, told: Callable[[], None]
 ) -> list[Followed]:
     """Follow the motion over the speeds in one direction."""
-    follower = _Follower(family, closed, valid, tolerance, patience, periods)
+    family = follower.family
     done: list[Followed] = []
     shut = False
     for place, number in enumerate(order):
@@ -332,7 +325,7 @@ def _is_jump(done: Sequence[Followed], orbit: Followed) -> bool:
     return away > max(_JUMP * float(np.linalg.norm(last.point)), 3.0 * usual)
 
 
-def _settled(follower: _Follower, number: int, begin: Array, share: float = 1.0) -> Followed:
+def _settled(follower: Follower, number: int, begin: Array, share: float = 1.0) -> Followed:
     patience = max(int(share * follower.patience), _LOOK)
     try:
         return follower.lost(number, begin, patience)

@@ -11,7 +11,7 @@ from tribodyn.errors import InputError
 from tribodyn.model import text
 from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
-from tribodyn.study.case.gears import Gears
+from tribodyn.study.case.gears import Gears, is_needed
 from tribodyn.study.case.given import Given, Source, plain
 from tribodyn.study.case.provenance import effective_values, provenance
 from tribodyn.study.case.section import Section, Table, choices, flat, table
@@ -38,6 +38,7 @@ from tribodyn.study.case.values import Plain, read_fields
 if TYPE_CHECKING:
     from tribodyn.gear import Material, SpurPair
     from tribodyn.lubricant import Lubricant
+    from tribodyn.mesh.table_file import TableFile
 
 
 #: Keys whose choice decides which other keys of their table are allowed, beside those that name
@@ -93,6 +94,7 @@ class Case(Section, whole=True):
         marks = body.pop("assumed", {})
         chosen = choices(given)
         vars(self).update(read_fields(type(self), body, "", chosen, found))
+        found = [fault for fault in found if is_needed(fault[0], given.get("gears.kind"))]
         found += reason_faults(marks)
         readable = not any(key.startswith("gears") for key, _ in found)
         found += cross_problems(given, chosen, {key for key, _ in found})
@@ -179,8 +181,20 @@ class Case(Section, whole=True):
         return self._assumed
 
     @cached_property
+    def mesh_table(self) -> TableFile | None:
+        """The mesh table of another program; None where the teeth are computed."""
+        return derive.mesh_table(self.gears)
+
+    @property
+    def gear_ratio(self) -> float:
+        """Teeth of the wheel over teeth of the pinion."""
+        return self.gears.wheel.teeth / self.gears.pinion.teeth
+
+    @cached_property
     def gear_pair(self) -> SpurPair:
-        """Both gears in their working position."""
+        """Both gears in their working position; a case with a mesh table has none."""
+        if self.gears.kind == "table":
+            raise InputError(derive.no_gear_pair())
         return derive.gear_pair(self.gears, self.dynamics.backlash)
 
     @cached_property
@@ -197,7 +211,9 @@ class Case(Section, whole=True):
     def backlash(self) -> float:
         """Total play on the line of action [m]: given, or that of the tooth thicknesses."""
         given = self.dynamics.backlash
-        return self.gear_pair.backlash if given is None else given
+        if given is None:
+            return 0.0 if self.gears.kind == "table" else self.gear_pair.backlash
+        return given
 
     @property
     def composite_roughness(self) -> float | None:
@@ -211,13 +227,13 @@ class Case(Section, whole=True):
     def pinion_speed(self) -> float:
         """Speed of the pinion [rad/s], whichever gear the speed is given for."""
         of_wheel = self.operation.speed_of == "wheel"
-        return self.operation.speed * (self.gear_pair.ratio if of_wheel else 1.0)
+        return self.operation.speed * (self.gear_ratio if of_wheel else 1.0)
 
     @property
     def pinion_torque(self) -> float:
         """Nominal torque on the pinion [N*m], whichever gear the torque is given for."""
         of_wheel = self.operation.speed_of == "wheel"
-        return self.operation.torque / (self.gear_pair.ratio if of_wheel else 1.0)
+        return self.operation.torque / (self.gear_ratio if of_wheel else 1.0)
 
     @property
     def given(self) -> Given:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
+from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.given import Given
 from tribodyn.study.case.section import Choice, Known, choices, section_at
 
@@ -54,7 +55,42 @@ def _roughness(given: Given) -> Found:
         yield absent, Problem(what, "", why, "Add it, or give composite_roughness in [gears]")
 
 
+def _mesh_table(given: Given) -> Found:
+    """What a mesh table of another program needs, and what it cannot have."""
+    if given.get("gears.kind", "spur") != "table":
+        if "gears.table" in given:
+            why, remedy = 'It belongs to kind = "table"', "Remove it, or change the kind"
+            yield "gears.table", Problem(given.show("gears.table"), "", why, remedy)
+        return
+    if "gears.table" not in given:
+        why, remedy = (
+            'kind = "table" reads the mesh from a file',
+            'Add table = "mesh.csv" to [gears]',
+        )
+        yield "gears", Problem("table is missing", "", why, remedy)
+    masses = ["moment_of_inertia"]
+    if given.get("dynamics.model", "spur-6dof") != "torsional":
+        masses.append("mass")
+    for key in (f"gears.{gear}.{name}" for name in masses for gear in ("pinion", "wheel")):
+        if key not in given:
+            what, why = f"{key.rpartition('.')[2]} is missing", "A mesh table knows no gear bodies"
+            yield key, Problem(what, "", why, f"Add it to [{key.rpartition('.')[0]}]")
+    allowed = {"film.model": ("none",), "friction.law": ("none", "constant"),
+               "dynamics.friction_load": ("nominal",)}  # fmt: skip
+    for key, names in allowed.items():
+        if given.get(key, names[0]) not in names:
+            why = "A mesh table has its films and friction coefficients as columns"
+            remedy = f'Write {" or ".join(names)}, or give the gears with kind = "spur"'
+            yield key, Problem(given.show(key), "", why, remedy)
+    for key in given.typed:
+        if is_idle(key, "table") and key.split(".")[0] in ("gears", "stiffness"):
+            why = "A mesh table has the stiffness of the teeth, whatever their shape"
+            yield key, Problem(f"{given.show(key)} is not used", "", why, "Remove it")
+
+
 def _face_width(given: Given) -> Found:
+    if given.get("gears.kind") == "table":
+        return
     gears = ("gears.pinion", "gears.wheel")
     if all(gear in given and f"{gear}.face_width" not in given for gear in gears):
         what, why = "face_width is missing", "At least one gear needs its face width"
@@ -321,7 +357,7 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _roughness, _face_width, _size, _lubricant, _dampings,
+    _mesh_table, _roughness, _face_width, _size, _lubricant, _dampings,
     _friction_load, _solver,
 )  # fmt: skip
 

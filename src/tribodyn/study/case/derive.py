@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem, collected
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
     from tribodyn.gear import FlankModification, Material, ProfileMap, SpurPair
     from tribodyn.lubricant import Lubricant
+    from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
 
 
@@ -160,6 +162,8 @@ def mesh_law_of(case: Case) -> MeshForce:
 
     if case.dynamics.mesh_law is not None:
         return cast("MeshForce", case.dynamics.mesh_law)
+    if case.mesh_table is not None:
+        return "force-law" if case.mesh_table.has_force_law else "stiffness"
     whole = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
     return "force-law" if whole else "stiffness"
 
@@ -246,8 +250,69 @@ def _faults(section: str, build: Callable[[], object]) -> list[tuple[str, Proble
     return []
 
 
+def mesh_table(gears: Gears) -> TableFile | None:
+    """Read the mesh table of another program, anew where the file has changed."""
+    if gears.kind != "table" or gears.table is None:
+        return None
+    place = Path(gears.table)
+    changed = place.stat().st_mtime_ns if place.is_file() else 0
+    return _read_table(gears.table, changed)
+
+
+@lru_cache(maxsize=16)
+def _read_table(path: str, changed: int) -> TableFile:
+    from tribodyn.mesh.table_file import read_table_file
+
+    return read_table_file(path)
+
+
+def no_gear_pair() -> Problem:
+    """What is said where something asks for the gears of a mesh table."""
+    return Problem(
+        'a case with gears.kind = "table" has no gear pair',
+        "gears.kind",
+        "Its mesh table knows contacts, not gears",
+        'Give the gears with kind = "spur" for what follows from their shape',
+    )
+
+
+def _table_problems(case: Case) -> list[tuple[str, Problem]]:
+    """Find what is wrong with a mesh table, or with what the case asks of it."""
+    found = _faults("gears.table", lambda: case.mesh_table)
+    table = None if found else case.mesh_table
+    if table is None:
+        return found
+    if table.gears is not None and table.gears.pair.driver != case.gears.driver:
+        why = f"The mesh table was made for driver = {table.gears.pair.driver}"
+        problem = Problem(f"driver = {case.gears.driver}", "", why, "Take the same driver")
+        found.append(("gears.driver", problem))
+    coefficient = friction_of_table(case)
+    found += [
+        ("operation.torque" if _argument(problem) else "gears.table", problem)
+        for _, problem in _faults("gears.table", lambda: _trial(case, table, coefficient))
+    ]
+    return found
+
+
+def _trial(case: Case, table: TableFile, coefficient: float | None) -> object:
+    return table.table(
+        teeth=case.gears.pinion.teeth,
+        driver=case.gears.driver,
+        pinion_speed=case.pinion_speed,
+        pinion_torque=case.pinion_torque,
+        friction_coefficient=coefficient,
+    )
+
+
+def friction_of_table(case: Case) -> float | None:
+    """Coefficient that replaces those of a mesh table; None where they stay."""
+    return case.friction.coefficient if case.friction.law == "constant" else None
+
+
 def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
     """Find the faults of the gear pair alone, where other tables are faulty."""
+    if gears.kind == "table":
+        return _faults("gears.table", lambda: mesh_table(gears))
     if gears.pinion.face_width is None and gears.wheel.face_width is None:
         return []
     return _faults("gears", lambda: gear_pair(gears))
@@ -255,6 +320,8 @@ def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
 
 def case_problems(case: Case) -> list[tuple[str, Problem]]:
     """Find what makes a well-written case physically impossible."""
+    if case.gears.kind == "table":
+        return _table_problems(case)
     found = _faults("gears", lambda: case.gear_pair)
     found += _faults("lubricant", lambda: case.lubricant_properties)
     return found + _bores(case)

@@ -6,7 +6,8 @@ import math
 from typing import Any
 
 from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
-from tribodyn.study.case.section import Section, table
+from tribodyn.study.case.section import Section
+from tribodyn.study.case.section import table as inner_table
 
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"
@@ -106,7 +107,7 @@ class Gear(Section):
     roughness_rms: float | None = number(
         None, 0.0, 20e-6, "ground to milled flanks; " + _GUARD, of="roughness_rms"
     )
-    modification: Modification | None = table(
+    modification: Modification | None = inner_table(
         Modification, "what the loaded flanks have that the involute has not", "none"
     )
 
@@ -114,7 +115,10 @@ class Gear(Section):
 class Gears(Section):
     """The ``[gears]`` table."""
 
-    kind: str = choice("spur", ("spur",), later=("hypoid",), meaning="kind of gear pair")
+    kind: str = choice("spur", ("spur", "table"), later=("hypoid",), meaning="kind of gear pair")
+    table: str | None = file_path(
+        meaning="mesh table of another program, as CSV or netCDF", example='"mesh.csv"'
+    )
     normal_module: float = number(
         REQUIRED, 0.05e-3, 0.1, "ISO 54 modules run from 1 to 50 mm", of="normal_module"
     )  # fmt: skip
@@ -147,5 +151,25 @@ class Gears(Section):
         argument="tip_radius_coefficient",
     )
     misalignment: float = number(0.0, -0.5e-3, 0.5e-3, _GUARD, of="misalignment")
-    pinion: Gear = table(Gear, "the smaller gear")
-    wheel: Gear = table(Gear, "the larger gear")
+    pinion: Gear = inner_table(Gear, "the smaller gear")
+    wheel: Gear = inner_table(Gear, "the larger gear")
+
+
+#: Keys of ``[gears]`` that a mesh table of another program leaves open.
+_OF_A_TABLE = ("kind", "table", "driver", "teeth", "mass", "moment_of_inertia")
+_REQUIRED_OF_SPUR = ("gears.normal_module", "gears.normal_pressure_angle")
+
+
+def is_idle(key: str, kind: str | None) -> bool:
+    """Whether a dotted key says nothing in a case of this kind of gear pair."""
+    section, _, name = key.partition(".")
+    if kind != "table":
+        return key == "gears.table"
+    if section == "gears":
+        return name.rpartition(".")[2] not in _OF_A_TABLE
+    return section in ("stiffness", "material", "film")
+
+
+def is_needed(key: str, kind: str | None) -> bool:
+    """Whether a key that is missing is needed by this kind of gear pair."""
+    return kind != "table" or key not in _REQUIRED_OF_SPUR

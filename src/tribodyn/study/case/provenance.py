@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.stated import same
 
@@ -122,7 +123,7 @@ def _model_of(case: Case, path: list[str]) -> Model | None:
 
 def _bored(case: Case, default: Any) -> Any:
     """Body against which deflection is measured; one without a bore has no shaft seat."""
-    if case.stiffness.reference is not None:
+    if case.stiffness.reference is not None or case.gears.kind == "table":
         return default
     bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
     return "rim" if default == "bore" and not all(bores) else default
@@ -131,6 +132,10 @@ def _bored(case: Case, default: Any) -> Any:
 def effective_values(case: Case) -> dict[str, Any]:
     """All values in force by dotted key, defaults of options and solver filled in."""
     values = in_force(case)
+    kind = case.gears.kind
+    if kind == "table":
+        values |= {key: None for key in values if is_idle(key, kind)}
+        values["film.model"] = "none"
     values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
     for name in ("mesh_damping", "bearing_damping"):
         if values[f"dynamics.{name}"] is not None:
@@ -209,7 +214,7 @@ def provenance(case: Case) -> dict[str, str]:
             origins[key] = _marked(case, key, value, changed)
         elif key in given:
             origins[key] = "given"
-        elif value is not None or _derived_from(case, key):
+        elif value is not None or (_derived_from(case, key) and not is_idle(key, case.gears.kind)):
             origins[key] = DEFAULT_MARK
     return origins
 
@@ -240,6 +245,8 @@ def _oil_assumptions(case: Case) -> list[Assumption]:
 
 def derived_values(case: Case) -> dict[str, float]:
     """All values that are derived because the case does not give them."""
+    if case.gears.kind == "table":
+        return {"dynamics.backlash": 0.0} if case.dynamics.backlash is None else {}
     from tribodyn.gear import default_relief_length, mass_properties
 
     pair, values = case.gear_pair, {}

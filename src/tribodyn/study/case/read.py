@@ -189,6 +189,9 @@ normal_pressure_angle, driver, pinion, wheel.
 
 def _place_files(data: dict[str, Any], folder: Path) -> None:
     """Let the paths of a case begin at its own folder."""
+    gears = data.get("gears")
+    if isinstance(gears, dict) and isinstance(gears.get("table"), str):
+        gears["table"] = str((folder / gears["table"]).absolute())
     for gear in ("pinion", "wheel"):
         table = _at(data, "gears", gear, "modification")
         if isinstance(table, dict) and isinstance(table.get("profile_map"), str):

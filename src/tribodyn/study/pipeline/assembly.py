@@ -58,10 +58,10 @@ def _structure(case: Case, mesh: MeshTable, damping: Damping) -> System:
         contact["error"] = lambda phase: static_error(case, phase)
     gearing = Gearing(
         mesh.functions(),
-        mass=(body["mass_pinion"], body["mass_wheel"]),
+        mass=(body.get("mass_pinion", 0.0), body.get("mass_wheel", 0.0)),
         moment_of_inertia=(body["moment_of_inertia_pinion"], body["moment_of_inertia_wheel"]),
         base_radius=(body["base_radius_pinion"], body["base_radius_wheel"]),
-        torque=(torque, torque * case.gear_pair.ratio),
+        torque=(torque, torque * case.gear_ratio),
         contact=contact,
     )
     return STRUCTURES[case.dynamics.model](gearing, **chosen_options(case, "dynamics"))

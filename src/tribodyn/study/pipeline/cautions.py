@@ -38,6 +38,8 @@ _INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
 def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
     """Find what is odd about the gears of a case, before anything is computed."""
+    if case.gears.kind == "table":
+        return ()
     pair = case.gear_pair
     found = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
@@ -178,7 +180,7 @@ def motion_cautions(case: Case, system: System, response: Response) -> tuple[Mod
 
 def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
     """Say what the motion leaves out where teeth differ from each other."""
-    if not case.gear_pair.teeth_differ:
+    if case.gears.kind == "table" or not case.gear_pair.teeth_differ:
         return ()
     message = (
         "pitch deviations and run-out differ from tooth to tooth: the static transmission error "

@@ -42,7 +42,9 @@ def damping_of(case: Case, mesh: MeshTable) -> Damping:
         )  # fmt: skip
         mesh_damping = 2.0 * data.mesh_damping_ratio * math.sqrt(mesh.mean_mesh_stiffness * mass)
     return Damping(
-        mesh_damping, _support(case, body["mass_pinion"]), _support(case, body["mass_wheel"])
+        mesh_damping,
+        _support(case, body.get("mass_pinion", 0.0)),
+        _support(case, body.get("mass_wheel", 0.0)),
     )
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tribodyn.gear import SpurGear, SpurPair
+    from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
 
 
@@ -18,6 +19,8 @@ _AMOUNTS = (
 
 def geometry(case: Case) -> dict[str, float]:
     """Geometry, masses and inertias that follow from a case."""
+    if case.mesh_table is not None:
+        return _of_mesh_table(case, case.mesh_table)
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
     pair = case.gear_pair
@@ -41,6 +44,17 @@ def geometry(case: Case) -> dict[str, float]:
         for name, body in bodies.items():
             values[f"{key}_{name}"] = body[key]
     values |= _modifications(pair)
+    return {name: float(value) for name, value in values.items()}
+
+
+def _of_mesh_table(case: Case, table: TableFile) -> dict[str, float]:
+    """What is known of gears behind a mesh table: levers, and the bodies that the case gives."""
+    values = {"gear_ratio": case.gear_ratio, "backlash": case.backlash}
+    for name, gear in (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)):
+        values[f"base_radius_{name}"] = table.lever(f"{name}_theta")
+        for key in ("mass", "moment_of_inertia"):
+            if getattr(gear, key) is not None:
+                values[f"{key}_{name}"] = getattr(gear, key)
     return {name: float(value) for name, value in values.items()}
 
 

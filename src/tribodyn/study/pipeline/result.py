@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
-    from tribodyn.study.pipeline.assembly import Damping
+    from tribodyn.study.pipeline.damping import Damping
 
 
 _PLOT = "plot_"
@@ -90,7 +90,7 @@ class Result(Record):
         return 0.5 * self.case.backlash
 
     def static_error(self, phase: Array | float) -> Array:
-        """Static transmission error that was prescribed.
+        """Transmission error without load: prescribed, or a column of the mesh table.
 
         Parameters
         ----------
@@ -101,7 +101,8 @@ class Result(Record):
         -------
         array [m]
         """
-        return static_error(self.case, phase)
+        own = self.mesh.functions().error
+        return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 
     def loaded_contact(self) -> LoadedContact:
         """Loaded tooth contact at rest: over all teeth where these differ, without oil film.

@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.model import Registry
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.pipeline.geometry import geometry
 from tribodyn.study.pipeline.record import (
     centre_column,
     compression,
@@ -145,15 +145,21 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
         "mean_mesh_stiffness_tangent": mesh.mean_mesh_stiffness_tangent,
         "maximum_single_pair_stiffness": mesh.maximum_single_pair_stiffness,
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
-        "maximum_hertz_pressure": mesh.hertz_pressure.max(),
+        **_pressure(mesh),
     }
+
+
+def _pressure(mesh: MeshTable) -> dict[str, Any]:
+    """Greatest Hertzian pressure, which a mesh table of another program may lack."""
+    greatest = mesh.hertz_pressure.max()
+    return {"maximum_hertz_pressure": greatest} if np.isfinite(greatest) else {}
 
 
 def _static_error_figures(result: Result) -> dict[str, Any]:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
     figures: tuple[Any, Any, Any]
-    if result.case.gear_pair.teeth_differ:
+    if result.case.gears.kind != "table" and result.case.gear_pair.teeth_differ:
         loaded = result.loaded_contact()
         figures = (
             loaded.mean_transmission_error,
@@ -236,7 +242,7 @@ def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
         return result.friction.value(name, phase, force) * force
 
     # The surfaces of both gears move along the same friction: what one gains the other loses.
-    wheel_speed = mesh.pinion_speed / result.case.gear_pair.ratio
+    wheel_speed = mesh.pinion_speed / result.case.gear_ratio
     lost = mesh.pinion_speed * friction("friction_moment_pinion")
     lost = lost - wheel_speed * friction("friction_moment_wheel")
     return {

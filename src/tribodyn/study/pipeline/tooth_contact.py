@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import ComputationError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
-from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.derive import friction_of_table, mesh_law_of
 from tribodyn.study.case.provenance import effective
 
 if TYPE_CHECKING:
@@ -45,17 +45,29 @@ def model_settings(case: Case) -> dict[str, Any]:
 
 def mesh_of(case: Case, progress: Progress = SILENT, *, load: float = 1.0) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle."""
-    from tribodyn.mesh import build
+    from tribodyn.mesh.build import mesh_table
+    from tribodyn.mesh.tooth_contact import ToothContact
 
-    return build(
-        case.gear_pair,
+    if case.mesh_table is not None:
+        return case.mesh_table.table(
+            teeth=case.gears.pinion.teeth,
+            driver=case.gears.driver,
+            pinion_speed=case.pinion_speed,
+            pinion_torque=case.pinion_torque,
+            friction_coefficient=friction_of_table(case),
+        )
+    settings = ToothContact(
         friction_law=case.friction.law,
         friction_options=chosen_options(case, "friction"),
+        **model_settings(case),
+    )
+    return mesh_table(
+        case.gear_pair,
+        settings,
         pinion_speed=case.pinion_speed,
         pinion_torque=case.pinion_torque * load,
         force_law=mesh_law_of(case) == "force-law",
         progress=progress,
-        **model_settings(case),
     )
 
 

@@ -176,4 +176,4 @@ def pinion_speeds(case: Case, given: Any) -> list[float]:
 
 def _turns(case: Case) -> float:
     """Turns of the pinion for one of the gear that speed and torque refer to."""
-    return case.gear_pair.ratio if case.operation.speed_of == "wheel" else 1.0
+    return case.gear_ratio if case.operation.speed_of == "wheel" else 1.0

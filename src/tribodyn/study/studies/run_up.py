@@ -146,8 +146,8 @@ def _rotation(case: Case, system: System, per_speed: float) -> Any:
     """Angles of the coordinates per angle of the shaft whose speed is given."""
     from tribodyn.dynamics import STRUCTURES
 
-    pinion = per_speed * 2.0 * np.pi / case.gear_pair.pinion.teeth
-    wheel = pinion / case.gear_pair.ratio
+    pinion = per_speed * 2.0 * np.pi / case.gears.pinion.teeth
+    wheel = pinion / case.gear_ratio
     gears = {"pinion": pinion, "wheel": wheel}
     turns = {f"{gear}_theta": angle for gear, angle in gears.items()}
     turns_with = STRUCTURES[case.dynamics.model].turns_with

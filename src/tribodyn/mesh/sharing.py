@@ -1,0 +1,303 @@
+"""The teeth of a mesh under load: how they share it, with or without films, and their force law.
+
+Pairs are springs of their own, or they are solved together. Both answer ``shared_load`` with the
+same :class:`SharedLoad`, and both give the force law of the mesh as a sum of ramps: points of it
+lie at chosen deflections and where a pair begins to carry, joined by chords. Points are added until
+the chords are near enough, so that linear pairs have one ramp and modified flanks twenty.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.contact import PathOfContact
+from tribodyn.errors import warn
+from tribodyn.mesh.tooth_contact import ToothContact
+from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
+from tribodyn.stiffness.model import usable_stiffness
+from tribodyn.types import Array, Mask
+
+#: A pair that is kept apart has the film and the friction of this part of the load of all.
+LEAST_SHARE = 1e-3
+#: Largest error of the force over the force, from a tenth of the load to three times of it, and
+#: the one where flanks vary over the face, so that pairs begin to carry gradually.
+LARGEST_ERROR, LARGEST_GRADUAL_ERROR = 2e-3, 1e-2
+#: What is aimed at, for the error between the deflections that are looked at.
+_AIM = 1e-3
+#: Range of the force, over the load of the mesh, in which the error counts; and where the law ends
+#: and goes on straight.
+_RANGE, _LAST = (0.1, 3.0), 4.0
+#: Deflections that are looked at, over that at the end, from the first touch on.
+_LOOKED_AT = np.geomspace(0.02, 1.0, 45)
+#: Slices, from the first to the last that touches, whose pairs are followed.
+_SLICES = 7
+#: Most deflections that become points.
+_MOST = 30
+#: Distance of two points, over the largest deflection, below which they are one.
+_SAME = 1e-9
+#: Stiffness of a ramp over the whole one that is rounding.
+_FAINT = 1e-9
+
+
+class SharedLoad(NamedTuple):
+    """How a mesh carries its quasi-static load."""
+
+    stiffness: Array  #: [N/m]
+    share: Array  #: part of the total force on each pair on the path of contact
+    corner_share: Array  #: the same on tip corners before A, and after E
+    transmission_error: Array  #: approach along the line of action, deviations included [m]
+    tangent: Array  #: slope of the total force over it [N/m]
+
+
+@dataclass(frozen=True, eq=False)
+class Teeth:
+    """Teeth of all pairs over one mesh cycle that are solved together; made by :func:`teeth_of`."""
+
+    in_contact: Mask  #: which pairs are on the path of contact
+    normal_force: float  #: of all pairs together [N]
+    problem: ContactProblem  #: the loaded tooth contact at the same phases
+
+    coupled = True
+    #: Part of the load for which film and friction of a pair are found at least.
+    least_share = LEAST_SHARE
+
+    def shared_load(self, film_stiffness: Array | None = None) -> SharedLoad:
+        """Share the load among the pairs, each with its film in series."""
+        problem = self.with_film(film_stiffness)
+        solved = problem.at_loads(np.array([self.normal_force]))
+        force = np.einsum("s,psn->pn", problem.widths, solved.load[0])
+        inner = force[:, 1:-1] if self._extended else force
+        on_path = np.where(self.in_contact, inner, 0.0)
+        deflection = solved.approach[0] - problem.least_gap
+        places, contact = problem.places, problem.places.contact
+        early = places.direction * (2.0 * places.path - contact.A - contact.E) < 0.0
+        corners = force.copy()
+        (corners[:, 1:-1] if self._extended else corners)[self.in_contact] = 0.0
+        corner = [np.where(side, corners, 0.0).sum(axis=1) for side in (early, ~early)]
+        return SharedLoad(
+            stiffness=on_path / deflection[:, None],
+            share=on_path / self.normal_force,
+            corner_share=np.stack(corner, axis=1) / self.normal_force,
+            transmission_error=solved.approach[0],
+            tangent=solved.tangent[0],
+        )
+
+    def ramps(
+        self, shared: SharedLoad, film_stiffness: Array | None, *, fitted: bool
+    ) -> tuple[Array, Array]:
+        """Force law as ramps: where each begins [m], and its stiffness [N/m]."""
+        return force_ramps(self.with_film(film_stiffness), self.normal_force)
+
+    def with_film(self, film_stiffness: Array | None) -> ContactProblem:
+        """Put the films in series with the teeth."""
+        if film_stiffness is None:
+            return self.problem
+        entering, leaving = self._ends()
+        film = np.where(self.in_contact, film_stiffness, film_stiffness[leaving])
+        if self._extended:
+            first = np.full((film.shape[0], 1), film_stiffness[entering])
+            film = np.concatenate([first, film, np.full_like(first, film_stiffness[leaving])], 1)
+        return self.problem.with_film(film)
+
+    @property
+    def _extended(self) -> bool:
+        return bool(self.problem.gaps.shape[2] > self.in_contact.shape[1])
+
+    def _ends(self) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Row and column of the pair at A, and of the pair at E."""
+        last = int(np.flatnonzero(self.in_contact.any(axis=0))[-1])
+        return (0, 0), (int(np.flatnonzero(self.in_contact[:, last])[-1]), last)
+
+    @property
+    def load_per_width(self) -> float:
+        """Load of all pairs together per face width [N/m]."""
+        return self.normal_force / float(self.problem.widths.sum())
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """Mesh phases, no events, at which a pair begins or ceases to carry."""
+        carries = self.problem.at_loads(np.array([self.normal_force])).load[0].any(axis=1)
+        phase = self.problem.places.phase
+        turns = (carries[1:] != carries[:-1]).any(axis=1) & (np.diff(phase) > 0.0)
+        return tuple(float(bend) for bend in 0.5 * (phase[1:] + phase[:-1])[turns])
+
+    @property
+    def maximum_single_pair_stiffness(self) -> float:
+        """Greatest stiffness of one pair that carries the whole force alone [N/m]."""
+        compliance, width = self.problem.compliance, float(self.problem.widths.sum())
+        bending = np.diagonal(compliance.structure, axis1=1, axis2=2)
+        local = compliance.local - compliance.logarithm * np.log(self.normal_force / width)
+        alone = width / (bending + local)
+        return float(alone[self.problem.places.on_path].max())
+
+
+@dataclass(frozen=True, eq=False)
+class SpringTeeth(Teeth):
+    """Teeth of pairs that are springs of their own and deflect alike."""
+
+    stiffness: Array  #: secant stiffness of each pair [N/m]
+
+    coupled = False
+    least_share = 0.0
+
+    def shared_load(self, film_stiffness: Array | None = None) -> SharedLoad:
+        """Share the load in proportion to the stiffness of teeth and film."""
+        each = self.stiffness
+        if film_stiffness is not None:
+            each = np.zeros(self.stiffness.shape)
+            touch = self.in_contact
+            each[touch] = 1.0 / (1.0 / self.stiffness[touch] + 1.0 / film_stiffness[touch])
+        whole = each.sum(axis=1)
+        share = each / whole[:, None]
+        problem = self.with_film(film_stiffness)
+        load = share * self.normal_force / problem.widths.sum()
+        no_corners = np.zeros((whole.size, 2))
+        deflection = self.normal_force / whole
+        return SharedLoad(each, share, no_corners, deflection, problem.tangent_at(load))
+
+    def ramps(
+        self, shared: SharedLoad, film_stiffness: Array | None, *, fitted: bool
+    ) -> tuple[Array, Array]:
+        """Force law as ramps; one with the stiffness of all pairs unless it is to be fitted."""
+        if fitted:
+            return super().ramps(shared, film_stiffness, fitted=True)
+        whole = shared.stiffness.sum(axis=1)[:, None]
+        return np.zeros_like(whole), whole
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """None: every pair carries wherever it is in contact."""
+        return ()
+
+
+def teeth_of(
+    contact: PathOfContact,
+    places: tuple[Array, Array, Mask],
+    settings: ToothContact,
+    normal_force: float,
+) -> Teeth:
+    """Teeth of a mesh by the stiffness model of the settings."""
+    model, options = settings.stiffness_model, settings.stiffness_options
+    chosen, pair = MODELS[model], contact.pair
+    phase, path, in_contact = places
+    given = {**chosen.options, **options}
+    problem = mesh_problem(
+        pair,
+        provider=model,
+        places=places,
+        total_force=normal_force,
+        extended_contact=bool(given.get("extended_contact", False)),
+        material=settings.material,
+        options=options,
+    )
+    if chosen.coupled or pair.has_modification:
+        return Teeth(in_contact, normal_force, problem)
+    if chosen.influence is None:
+        bending = np.diagonal(problem.compliance.structure, axis1=1, axis2=2)
+        stiffness = np.where(in_contact, pair.common_face_width / bending, 0.0)
+    else:
+        each = chosen(pair, settings.material, path, in_contact, phase, normal_force, **options)
+        stiffness = usable_stiffness(each, in_contact, model)
+    return SpringTeeth(in_contact, normal_force, problem, stiffness)
+
+
+def shared_load_columns(
+    teeth: Teeth, shared: SharedLoad, film_stiffness: Array | None, *, force_law: bool
+) -> dict[str, Any]:
+    """Columns of the mesh table that follow from teeth and films under load."""
+    film = None
+    if film_stiffness is not None:
+        film = np.zeros(teeth.in_contact.shape)
+        film[teeth.in_contact] = film_stiffness
+    ramps = teeth.ramps(shared, film, fitted=force_law)
+    without_film = shared if film is None else teeth.shared_load()
+    return {
+        "stiffness": shared.stiffness,
+        "tooth_stiffness": without_film.stiffness,
+        "corner_share": shared.corner_share,
+        "static_transmission_error": shared.transmission_error,
+        "mesh_stiffness_tangent": shared.tangent,
+        "maximum_single_pair_stiffness": teeth.maximum_single_pair_stiffness,
+        "ramp_deflection": ramps[0],
+        "ramp_stiffness": ramps[1],
+        "load_share": shared.share,
+        "normal_force": teeth.normal_force * shared.share,
+    }
+
+
+def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Array]:
+    """Fit ramps to the force over the deflection of a mesh."""
+    parts = problem.compliance
+    if parts.logarithm == 0.0 and not problem.places.contact.pair.has_modification:
+        # Springs that all touch at once: one ramp, exactly.
+        return problem.least_gap[:, None], problem.tangent_at(
+            np.where(problem.places.on_path, 1.0, 0.0)
+        )[:, None]
+    last = problem.at_loads(np.array([_LAST * total_force]))
+    first = problem.least_gap
+    approach = first + _LOOKED_AT[:, None] * (last.approach[0] - first)
+    force = problem.at_approach(approach)[0]
+    counts = (force >= _RANGE[0] * total_force) & (force <= _RANGE[1] * total_force)
+    kinks = _kinks(problem, approach[-1])
+    chosen = [0, _LOOKED_AT.size // 2, _LOOKED_AT.size - 1]
+    while True:
+        points = np.concatenate([approach[chosen].T, kinks[0]], axis=1)
+        forces = np.concatenate([force[chosen].T, kinks[1]], axis=1)
+        place, slope = _chords(first, points, forces, last.tangent[0])
+        error = np.where(counts, np.abs(_force(place, slope, approach) / force - 1.0), 0.0)
+        worst = int(np.argmax(error.max(axis=1)))
+        if error.max() < _AIM or worst in chosen or len(chosen) >= _MOST:
+            break
+        chosen = sorted([*chosen, worst])
+    if error.max() > (LARGEST_ERROR if problem.widths.size == 1 else LARGEST_GRADUAL_ERROR):
+        warn(
+            "force-law",
+            f"the force law of the mesh is {100.0 * error.max():.2g} % off the loaded tooth "
+            f"contact with {place.shape[1]} ramps; smoother flanks are closer",
+            stacklevel=4,
+        )
+    return place, slope
+
+
+def _kinks(problem: ContactProblem, most: Array) -> tuple[Array, Array]:
+    """Deflection (n, kinks) at which each pair begins to carry in a slice, and the force there."""
+    order = np.argsort(problem.gaps.mean(axis=(0, 2)))
+    slices = order[np.unique(np.linspace(0, order.size - 1, _SLICES).round().astype(int))]
+    found = [replace(problem, gaps=problem.gaps[:, [s]]).pickups(most) for s in slices]
+    pairs = np.concatenate(found, axis=1)
+    # Pairs that never come into play within the range would be points without use.
+    pairs = pairs[:, (pairs < most[:, None] * (1.0 - _SAME)).any(axis=0)]
+    return pairs, problem.at_approach(pairs.T)[0].T
+
+
+def _chords(first: Array, points: Array, forces: Array, last_slope: Array) -> tuple[Array, Array]:
+    """Ramps from the first touch through all points, each column following its own point."""
+    place = np.concatenate([first[:, None], points], axis=1)
+    force = np.concatenate([np.zeros((first.size, 1)), forces], axis=1)
+    order = np.argsort(place, axis=1, kind="stable")
+    x, y = np.take_along_axis(place, order, 1), np.take_along_axis(force, order, 1)
+    slope = np.zeros_like(x)
+    width, rise = np.diff(x, axis=1), np.diff(y, axis=1)
+    apart = width > _SAME * (x[:, -1:] - x[:, :1])
+    slope[:, :-1] = np.where(apart, rise / np.where(apart, width, 1.0), np.nan)
+    slope[:, -1] = last_slope
+    # Of several points in one place the first has the slope of the chord that follows.
+    for column in range(x.shape[1] - 2, -1, -1):
+        unknown = np.isnan(slope[:, column])
+        slope[unknown, column] = slope[unknown, column + 1]
+    slope = np.maximum.accumulate(slope, axis=1)
+    added = np.diff(slope, axis=1, prepend=0.0)
+    # What rounding leaves between points in one place would only be carried along.
+    added[added < _FAINT * last_slope[:, None]] = 0.0
+    stiffness = np.empty_like(added)
+    np.put_along_axis(stiffness, order, added, 1)
+    return place, stiffness
+
+
+def _force(place: Array, slope: Array, approach: Array) -> Array:
+    """Force of the law (d, n) at approaches (d, n)."""
+    beyond = np.maximum(approach[:, :, None] - place, 0.0)
+    return np.asarray((slope * beyond).sum(axis=2))

@@ -1,0 +1,495 @@
+"""Mesh tables of other programs: a CSV or netCDF file with contacts, read and checked."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+
+from tribodyn import units
+from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.mesh.cycle import COORDINATES, GearData
+from tribodyn.mesh.force_law import at_rest
+from tribodyn.mesh.grid import PhaseGrid, phase_grid
+from tribodyn.mesh.storage import is_mesh_table, load
+from tribodyn.mesh.table import MeshTable
+from tribodyn.types import Array
+
+#: Unit of every column; those of the first group stand once, the others once for each contact.
+_OF_THE_MESH = {
+    "phase": "", "static_transmission_error": "m", "unloaded_transmission_error": "m",
+    "mesh_stiffness_tangent": "N/m",
+}  # fmt: skip
+_OF_RAMPS = {"ramp_deflection": "m", "ramp_stiffness": "N/m"}
+_OF_CONTACTS = {
+    "stiffness": "N/m", "load_share": "", "in_contact": "", "friction_coefficient": "",
+    "sliding_direction": "", "pinion_curvature_radius": "m", "wheel_curvature_radius": "m",
+    "corner_share": "", "tooth_stiffness": "N/m", "path": "m", "load_per_width": "N/m",
+    "hertz_pressure": "Pa", "sliding_speed": "m/s", "entrainment_speed": "m/s",
+    "slide_to_roll_ratio": "", "equivalent_radius": "m", "central_film": "m",
+    "minimum_film": "m", "film_ratio": "", "film_pressure": "Pa", "film_stiffness": "N/m",
+}  # fmt: skip
+_DIRECTIONS = ("direction", "friction_direction")
+_UNITS = {**_OF_THE_MESH, **_OF_RAMPS, **_OF_CONTACTS, **dict.fromkeys(_DIRECTIONS, "")}
+#: What holds for the whole file.
+_FACTS = {
+    "base_radius_pinion": "m", "base_radius_wheel": "m", "pinion_torque": "N*m",
+    "pinion_speed": "rad/s", "maximum_single_pair_stiffness": "N/m",
+}  # fmt: skip
+#: Columns that only tell of the contact and may hold NaN.
+_TOLD = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness",
+         "hertz_pressure", "path")  # fmt: skip
+_FILMS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
+_SPEEDS = ("sliding_speed", "entrainment_speed")
+_FRICTION = ("sliding_direction", "pinion_curvature_radius", "wheel_curvature_radius")
+_HEADER = re.compile(r"([a-z_]+?)(?:_(\d+))?\s*(?:\[([^\]]*)\])?")
+_FACT = re.compile(r"#\s*(\w+)\s*[=:]\s*(.+)")
+#: Phases nearer than this are one; knots this even are left as they are [mesh cycles].
+_SAME, _EVEN = 1e-9, 1e-9
+#: Knots that take the place of uneven rows, at least.
+_KNOTS = 512
+#: Torques nearer than this are the same, relative to them.
+_SAME_TORQUE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class TableFile:
+    """A mesh table that another program wrote: columns in SI on a phase grid."""
+
+    path: str
+    grid: PhaseGrid
+    columns: Mapping[str, Array]
+    facts: Mapping[str, float]
+    gears: GearData | None = None  #: where this library wrote the file
+
+    @property
+    def has_force_law(self) -> bool:
+        """Whether the force is known at other loads: by ramps, not one stiffness."""
+        place = self.columns.get("ramp_deflection")
+        return place is not None and (place.shape[1] > 1 or bool(np.any(place)))
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether friction acts."""
+        return bool(np.any(self.columns.get("friction_coefficient", 0.0)))
+
+    def direction(self, driver: str) -> Array:
+        """Change of the compression with the six coordinates of the pair [1 or m]."""
+        if "direction" in self.columns:
+            return self.columns["direction"]
+        sign = 1.0 if driver == "pinion" else -1.0
+        radii = [self.facts[f"base_radius_{gear}"] for gear in ("pinion", "wheel")]
+        return np.asarray(sign * np.array([0.0, 1.0, radii[0], 0.0, -1.0, -radii[1]]))
+
+    def lever(self, coordinate: str) -> float:
+        """Lever of the normal force on a gear, over the cycle [m]."""
+        column = self.direction("pinion")[..., COORDINATES.index(coordinate)]
+        return abs(float(column if column.ndim == 0 else self.grid.mean(column)))
+
+    def table(
+        self,
+        *,
+        teeth: int,
+        driver: str,
+        pinion_speed: float,
+        pinion_torque: float,
+        friction_coefficient: float | None = None,
+    ) -> MeshTable:
+        """Table at a speed [rad/s] and a torque [N*m]; a coefficient replaces those of the file."""
+        self._check_torque(pinion_torque)
+        columns = dict(self.columns)
+        stated = self.facts.get("pinion_speed", pinion_speed)
+        for name in _SPEEDS:
+            if name in columns:
+                columns[name] = columns[name] * (pinion_speed / stated)
+        if friction_coefficient is not None:
+            self._need_friction_columns()
+            columns["friction_coefficient"] = np.full_like(
+                columns["stiffness"], friction_coefficient
+            )
+        direction = self.direction(driver)
+        normal_force = pinion_torque / self.lever("pinion_theta")
+        complete = self._complete(columns, normal_force)
+        gears, law = self.gears, "none" if friction_coefficient == 0.0 else "table"
+        return MeshTable(
+            grid=self.grid,
+            **complete,
+            mesh_order=teeth,
+            direction=gears.direction if gears else direction,
+            gears=gears,
+            pinion_speed=float(pinion_speed),
+            pinion_torque=float(pinion_torque),
+            composite_roughness=0.0,
+            stiffness_model="table",
+            friction_law=law,
+            film_model="none",
+            film_stiffness_kind="none",
+        )
+
+    def _complete(self, columns: dict[str, Array], normal_force: float) -> dict[str, Any]:
+        """Fill in what follows from what the file gives."""
+        stiffness = columns["stiffness"]
+        count, shape = stiffness.shape[0], stiffness.shape
+        ramps = (columns["ramp_deflection"], columns["ramp_stiffness"])
+        moved = self.has_force_law and not self._same_torque(normal_force)
+        deflection, tangent = at_rest(*ramps, normal_force)
+        if moved or "static_transmission_error" not in columns:
+            columns["static_transmission_error"] = deflection
+        if moved or "mesh_stiffness_tangent" not in columns:
+            columns["mesh_stiffness_tangent"] = tangent
+        share = columns.setdefault("load_share", stiffness / stiffness.sum(axis=1, keepdims=True))
+        if moved:
+            touch = at_rest(*ramps, 0.0)[0]
+            columns["stiffness"] = share * (normal_force / (deflection - touch))[:, None]
+        columns.setdefault("in_contact", (stiffness > 0.0) | (share > 0.0))
+        columns["in_contact"] = np.asarray(columns["in_contact"]) > 0.5
+        columns.setdefault("tooth_stiffness", columns["stiffness"])
+        columns.setdefault("corner_share", np.zeros((count, 2)))
+        columns["normal_force"] = share * normal_force
+        names = {field.name for field in fields(MeshTable)}
+        for name in ("friction_coefficient", *_FRICTION):
+            columns.setdefault(name, np.zeros(shape))
+        for name in set(_OF_CONTACTS) & names:
+            columns.setdefault(name, np.full(shape, np.nan) if name not in _FILMS else None)  # type: ignore[arg-type]
+        columns.setdefault("friction_direction", None)  # type: ignore[arg-type]
+        columns.setdefault("unloaded_transmission_error", None)  # type: ignore[arg-type]
+        most = self.facts.get("maximum_single_pair_stiffness", float(columns["stiffness"].max()))
+        names.remove("direction")
+        kept = {name: value for name, value in columns.items() if name in names}
+        return {"maximum_single_pair_stiffness": most, **kept}
+
+    def _same_torque(self, normal_force: float) -> bool:
+        stated = self.facts.get("pinion_torque")
+        torque = normal_force * self.lever("pinion_theta")
+        return stated is not None and abs(torque - stated) <= _SAME_TORQUE * stated
+
+    def _check_torque(self, torque: float) -> None:
+        stated = self.facts.get("pinion_torque")
+        if stated is None or self.has_force_law or abs(torque - stated) <= _SAME_TORQUE * stated:
+            return
+        raise InputError(
+            Problem(
+                f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m",
+                "argument pinion_torque",
+                "Its stiffness holds for that load alone: it has no force law",
+                f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table",
+            )
+        )
+
+    def _need_friction_columns(self) -> None:
+        missing = [name for name in _FRICTION if name not in self.columns]
+        if missing and "friction_direction" not in self.columns:
+            _refuse(
+                self.path, f"the column {missing[0]} is missing", "Friction needs a direction",
+                f"Add {', '.join(missing)}, or friction_direction",
+            )  # fmt: skip
+
+
+def read_table_file(path: str | os.PathLike[str]) -> TableFile:
+    """Read and check the mesh table of another program, or one that this library wrote."""
+    place = Path(path)
+    if not place.is_file():
+        what = "is no regular file" if place.exists() else "does not exist"
+        _refuse(path, f"the mesh table {what}", "It is a CSV or netCDF file", "Correct the path")
+    if place.suffix.lower() in (".nc", ".nc4", ".netcdf", ".h5"):
+        return _own(place) if is_mesh_table(place) else _checked(path, *_netcdf(place), [])
+    facts, columns, events = _csv(place)
+    return _checked(path, facts, columns, events)
+
+
+def _own(place: Path) -> TableFile:
+    table = load(place)
+    columns = {
+        field.name: value
+        for field in fields(table)
+        if isinstance(value := getattr(table, field.name), np.ndarray)
+        and field.name in (*_UNITS, "normal_force")
+    }
+    if table.gears is not None:
+        del columns["direction"]
+    facts = {name: float(getattr(table, name)) for name in _FACTS}
+    return TableFile(str(place), table.grid, columns, facts, table.gears)
+
+
+def _refuse(path: Any, what: str, why: str, remedy: str, where: str = "") -> NoReturn:
+    raise InputError(Problem(what, f"{path}: {where}" if where else str(path), why, remedy))
+
+
+def _checked(
+    path: Any, facts: dict[str, float], columns: dict[str, Array], events: list[float]
+) -> TableFile:
+    """Check columns in SI and lay them on a phase grid."""
+    if "phase" not in columns:
+        _refuse(path, "the column phase is missing", "Rows are mesh phases", "Add it, from 0 to 1")
+    if "stiffness" not in columns and "ramp_stiffness" not in columns:
+        why = "A contact carries by a stiffness or by the ramps of a force law"
+        remedy = "Add stiffness, or ramp_deflection and ramp_stiffness"
+        _refuse(path, "the column stiffness is missing", why, remedy)
+    for one, other in (_OF_RAMPS, tuple(_OF_RAMPS)[::-1]):
+        if one in columns and other not in columns:
+            _refuse(path, f"the column {other} is missing", "Each ramp has both", f"Add {other}")
+    radii = [f"base_radius_{gear}" for gear in ("pinion", "wheel")]
+    if "direction" not in columns and not all(name in facts for name in radii):
+        missing = next(name for name in radii if name not in facts)
+        why = "The forces of the teeth turn the gears: they need levers"
+        _refuse(path, f"{missing} is missing", why, "Add both base radii, or direction columns")
+    if any(name in columns for name in _SPEEDS) and "pinion_speed" not in facts:
+        why = "Speeds of the contact belong to a speed of the pinion"
+        _refuse(path, "pinion_speed is missing", why, "Add it to what holds for the whole file")
+    _check_values(path, columns)
+    grid, columns = _gridded(path, columns, events)
+    if "ramp_stiffness" not in columns:
+        whole = columns["stiffness"].sum(axis=1)[:, None]
+        columns |= {"ramp_deflection": np.zeros_like(whole), "ramp_stiffness": whole}
+    if "stiffness" not in columns:
+        columns["stiffness"] = columns["ramp_stiffness"].sum(axis=1)[:, None]
+    found = TableFile(str(path), grid, columns, facts)
+    if found.has_friction:
+        found._need_friction_columns()
+    return found
+
+
+def _check_values(path: Any, columns: Mapping[str, Array]) -> None:
+    for name, values in columns.items():
+        bad = ~np.isfinite(values)
+        if name not in _TOLD and bad.any():
+            row = int(np.argwhere(bad)[0][0])
+            why = "Every row of a mesh table has a number in every column of the force law"
+            _refuse(path, f"{name} is {values[bad][0]} in row {row + 1}", why, "Complete it", name)
+        if name in ("stiffness", "ramp_stiffness", "load_share") and np.any(values < 0.0):
+            why = "Teeth that are pressed together push back more"
+            what = f"{name} falls to {values.min():.4g}"
+            _refuse(path, what, why, "Correct the sign", name)
+    whole = columns.get("ramp_stiffness", columns.get("stiffness"))
+    if whole is not None and np.any(whole.sum(axis=1) == 0.0):
+        row = int(np.argmin(whole.sum(axis=1)))
+        _refuse(path, f"nothing carries in row {row + 1}", "Some contact is always there", "Add it")
+
+
+def _gridded(
+    path: Any, columns: dict[str, Array], events: list[float]
+) -> tuple[PhaseGrid, dict[str, Array]]:
+    """Rows between two events as one smooth piece each; uneven rows get even knots."""
+    phase = columns.pop("phase").reshape(-1)
+    steps = np.diff(phase)
+    if np.any(steps < 0.0):
+        row = int(np.argmax(steps < 0.0)) + 2
+        what = f"the phase falls to {phase[row - 1]:.6g} in row {row}"
+        _refuse(path, what, "Rows follow the mesh cycle from 0 to 1", "Sort the rows", "phase")
+    if abs(phase[0]) > _SAME or abs(phase[-1] - 1.0) > _SAME:
+        what = f"the phase runs from {phase[0]:.6g} to {phase[-1]:.6g}"
+        why = "It is a fraction of the mesh cycle, and its end is written as phase 1"
+        _refuse(path, what, why, "Let it run from 0 to 1", "phase")
+    doubled = steps == 0.0
+    if np.any(doubled[1:] & doubled[:-1]) or doubled[[0, -1]].any():
+        why = "A phase stands twice at an event inside of the cycle: before and after it"
+        _refuse(path, "a phase stands three times", why, "Keep two rows at most", "phase")
+    cuts = {int(row) + 1 for row in np.flatnonzero(doubled)}
+    pieces = [(a, b) for a, b in zip([0, *sorted(cuts)], [*sorted(cuts), phase.size], strict=True)]
+    for event in events:
+        pieces = list(_cut(path, pieces, phase, event))
+    edges = tuple(float(phase[a]) for a, _ in pieces)
+    intervals = tuple(b - a - 1 for a, b in pieces)
+    even = all(
+        count >= 4 and count % 2 == 0
+        and np.allclose(phase[a:b], np.linspace(phase[a], phase[b - 1], b - a), 0.0, _EVEN)
+        for count, (a, b) in zip(intervals, pieces, strict=True)
+    )  # fmt: skip
+    edges = (0.0, *edges[1:])
+    if even:
+        rows = np.concatenate([np.arange(a, b) for a, b in pieces])
+        return PhaseGrid(edges, intervals), {n: values[rows] for n, values in columns.items()}
+    grid = phase_grid(edges, max(_KNOTS, 2 * phase.size))
+    joined = {
+        name: np.concatenate(
+            [
+                _between(phase[a:b], values[a:b], grid.phase[part])
+                for (a, b), part in zip(pieces, grid.segments, strict=True)
+            ]
+        )
+        for name, values in columns.items()
+    }
+    return grid, joined
+
+
+def _cut(
+    path: Any, pieces: list[tuple[int, int]], phase: Array, event: float
+) -> Iterator[tuple[int, int]]:
+    """Cut the piece in which an event lies; both parts keep its row."""
+    if np.min(np.abs(phase - event)) > _SAME:
+        why = "Columns jump at events, so each of them is a row, or two with both values"
+        _refuse(path, f"the event {event:.6g} is on no row", why, "Add the row", "events")
+    for a, b in pieces:
+        inside = a + 1 + np.flatnonzero(np.abs(phase[a + 1 : b - 1] - event) <= _SAME)
+        if inside.size:
+            yield a, int(inside[0]) + 1
+            yield int(inside[0]), b
+        else:
+            yield a, b
+
+
+def _between(phase: Array, values: Array, at: Array) -> Array:
+    """Monotone curve through the rows of a piece: it swings beyond none of them."""
+    from scipy.interpolate import PchipInterpolator
+
+    return np.asarray(PchipInterpolator(phase, values, axis=0)(np.clip(at, phase[0], phase[-1])))
+
+
+def _in_si(path: Any, name: str, unit: str, values: Array) -> Array:
+    """Column in SI; a unit of another kind is refused."""
+    if unit in ("", "-", "1"):
+        unit = ""
+    if unit == _UNITS[name] or (name in _DIRECTIONS and unit in ("", "m")):
+        return values
+    shown = f"{name} [{unit or '1'}]"
+    if not unit or not _UNITS[name]:
+        why = f"It is given in {_UNITS[name] or '1'}"
+        _refuse(path, f"the unit of {shown} does not fit", why, "Correct the unit", name)
+    try:
+        return np.asarray(values * units.convert(1.0, unit, _UNITS[name]))
+    except Exception:
+        why = f"It is given in {_UNITS[name]}, or in a unit of the same kind"
+        _refuse(path, f"the unit of {shown} does not fit", why, "Correct the unit", name)
+
+
+def _fact(path: Any, name: str, value: Any) -> float:
+    try:
+        number = float(value) if not isinstance(value, str) else units.parse(value, _FACTS[name])
+    except Exception as error:
+        _refuse(path, f"{name} = {value}", str(error), f"Write {name} in {_FACTS[name]}", name)
+    if not (np.isfinite(number) and number > 0.0):
+        _refuse(path, f"{name} = {value}", "It is greater than zero", "Correct it", name)
+    return number
+
+
+def _csv(place: Path) -> tuple[dict[str, float], dict[str, Array], list[float]]:
+    """Read facts, columns and events of a CSV file."""
+    try:
+        lines = place.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        _refuse(place, "the mesh table cannot be read", str(error), "Save it as text in UTF-8")
+    stated = [match.groups() for line in lines if (match := _FACT.match(line.strip()))]
+    body = [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
+    if len(body) < 3:
+        why = "It has a line of names and at least two rows"
+        _refuse(place, "the mesh table is empty", why, "Write phase and stiffness, for example")
+    sign = next((sign for sign in (";", "\t") if sign in body[0]), ",")
+    names, *rows = csv.reader(body, delimiter=sign)
+    values = np.empty((len(rows), len(names)))
+    for number, row in enumerate(rows):
+        if len(row) != len(names):
+            what = f"row {number + 1} has {len(row)} entries"
+            _refuse(place, what, f"There are {len(names)} columns", "Complete the row")
+        for column, entry in enumerate(row):
+            try:
+                values[number, column] = float(entry)
+            except ValueError:
+                what = f'"{entry}" in row {number + 1} is no number'
+                _refuse(place, what, "Numbers have a decimal point", "Correct it", names[column])
+    facts = {n: _fact(place, n, told.strip()) for n, told in stated if n in _FACTS}
+    events = [_event(place, e) for n, told in stated if n == "events" for e in told.split(",")]
+    return facts, _gathered(place, names, values), events
+
+
+def _event(place: Path, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        _refuse(place, f'events: "{text}"', "Events are phases", "Write 0.25, 0.6", "events")
+
+
+def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
+    """Columns by name: those of contacts, ramps and coordinates side by side."""
+    found: dict[str, dict[tuple[int, int], Array]] = {}
+    for column, header in enumerate(names):
+        match = _HEADER.fullmatch(header.strip())
+        name, number, unit = match.groups() if match else (header, None, None)
+        coordinate = 0
+        for of in _DIRECTIONS[::-1]:
+            if name.startswith(f"{of}_") and name.removeprefix(f"{of}_") in COORDINATES:
+                coordinate = COORDINATES.index(name.removeprefix(f"{of}_"))
+                name = of
+        if name not in _UNITS:
+            known = ", ".join(_UNITS)
+            _refuse(place, f'the column "{header}" is unknown', f"Known are {known}", "Rename it")
+        at = (int(number or 1) - 1, coordinate)
+        if at in found.setdefault(name, {}):
+            _refuse(place, f'the column "{header}" stands twice', "Each stands once", "Remove one")
+        found[name][at] = _in_si(place, name, (unit or "").strip(), values[:, column])
+    return {name: _stacked(place, name, parts) for name, parts in found.items()}
+
+
+def _stacked(place: Path, name: str, parts: dict[tuple[int, int], Array]) -> Array:
+    count = max(contact for contact, _ in parts) + 1
+    rows = next(iter(parts.values())).size
+    if name in _OF_THE_MESH:
+        return parts[0, 0]
+    if name in _DIRECTIONS:
+        whole = np.zeros((rows, count, len(COORDINATES)))
+        for (contact, coordinate), values in parts.items():
+            whole[:, contact, coordinate] = values
+        return whole[:, 0] if name == "direction" else whole
+    if len(parts) != count:
+        why = "Contacts and ramps are counted from 1"
+        _refuse(place, f"the column {name}_{len(parts)} is missing", why, "Number them")
+    return np.stack([parts[contact, 0] for contact in range(count)], axis=1)
+
+
+def _netcdf(place: Path) -> tuple[dict[str, float], dict[str, Array]]:
+    """Read facts and columns of a netCDF file."""
+    import xarray
+
+    try:
+        with xarray.open_dataset(place, engine="h5netcdf") as opened:
+            data = opened.load()
+    except (OSError, ValueError) as error:
+        _refuse(place, "the mesh table cannot be read", str(error), "Give a netCDF 4 file")
+    columns = {}
+    for name in (name for name in _UNITS if name in data):
+        values = np.asarray(data[name].values, dtype=float)
+        if values.ndim == 1 and name not in _OF_THE_MESH:
+            values = values[:, None]
+        columns[name] = _in_si(place, name, str(data[name].attrs.get("units", "")), values)
+    sizes = {name: values.shape[0] for name, values in columns.items()}
+    if len(set(sizes.values())) > 1:
+        what = ", ".join(f"{name} has {size} rows" for name, size in sizes.items())
+        _refuse(place, what, "The first dimension of every column is the phase", "Transpose it")
+    facts = {n: _fact(place, n, data.attrs[n]) for n in _FACTS if n in data.attrs}
+    return facts, columns
+
+
+def write_csv(table: MeshTable, path: str | os.PathLike[str]) -> None:
+    """Write a mesh table as CSV, from which :func:`read_table_file` makes an equal one."""
+    place = Path(path)
+    if place.exists():
+        why = "An existing file is never overwritten"
+        raise OutputExistsError(Problem(f"{path} exists already", "argument path", why))
+    facts = {name: float(getattr(table, name)) for name in _FACTS}
+    columns: dict[str, Array] = {"phase": table.phase}
+    for name, unit in _UNITS.items():
+        values = table.phase if name == "phase" else getattr(table, name)
+        if values is None or (name == "direction" and values.ndim == 1):
+            continue
+        flat = np.asarray(values, dtype=float).reshape(table.phase.size, -1)
+        if name in _DIRECTIONS:
+            heads = [f"{name}_{c}" for c in COORDINATES]
+            heads = heads if name == "direction" else [
+                f"{h}_{i + 1}" for i in range(flat.shape[1] // 6) for h in heads
+            ]  # fmt: skip
+        else:
+            several = name not in _OF_THE_MESH
+            heads = [f"{name}_{i + 1}" if several else name for i in range(flat.shape[1])]
+        columns |= {
+            f"{head} [{unit or '-'}]" if name != "phase" else head: flat[:, number]
+            for number, head in enumerate(heads)
+        }
+    lines = [f"# {name} = {value!r} {_FACTS[name]}" for name, value in facts.items()]
+    lines.append(",".join(columns))
+    lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
+    place.write_text("\n".join(lines) + "\n", encoding="utf-8")
