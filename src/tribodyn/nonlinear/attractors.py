@@ -234,9 +234,11 @@ class _Block:
             if period[lane]:
                 m.rate[self.job[lane]] = rate[period[lane] - 1, lane]
             facts = (
-                int(period[lane]), float(change[:, lane].min()), self.force[lane],
+                int(period[lane]),
+                float(change[:, lane].min()),
+                self.force[lane],
                 states[1:, lane],
-            )  # fmt: skip
+            )
             self._begin(int(lane), m.store(int(self.job[lane]), self.state[lane], facts))
 
     def _drop_lost(self, index: Index) -> None:

@@ -75,7 +75,7 @@ class Attractor:
 
 
 @dataclass
-class Found:
+class MarchedAttractor:
     """An attractor as it comes out of the marching."""
 
     states: Array  #: reduced states at the mesh phase 0
@@ -92,7 +92,7 @@ class Catalogue:
 
     def __init__(self, survey: Survey, least: float = 0.0) -> None:
         self.survey, self.least = survey, least
-        self.known: list[Found] = []
+        self.known: list[MarchedAttractor] = []
 
     def label(self, motions: Motions) -> Index:
         """Tell which attractor every motion came to; unknown ones are added."""
@@ -103,8 +103,8 @@ class Catalogue:
         reduced = motions.coordinates.reduce(np.where(alive[:, None], motions.state, 0.0))
         begin = motions.coordinates.reduce(motions.start[alive])
         size = max(float(np.abs(reduced[alive]).max()), _REST * float(np.abs(begin).max())) or 1.0
-        for number, found in enumerate(self.known):
-            self._claim(label, number, found, motions, reduced, size)
+        for number, attractor in enumerate(self.known):
+            self._claim(label, number, attractor, motions, reduced, size)
         while True:
             free = np.flatnonzero((label < 0) & alive & (motions.period > 0))
             if not free.size or len(self.known) >= _MOST:
@@ -115,35 +115,43 @@ class Catalogue:
         self._irregular(label, alive, motions)
         return label
 
-    def _number(self, new: Found, size: float) -> int:
+    def _number(self, new: MarchedAttractor, size: float) -> int:
         """Number of an attractor; that of a known one if both come to the same states."""
-        for number, found in enumerate(self.known):
-            if found.period == new.period:
-                apart = np.abs(found.states - new.states[0]).max(axis=1)
+        for number, attractor in enumerate(self.known):
+            if attractor.period == new.period:
+                apart = np.abs(attractor.states - new.states[0]).max(axis=1)
                 if apart.min() <= _SAME * size:
                     return number
         self.known.append(new)
         return len(self.known) - 1
 
     def _claim(
-        self, label: Index, number: int, found: Found, motions: Motions, reduced: Array, size: float
+        self,
+        label: Index,
+        number: int,
+        attractor: MarchedAttractor,
+        motions: Motions,
+        reduced: Array,
+        size: float,
     ) -> None:
         """Give a number to all motions near the states of an attractor."""
-        if not found.period:
+        if not attractor.period:
             return
-        for state in found.states:
+        for state in attractor.states:
             near = np.abs(reduced - state).max(axis=1) <= _SAME * size
             settled = (motions.period > 0) | (motions.change <= _WILD)
             label[near & settled & (label < 0) & motions.finished] = number
 
-    def _trace(self, motions: Motions, index: Index) -> Found:
+    def _trace(self, motions: Motions, index: Index) -> MarchedAttractor:
         """Follow one motion over its period, or over the cycles of the statistics."""
         period = int(motions.period[index[0]])
         if period:
             one = Motions(
-                motions.compiled, motions.frequency[index], motions.state[index],
+                motions.compiled,
+                motions.frequency[index],
+                motions.state[index],
                 motions.force[index],
-            )  # fmt: skip
+            )
             settle(one, [0], self.survey.cycles, tolerance=_EXACT, width=1)
             motions, index = one, np.array([0])
             shorter = int(motions.period[0])
@@ -153,10 +161,15 @@ class Catalogue:
         )
         full = path.states[: max(period, 1), 0]
         rms = float(path.rms[0])
-        return Found(
-            motions.coordinates.reduce(full), full[0], motions.force[index[0]].copy(), period,
-            0.0 if rms < self.least else rms, float(path.contact_loss_share[0]), full,
-        )  # fmt: skip
+        return MarchedAttractor(
+            motions.coordinates.reduce(full),
+            full[0],
+            motions.force[index[0]].copy(),
+            period,
+            0.0 if rms < self.least else rms,
+            float(path.contact_loss_share[0]),
+            full,
+        )
 
     def _irregular(self, label: Index, alive: Mask, motions: Motions) -> None:
         """Sort motions that do not repeat by their rms; those that still approach stay open."""
@@ -190,19 +203,22 @@ class Catalogue:
         return new
 
 
-def multiplier_of(found: Found, motions: Motions, steps: int) -> float:
+def multiplier_of(attractor: MarchedAttractor, motions: Motions, steps: int) -> float:
     """Modulus of the largest Floquet multiplier of an attractor."""
-    half = found.state.size // 2
-    start = (found.state[:half], found.state[half:])
-    if not found.period:
+    half = attractor.state.size // 2
+    start = (attractor.state[:half], attractor.state[half:])
+    if not attractor.period:
         return float("nan")
     try:
         # An orbit that is not found is told by NaN; at rest its relative error means nothing.
         with quiet():
             orbit = steady_state(
-                motions.compiled.system, float(motions.frequency[0]), steps=steps,
-                periods=found.period, start=start,
-            )  # fmt: skip
+                motions.compiled.system,
+                float(motions.frequency[0]),
+                steps=steps,
+                periods=attractor.period,
+                start=start,
+            )
     except (ComputationError, InputError):
         return float("nan")
     if not orbit.converged or not orbit.floquet_multipliers.size:

@@ -156,9 +156,17 @@ def bifurcation(
         largest = _largest_exponents(values, finer, rows, fine, exponents)
     progress.finish()
     return _diagram(
-        values, finer, rows, fine, parameter=given, parameter_name=parameter_name,
-        parameter_unit=parameter_unit, branches=branches, signal=name, largest_exponent=largest,
-    )  # fmt: skip
+        values,
+        finer,
+        rows,
+        fine,
+        parameter=given,
+        parameter_name=parameter_name,
+        parameter_unit=parameter_unit,
+        branches=branches,
+        signal=name,
+        largest_exponent=largest,
+    )
 
 
 def _begin(values: Points, row: Outcomes, keep: int) -> Outcomes:
@@ -244,9 +252,12 @@ def _read_survey(survey: Survey) -> Survey:
 
 
 def _rows(
-    values: Points, branches: tuple[str, ...], first: Array | None, survey: Survey,
+    values: Points,
+    branches: tuple[str, ...],
+    first: Array | None,
+    survey: Survey,
     progress: Progress,
-) -> list[Outcomes]:  # fmt: skip
+) -> list[Outcomes]:
     """Motions of every branch."""
     if branches != ("independent",):
         return march_sweeps(values, first, survey, branches, progress)
@@ -282,18 +293,18 @@ def _largest_exponents(
     """Largest exponents of all motions; of the refined ones where the step is beyond the limit."""
     limited = values.step_number > LIMIT
     used = np.where(limited, finer.steps, values.steps)
-    found = []
+    branches = []
     for row, new in zip(rows, fine, strict=True):
         refined = limited & new.finished
         last = np.where(refined[:, None], new.last, row.last)
         force = np.where(refined[:, None], new.force, row.force)
-        found.append(_exponents(values, used, last, force, cycles))
-    return np.array(found)
+        branches.append(_exponents(values, used, last, force, cycles))
+    return np.array(branches)
 
 
 def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: int) -> list[float]:
     """Largest exponents; NaN for a motion that grew beyond all bounds or a step too long."""
-    found = []
+    exponents = []
     for number, state in enumerate(last):
         largest = float("nan")
         if np.all(np.isfinite(state)):
@@ -309,8 +320,8 @@ def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: 
                     extra_force=force[number],
                     verdict=False,
                 ).vibrating[0]
-        found.append(float(largest))
-    return found
+        exponents.append(float(largest))
+    return exponents
 
 
 @record

@@ -36,9 +36,13 @@ class Stretches(Motions):
     """Motions of one or two sweeps, cut into stretches."""
 
     def __init__(
-        self, compiled: Compiled, frequency: Array, first: Array, rest: Array,
+        self,
+        compiled: Compiled,
+        frequency: Array,
+        first: Array,
+        rest: Array,
         branches: tuple[str, ...],
-    ) -> None:  # fmt: skip
+    ) -> None:
         count = frequency.size
         all_of_them = np.tile(frequency, len(branches))
         start = np.tile(rest, (all_of_them.size, 1))
@@ -130,9 +134,11 @@ def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> No
     joints = [(b, s) for b, cut in enumerate(sweeps.stretches) for s in range(1, len(cut))]
     try:
         settle(
-            sweeps, [cut[s][0] for cut in sweeps.stretches for s in range(len(cut))], transient,
+            sweeps,
+            [cut[s][0] for cut in sweeps.stretches for s in range(len(cut))],
+            transient,
             progress=progress,
-        )  # fmt: skip
+        )
         sweeps.joining = True
         joints = [(b, s) for b, cut in enumerate(sweeps.stretches) for s in range(1, len(cut))]
         while joints:
@@ -140,9 +146,12 @@ def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> No
                 cut = sweeps.stretches[branch]
                 sweeps.enter(cut[s][0], cut[s - 1][-1])
             settle(
-                sweeps, [sweeps.stretches[b][s][0] for b, s in joints], transient,
-                progress=SILENT, width=1 if len(joints) <= _FEW else 16,
-            )  # fmt: skip
+                sweeps,
+                [sweeps.stretches[b][s][0] for b, s in joints],
+                transient,
+                progress=SILENT,
+                width=1 if len(joints) <= _FEW else 16,
+            )
             changed = [(b, s) for b, s in joints if not sweeps.met[sweeps.stretches[b][s]].any()]
             sweeps.met[:] = False
             joints = [(b, s + 1) for b, s in changed if s + 1 < len(sweeps.stretches[b])]
@@ -155,9 +164,12 @@ def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> No
 
 
 def march_sweeps(
-    points: Points, first: Array | None, survey: Survey, branches: tuple[str, ...],
+    points: Points,
+    first: Array | None,
+    survey: Survey,
+    branches: tuple[str, ...],
     progress: Progress,
-) -> list[Outcomes]:  # fmt: skip
+) -> list[Outcomes]:
     """March the values of the parameter each from the end of the last, on every branch."""
     outcomes = [Outcomes(points.count, survey.keep, points.size) for _ in branches]
     if len(points.groups) > 1:
@@ -181,9 +193,12 @@ def march_sweeps(
 
 
 def _sweep(
-    points: Points, first: Array | None, survey: Survey, task: tuple[str, Outcomes],
+    points: Points,
+    first: Array | None,
+    survey: Survey,
+    task: tuple[str, Outcomes],
     progress: Progress,
-) -> None:  # fmt: skip
+) -> None:
     """One value after the other, each with its own system."""
     (branch, outcomes), state = task, first
     for number in range(points.count)[::-1] if branch == "down" else range(points.count):

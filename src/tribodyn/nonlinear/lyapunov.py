@@ -224,18 +224,23 @@ def lyapunov_exponents(
     carrier.carry(align, progress)
     growth, divergence = carrier.carry(int(cycles), progress)
     progress.finish()
-    found = _summarize(carrier, growth, divergence, 2 * system.size)
+    spectrum = _summarize(carrier, growth, divergence, 2 * system.size)
     if not verdict:
-        return found
+        return spectrum
     try:
         refined = lyapunov_exponents(
-            system, mesh_frequency, start=start, transient=transient, steps=2 * steps,
-            cycles=min(cycles, _FEW) if found.repeats else (cycles + 1) // 2,
-            extra_force=extra_force, verdict=False,
-        )  # fmt: skip
+            system,
+            mesh_frequency,
+            start=start,
+            transient=transient,
+            steps=2 * steps,
+            cycles=min(cycles, _FEW) if spectrum.repeats else (cycles + 1) // 2,
+            extra_force=extra_force,
+            verdict=False,
+        )
     except ComputationError:
-        return replace(found, verdict="step-limited")
-    return replace(found, verdict=exponent_verdict(found, refined))
+        return replace(spectrum, verdict="step-limited")
+    return replace(spectrum, verdict=exponent_verdict(spectrum, refined))
 
 
 class _Carrier:
@@ -258,9 +263,14 @@ class _Carrier:
     def _march(self, cycles: int, record: Array | None) -> None:
         frequency = self.tables.mesh_frequency
         state = march(
-            self.tables.compiled, np.array([1.0 / frequency]), self.state, cycles,
-            extra_force=self.extra[None, :], record=record, elapsed=self.elapsed,
-        )  # fmt: skip
+            self.tables.compiled,
+            np.array([1.0 / frequency]),
+            self.state,
+            cycles,
+            extra_force=self.extra[None, :],
+            record=record,
+            elapsed=self.elapsed,
+        )
         self.elapsed += cycles
         # The free rotation runs away and nothing depends on it.
         coordinates = self.tables.coordinates
@@ -365,18 +375,20 @@ def _windowed(values: Array) -> Array:
     return np.asarray(weight @ values / weight.sum())
 
 
-def exponent_verdict(found: LyapunovExponents, refined: LyapunovExponents) -> Verdict:
+def exponent_verdict(spectrum: LyapunovExponents, refined: LyapunovExponents) -> Verdict:
     """Judge Lyapunov exponents by those with shorter steps."""
-    both_repeat = found.repeats > 0 and refined.repeats > 0
-    if found.chaotic != refined.chaotic or (both_repeat and found.repeats != refined.repeats):
+    both_repeat = spectrum.repeats > 0 and refined.repeats > 0
+    if spectrum.chaotic != refined.chaotic or (both_repeat and spectrum.repeats != refined.repeats):
         return "step-limited"
-    one, other = float(found.vibrating[0]), float(refined.vibrating[0])
-    errors = (float(item.standard_error[0]) for item in (found, refined))
+    largest, refined_largest = float(spectrum.vibrating[0]), float(refined.vibrating[0])
+    errors = (float(item.standard_error[0]) for item in (spectrum, refined))
     spread = math.hypot(*(0.0 if math.isnan(error) else error for error in errors))
     allowed = max(
-        _EXPONENT * max(abs(one), abs(other)), _ERRORS * spread, _ZERO * found.mesh_frequency
+        _EXPONENT * max(abs(largest), abs(refined_largest)),
+        _ERRORS * spread,
+        _ZERO * spectrum.mesh_frequency,
     )
-    return "physical" if abs(one - other) <= allowed else "undecided"
+    return "physical" if abs(largest - refined_largest) <= allowed else "undecided"
 
 
 def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:

@@ -20,7 +20,15 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import most_splits, unparted_step
-from tribodyn.dynamics.equations.motion import clearance, quadratic
+from tribodyn.dynamics.equations.motion import (
+    clearance,
+    compression,
+    compression_rate,
+    forces,
+    has_gap,
+    quadratic,
+    rows_within,
+)
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.load_friction import push_with_friction
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
@@ -30,10 +38,6 @@ from tribodyn.types import Array, Index, Mask
 #: Terms of the exponential series of a matrix no larger than a quarter: exact to rounding.
 _TAYLOR = 12
 _ROOT_LIMIT = 60
-_NAMES = (
-    "stiffness", "damping", "error", "error_slope", "gap", "direction", "direction_slope",
-    "force_direction", "force",
-)  # fmt: skip
 
 
 class TangentTables:
@@ -46,7 +50,7 @@ class TangentTables:
         self.mesh_frequency = mesh_frequency
         self.coordinates = orbit_coordinates(compiled, mesh_frequency)
         self.width = compiled.grid.width / mesh_frequency
-        self.dead = np.asarray(np.any(nodes.gap > 0.0, axis=(0, 1)))
+        self.dead = has_gap(nodes)
         free = [contact.damping_in_gap for contact in system.contacts]
         self.in_gap = np.array(free, dtype=bool)
         c = self.coordinates
@@ -164,54 +168,31 @@ class _Engine:
     """The Runge-Kutta step in plain NumPy, for many parts of steps at once."""
 
     def __init__(self, tables: TangentTables, extra_force: Array) -> None:
-        self.tables = tables
-        system = tables.compiled.system
-        self.nodes = tables.nodes
-        self.inverse = np.linalg.inv(np.asarray(system.mass))
-        self.spring, self.damper = np.asarray(system.stiffness), np.asarray(system.damping)
-        self.extra = extra_force
+        self.tables, self.extra = tables, extra_force
+        self.system, self.nodes = tables.compiled.system, tables.compiled.nodes
         self.beat = tables.mesh_frequency
 
-    def compression(self, lanes: _Lanes, tau: Array) -> tuple[Array, Array]:
-        """Compression and gap of every contact at a fraction of the step, (m, contacts)."""
-        at = tau[:, None]
-        direction, error, gap = (
-            within(getattr(self.nodes, name), lanes.steps, at)[:, 0]
-            for name in ("direction", "error", "gap")
-        )
-        place = lanes.state[:, : direction.shape[-1]]
-        return np.einsum("mji,mi->mj", direction, place) - error, gap
+    def slope(self, rows: Nodes, node: int, state: Array, side: Array) -> Array:
+        """Derivative of states (m, 2 n) with the rows of one of three nodes."""
+        q, v = np.split(state, 2, axis=1)
+        here = Nodes(*(part[:, node] for part in rows))
+        law = forces(self.system, here, self.beat, q, v, side, extra=self.extra)
+        return np.concatenate((v, law.acceleration), axis=1)
 
-    def forces(self, rows: dict[str, Array], node: int, state: Array, side: Array) -> Array:
-        size = self.spring.shape[0]
-        q, v = state[:, :size], state[:, size:]
-        row = {name: values[:, node] for name, values in rows.items()}
-        d = np.einsum("mji,mi->mj", row["direction"], q) - row["error"]
-        rate = np.einsum("mji,mi->mj", row["direction"], v)
-        rate += self.beat * np.einsum("mji,mi->mj", row["direction_slope"], q)
-        rate -= self.beat * row["error_slope"]
-        carried = np.abs(side) * row["stiffness"] * (d - side * row["gap"])
-        carried += ((side != 0.0) | self.tables.in_gap) * row["damping"] * rate
-        total = row["force"] + self.extra - q @ self.spring.T - v @ self.damper.T
-        total = total - np.einsum("mji,mj->mi", row["force_direction"], carried)
-        return np.concatenate((v, total @ self.inverse.T), axis=1)
-
-    def advance(self, lanes: _Lanes, end: Array) -> _Lanes:
-        """March every lane to a fraction of its step."""
+    def advance(self, lanes: _Lanes, end: Array) -> tuple[_Lanes, Array, Array]:
+        """March every lane to a fraction of its step; also compressions and gaps there."""
         taus = np.stack((lanes.begin, 0.5 * (lanes.begin + end), end), axis=1)
-        rows = {name: within(getattr(self.nodes, name), lanes.steps, taus) for name in _NAMES}
+        rows = rows_within(self.nodes, lanes.steps[:, None], taus)
         h = (self.tables.width[lanes.steps] * (end - lanes.begin))[:, None]
         y, side = lanes.state, lanes.side
-        k1 = self.forces(rows, 0, y, side)
-        k2 = self.forces(rows, 1, y + 0.5 * h * k1, side)
-        k3 = self.forces(rows, 1, y + 0.5 * h * k2, side)
-        k4 = self.forces(rows, 2, y + h * k3, side)
-        return lanes._replace(begin=end, state=y + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4))
-
-    def clearance(self, lanes: _Lanes, leaving: Array) -> Array:
-        """Distance of every contact to the boundary of its side, (m, contacts)."""
-        d, gap = self.compression(lanes, lanes.begin)
-        return clearance(d, gap, lanes.side, leaving)
+        k1 = self.slope(rows, 0, y, side)
+        k2 = self.slope(rows, 1, y + 0.5 * h * k1, side)
+        k3 = self.slope(rows, 1, y + 0.5 * h * k2, side)
+        k4 = self.slope(rows, 2, y + h * k3, side)
+        state = y + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+        last = Nodes(*(part[:, 2] for part in rows))
+        place = compression(last, state[:, : self.extra.size])
+        return lanes._replace(begin=end, state=state), place, last.gap
 
 
 def carry_over_crossings(
@@ -226,10 +207,9 @@ def carry_over_crossings(
     waiting = np.arange(count)
     most = most_splits(tables.dead.size)
     for number in range(most + 1):
-        ends = engine.advance(lanes, np.ones(waiting.size))
-        place, _ = engine.compression(ends, ends.begin)
+        _, place, gap = engine.advance(lanes, np.ones(waiting.size))
         leaving = np.where(place > 0.0, 1.0, -1.0)
-        beyond = tables.dead & (engine.clearance(ends, leaving) < 0.0)
+        beyond = tables.dead & (clearance(place, gap, lanes.side, leaving) < 0.0)
         stop, contact = _first_crossing(engine, lanes, leaving, beyond)
         crossed = stop <= 1.0
         if number == most and crossed.any():
@@ -242,7 +222,7 @@ def carry_over_crossings(
         if which.size == 0:
             break
         waiting = waiting[which]
-        lanes = engine.advance(lanes.take(which), stop[which])
+        lanes = engine.advance(lanes.take(which), stop[which])[0]
         jump = _saltation(tables, engine, lanes, contact[which])
         matrix[waiting] = jump @ matrix[waiting]
         row = np.arange(which.size)
@@ -274,7 +254,8 @@ def _root(engine: _Engine, lanes: _Lanes, leaving: Array, contact: int) -> Array
     """Fraction at which one contact leaves its side, by the Illinois method."""
 
     def clear(tau: Array) -> Array:
-        return engine.clearance(engine.advance(lanes, tau), leaving)[:, contact]
+        _, place, gap = engine.advance(lanes, tau)
+        return clearance(place, gap, lanes.side, leaving)[:, contact]
 
     high = np.ones(lanes.begin.size)
     g_high, low, g_low = clear(high), lanes.begin.copy(), clear(lanes.begin)
@@ -302,24 +283,20 @@ def _root(engine: _Engine, lanes: _Lanes, leaving: Array, contact: int) -> Array
 def _saltation(tables: TangentTables, engine: _Engine, lanes: _Lanes, contact: Index) -> Array:
     """Matrix of the jump of a disturbance where a contact opens or closes."""
     row, at = np.arange(contact.size), lanes.begin[:, None]
-
-    def own(values: Array) -> Array:
-        return np.asarray(within(values, lanes.steps, at)[row, 0, contact])
-
-    nodes, size = engine.nodes, engine.spring.shape[0]
-    q, v = lanes.state[:, :size], lanes.state[:, size:]
+    rows = rows_within(engine.nodes, lanes.steps, lanes.begin)
+    q, v = np.split(lanes.state, 2, axis=1)
     side = lanes.side[row, contact]
-    direction, slope = own(nodes.direction), own(nodes.direction_slope)
-    rate = np.einsum("mi,mi->m", direction, v)
-    rate += engine.beat * (np.einsum("mi,mi->m", slope, q) - own(nodes.error_slope))
+    rate = compression_rate(rows, engine.beat, q, v)[row, contact]
     # The clearance changes by the compression and by the gap itself.
-    place = np.einsum("mi,mi->m", direction, q) - own(nodes.error)
+    place = compression(rows, q)[row, contact]
     flank = np.where(side != 0.0, side, np.where(place > 0.0, 1.0, -1.0))
     relative = rate - flank * _gap_rate(engine, lanes.steps, at)[row, contact]
     ratio = np.divide(rate, relative, out=np.ones_like(rate), where=relative != 0.0)
     entering = np.where(side == 0.0, 1.0, -1.0) * ~tables.in_gap[contact]
-    strength = entering * own(nodes.damping) * ratio
-    push, feel = own(tables.push), own(tables.feel)
+    strength = entering * rows.damping[row, contact] * ratio
+    push, feel = (
+        within(item, lanes.steps, at)[row, 0, contact] for item in (tables.push, tables.feel)
+    )
     jump = strength[:, None, None] * push[:, :, None] * feel[:, None, :]
     return np.asarray(np.eye(tables.size) - jump)
 

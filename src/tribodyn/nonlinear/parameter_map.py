@@ -33,9 +33,13 @@ if TYPE_CHECKING:
 
 #: Factors of the system that a lane can have of its own.
 SCALES = (
-    "stiffness_scale", "damping_scale", "friction_scale", "error_scale", "gap_scale",
+    "stiffness_scale",
+    "damping_scale",
+    "friction_scale",
+    "error_scale",
+    "gap_scale",
     "force_scale",
-)  # fmt: skip
+)
 #: ``omega_max * dt`` of the steps that are chosen, and the fewest steps per mesh cycle.
 _NUMBER, _FEWEST = 0.5, 64
 #: Steps of the grid on which the fastest motion is looked for.
@@ -200,9 +204,12 @@ def _judged(
     march_points(finer, survey, again, outcomes.finished & alive & ~same, progress)
     for n in np.flatnonzero(again.finished):
         words[n] = step_verdict(
-            float(step_number[n]), int(outcomes.period[n]), float(outcomes.rms[n]),
-            int(again.period[n]), float(again.rms[n]),
-        )  # fmt: skip
+            float(step_number[n]),
+            int(outcomes.period[n]),
+            float(outcomes.rms[n]),
+            int(again.period[n]),
+            float(again.rms[n]),
+        )
     return words
 
 

@@ -173,14 +173,17 @@ def poincare(
     known = (compiled.step_number, section.period, _path_rms(path))
     judged = judge_section(
         motion, mesh_frequency, (state, force), 2 * steps, transient, cycles, known
-    )  # fmt: skip
+    )
     return replace(section, verdict=judged)
 
 
 def _march(
-    compiled: Compiled, mesh_frequency: float, start: tuple[Array, Array], transient: int,
+    compiled: Compiled,
+    mesh_frequency: float,
+    start: tuple[Array, Array],
+    transient: int,
     cycles: int,
-) -> Path:  # fmt: skip
+) -> Path:
     """One motion over a transient, then once per mesh cycle."""
     state, force = (item[None, :] for item in start)
     motions, lane = Motions(compiled, np.array([mesh_frequency]), state, force), np.zeros(1, int)
@@ -249,10 +252,14 @@ def _judged_response(
     )
     # An orbit is followed until it has become that of the shorter steps.
     judged = judge_section(
-        system, response.mesh_frequency, (state, response.extra_force), 2 * steps,
+        system,
+        response.mesh_frequency,
+        (state, response.extra_force),
+        2 * steps,
         _ORBIT if orbit and response.stable else 0,
-        2 * response.periods if orbit else response.periods - skipped, known,
-    )  # fmt: skip
+        2 * response.periods if orbit else response.periods - skipped,
+        known,
+    )
     return replace(section, verdict=judged)
 
 

@@ -14,6 +14,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics._engine.blocks import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
@@ -183,9 +184,13 @@ class Outcomes:
 
 
 def march_group(
-    points: Points, survey: Survey, outcomes: Outcomes, group: Index,
-    chosen: Mask | None = None, progress: Progress = SILENT,
-) -> None:  # fmt: skip
+    points: Points,
+    survey: Survey,
+    outcomes: Outcomes,
+    group: Index,
+    chosen: Mask | None = None,
+    progress: Progress = SILENT,
+) -> None:
     """March motions of one group from ``outcomes.first``, or from rest where that is unknown."""
     compiled = points.compiled(group)
     unknown = group[~np.all(np.isfinite(outcomes.first[group]), axis=1)]
@@ -199,9 +204,12 @@ def march_group(
 
 
 def march_points(
-    points: Points, survey: Survey, outcomes: Outcomes, chosen: Mask | None = None,
+    points: Points,
+    survey: Survey,
+    outcomes: Outcomes,
+    chosen: Mask | None = None,
     progress: Progress = SILENT,
-) -> None:  # fmt: skip
+) -> None:
     """March all motions side by side, each from a start of its own."""
 
     def march(group: Index) -> None:
@@ -269,9 +277,12 @@ def measure(motions: Motions, indices: Index, survey: Survey) -> Figures:
     """March on from the last states, and gather statistics."""
     nan = np.full(indices.size, np.nan)
     figures = Figures(
-        np.full((indices.size, survey.keep), np.nan), np.zeros(indices.size, dtype=np.int64), nan,
-        nan.copy(), np.full((indices.size, motions.start.shape[1]), np.nan),
-    )  # fmt: skip
+        np.full((indices.size, survey.keep), np.nan),
+        np.zeros(indices.size, dtype=np.int64),
+        nan,
+        nan.copy(),
+        np.full((indices.size, motions.start.shape[1]), np.nan),
+    )
     alive = np.all(np.isfinite(motions.state[indices]), axis=1)
     for period in np.unique(motions.period[indices]):
         rows = np.flatnonzero(alive & (motions.period[indices] == period))
@@ -312,15 +323,21 @@ def follow(
     row = -1 if isinstance(signal, str) else signal
     flank = contacts + (signal if isinstance(signal, int) else 0)
     states, total, largest = np.empty((cycles, *state.shape)), np.zeros((3, lanes)), np.zeros(lanes)
+    waves = np.zeros((motions.compiled.grid.steps, 3, 0, 2))
     for cycle in range(cycles):
         states[cycle] = state
         moments = np.zeros((2 * contacts + size + 1, _PLAIN, lanes))
         moments[:, 2], moments[:, 3] = np.inf, -np.inf
         state = motions.march(
-            index, state, 1, motions.force[index], outputs=outputs,
-            moments=moments.reshape(-1, lanes), width=1 if lanes < _FEW else 16,
-            threads=os.cpu_count() or 1, elapsed=elapsed + cycle,
-        )  # fmt: skip
+            index,
+            state,
+            1,
+            motions.force[index],
+            statistics=Statistics(outputs, waves, moments.reshape(-1, lanes)),
+            width=1 if lanes < _FEW else 16,
+            threads=os.cpu_count() or 1,
+            elapsed=elapsed + cycle,
+        )
         state = motions.coordinates.expand(motions.coordinates.reduce(state))
         total[:2] += moments[row, :2] / cycles
         largest = np.maximum(largest, np.abs(moments[row, 2:4]).max(axis=0))

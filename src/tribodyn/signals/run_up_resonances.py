@@ -129,10 +129,18 @@ def resonances(
             mode, natural = _mode(known, order * beat, near)
             found.append(
                 RunUpResonance(
-                    order, order * run.teeth, speed, beat, order * beat, mode, natural, top,
-                    float(height), _mains(order * beat),
+                    order,
+                    order * run.teeth,
+                    speed,
+                    beat,
+                    order * beat,
+                    mode,
+                    natural,
+                    top,
+                    float(height),
+                    _mains(order * beat),
                 )
-            )  # fmt: skip
+            )
     return tuple(sorted(found, key=lambda each: -each.amplitude))
 
 

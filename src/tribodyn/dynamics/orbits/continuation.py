@@ -42,6 +42,17 @@ from tribodyn.types import Array
 _NEAR = 0.1
 #: First step away from a point where the period doubles, relative to the motion.
 _ASIDE = 1e-2
+#: What a branch holds of the figures of its orbits.
+_COLUMNS = (
+    "position",
+    "velocity",
+    "mean",
+    "rms",
+    "peak_to_peak",
+    "peak_force",
+    "contact_loss",
+    "clearance",
+)
 
 
 def continuation(
@@ -134,9 +145,9 @@ def continuation(
     names = signal_names(function.at(low).compiled.system, signals)
     first = _first(function, start, between, tolerance)
     stepping = Stepping(longest_step, points, tolerance)
-    found, ending, complete = follow(function, first, stepping, progress)
-    found = with_values(function, found, np.asarray(at, dtype=float), tolerance)
-    branch = _collect(function, found, names, parameter, (ending, complete), tolerance)
+    orbits, ending, complete = follow(function, first, stepping, progress)
+    orbits = with_values(function, orbits, np.asarray(at, dtype=float), tolerance)
+    branch = _collect(function, orbits, names, parameter, (ending, complete), tolerance)
     progress.finish()
     if not complete:
         warn("steady-state", f"the branch over {parameter} {ending}", stacklevel=2)
@@ -175,8 +186,9 @@ def _first(
         # A given state may be that of an unstable orbit, which no search would keep.
         function.size = _motion(mapping, y)
         try:
-            point = correct(function, np.append(y / function.size, 0.0), hold(y.size + 1), None,
-                            tolerance)  # fmt: skip
+            point = correct(
+                function, np.append(y / function.size, 0.0), hold(y.size + 1), None, tolerance
+            )
             if np.linalg.norm(point.x[:-1] - y / function.size) < _NEAR:
                 return point
         except StalledError:
@@ -227,9 +239,13 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
         if (point.x - x) @ along > 0.5 * length:
             outward = np.sign(point.tangent @ along) or 1.0
             return BranchPoint(
-                point.x, outward * point.tangent, point.jet, point.multipliers, point.error,
+                point.x,
+                outward * point.tangent,
+                point.jet,
+                point.multipliers,
+                point.error,
                 point.effort,
-            )  # fmt: skip
+            )
     raise ComputationError(
         Problem(
             what=f"no branch of {function.periods} mesh cycles was found at {start.parameter:.8g}",
@@ -241,7 +257,7 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
 
 def _collect(
     function: FamilyMap,
-    found: list[BranchPoint],
+    orbits: list[BranchPoint],
     signals: tuple[str, ...],
     name: str,
     ending: tuple[str, bool],
@@ -252,48 +268,64 @@ def _collect(
         mapping = function.at(value)
         return measure(mapping, function.reduced(point.x), signals)
 
-    measured = [figures(point) for point in found]
-    located: list[Located] = []
-    for kind, (test, holds) in tests_of_multipliers().items():
-        located += locate(function, found, kind, test, holds, tolerance)
-    if np.isfinite(measured[0].opening):
-        by_point = {id(point): one.opening for point, one in zip(found, measured, strict=True)}
-
-        def opening(point: BranchPoint) -> float:
-            known = by_point.get(id(point))
-            return figures(point).opening if known is None else known
-
-        located += locate(function, found, "grazing", opening, lambda point: True, tolerance)
-    order = sorted(
-        located, key=lambda one: (one.after, np.linalg.norm(one.point.x - found[one.after].x))
-    )
-
-    def special(one: Located) -> SpecialPoint:
-        value, own = function.parameter(one.point.x), figures(one.point)
-        return SpecialPoint(
-            one.kind, value, own.mesh_frequency, own.position, own.velocity,
-            one.point.multipliers, own.rms, own.peak_to_peak, function.periods, one.after,
-        )  # fmt: skip
-
-    values = np.array([function.parameter(point.x) for point in found])
-    multipliers = np.array([point.multipliers for point in found])
-    columns = ("position", "velocity", "mean", "rms", "peak_to_peak", "peak_force",
-               "contact_loss", "clearance")  # fmt: skip
+    measured = [figures(point) for point in orbits]
+    opening = {id(point): item.opening for point, item in zip(orbits, measured, strict=True)}
+    located = _located(function, orbits, figures, opening, tolerance)
+    values = np.array([function.parameter(point.x) for point in orbits])
+    multipliers = np.array([point.multipliers for point in orbits])
     return Branch(
         name=name,
         parameter=values,
-        mesh_frequency=np.array([one.mesh_frequency for one in measured]),
+        mesh_frequency=np.array([item.mesh_frequency for item in measured]),
         period=function.periods,
         names=tuple(function.at(float(values[0])).compiled.system.names),
         signals=signals,
-        **{column: np.array([getattr(one, column) for one in measured]) for column in columns},
+        **{name: np.array([getattr(item, name) for item in measured]) for name in _COLUMNS},
         floquet_multipliers=multipliers,
         stable=np.abs(multipliers).max(axis=1, initial=0.0) < 1.0,
-        error=np.array([point.error for point in found]),
-        special_points=tuple(special(one) for one in order),
+        error=np.array([point.error for point in orbits]),
+        special_points=tuple(_special(function, item, figures(item.point)) for item in located),
         ending=ending[0],
         complete=ending[1],
         cycles_used=function.cycles,
+    )
+
+
+def _located(
+    function: FamilyMap,
+    orbits: list[BranchPoint],
+    figures: Callable[[BranchPoint], OrbitFigures],
+    openings: dict[int, float],
+    tolerance: float,
+) -> list[Located]:
+    """Special points in the order of the branch."""
+    located: list[Located] = []
+    for kind, (test, holds) in tests_of_multipliers().items():
+        located += locate(function, orbits, kind, test, holds, tolerance)
+    if np.isfinite(openings[id(orbits[0])]):
+
+        def opening(point: BranchPoint) -> float:
+            known = openings.get(id(point))
+            return figures(point).opening if known is None else known
+
+        located += locate(function, orbits, "grazing", opening, lambda point: True, tolerance)
+    return sorted(
+        located, key=lambda item: (item.after, np.linalg.norm(item.point.x - orbits[item.after].x))
+    )
+
+
+def _special(function: FamilyMap, item: Located, figures: OrbitFigures) -> SpecialPoint:
+    return SpecialPoint(
+        kind=item.kind,
+        parameter=function.parameter(item.point.x),
+        mesh_frequency=figures.mesh_frequency,
+        position=figures.position,
+        velocity=figures.velocity,
+        floquet_multipliers=item.point.multipliers,
+        rms=figures.rms,
+        peak_to_peak=figures.peak_to_peak,
+        period=function.periods,
+        index=item.after,
     )
 
 

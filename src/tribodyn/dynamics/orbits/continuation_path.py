@@ -66,12 +66,12 @@ class Family:
         if self._own is not None or isinstance(self._make, System):
             assert self._own is not None
             return self._own, parameter
-        made = self._make(parameter)
-        system, frequency = made if isinstance(made, tuple) else (made, self._frequency)
+        result = self._make(parameter)
+        system, frequency = result if isinstance(result, tuple) else (result, self._frequency)
         if not isinstance(system, System) or frequency is None:
             raise InputError(
                 Problem(
-                    what=f"the function of the parameter returned {type(made).__name__}"
+                    what=f"the function of the parameter returned {type(result).__name__}"
                     + ("" if frequency is not None else " and no mesh frequency was given"),
                     where="argument make_system",
                     why="A System with mesh_frequency given, or a tuple (System, mesh frequency)",
@@ -165,8 +165,8 @@ def tangent_at(jet: Jet, along: Array) -> Array:
     """Direction of the branch at a point."""
     last = np.zeros(along.size)
     last[-1] = 1.0
-    found = np.linalg.lstsq(jet.border(along), last, rcond=None)[0]
-    return np.asarray(found / np.linalg.norm(found))
+    direction = np.linalg.lstsq(jet.border(along), last, rcond=None)[0]
+    return np.asarray(direction / np.linalg.norm(direction))
 
 
 def _norm(function: FamilyMap, x: Array, row: Array, guess: Array) -> tuple[Array, float]:
@@ -260,10 +260,10 @@ def _at(
     guess[-1] = end
     nearer = before if part < 0.5 else beyond
     try:
-        found = correct(function, guess, hold(guess.size), nearer.jet, tolerance)
+        point = correct(function, guess, hold(guess.size), nearer.jet, tolerance)
     except StalledError:
         return None
-    return replace(found, tangent=tangent_at(found.jet, before.tangent))
+    return replace(point, tangent=tangent_at(point.jet, before.tangent))
 
 
 def with_values(
@@ -271,15 +271,15 @@ def with_values(
 ) -> list[BranchPoint]:
     """Add the points of a branch at given parameters, as often as it passes them."""
     scaled = (np.asarray(values, dtype=float) - function.origin) / function.range
-    made = points[:1]
+    joined = points[:1]
     for left, right in pairwise(points):
         low, high = sorted((float(left.x[-1]), float(right.x[-1])))
         inside = np.sort(scaled[(scaled > low) & (scaled < high)])
         for value in inside if right.x[-1] > left.x[-1] else inside[::-1]:
-            found = _at(function, left, right, float(value), tolerance)
-            made += [found] if found is not None else []
-        made.append(right)
-    return made
+            point = _at(function, left, right, float(value), tolerance)
+            joined += [point] if point is not None else []
+        joined.append(right)
+    return joined
 
 
 def _closes(points: list[BranchPoint], new: BranchPoint) -> bool:
@@ -425,14 +425,14 @@ def locate(
 ) -> list[Located]:
     """Find where a test function changes its sign."""
     values = [test(point) for point in points]
-    found = []
+    located = []
     for number, (left, right) in enumerate(pairwise(values)):
         if left * right < 0.0 or (right == 0.0 and left != 0.0 and test is not _fold):
             ends = (points[number], points[number + 1])
             point = _between(function, ends, (left, right), test, tolerance)
             if holds(point):
-                found.append(Located(kind, number, point))
-    return found
+                located.append(Located(kind, number, point))
+    return located
 
 
 def _between(

@@ -148,10 +148,14 @@ class OrbitMap:
         for first in range(0, lanes, _LANES):
             block = slice(first, first + _LANES)
             new[block] = march(
-                self.compiled, period[block], state[block], self.periods,
-                extra_force=extra[block], width=self.width if lanes < _MANY else None,
+                self.compiled,
+                period[block],
+                state[block],
+                self.periods,
+                extra_force=extra[block],
+                width=self.width if lanes < _MANY else None,
                 threads=self.threads,
-            )  # fmt: skip
+            )
         self.cycles += self.periods
         return self._image(points, new).reshape(y.shape)
 
@@ -167,19 +171,15 @@ class OrbitMap:
         """Map points (..., k) and keep every state on the way, (..., rows, 2 n)."""
         points = y.reshape(-1, y.shape[-1])
         state, extra = self.split(points)
-        period, new = self._lane_periods(len(points)), np.empty_like(state)
         rows = self.periods * self.compiled.grid.steps + 1
-        states = np.empty((len(points), rows, state.shape[1]))
-        for lane in range(len(points)):
-            own, record = slice(lane, lane + 1), np.empty((rows, state.shape[1], 1))
-            new[own] = march(
-                self.compiled, period[own], state[own], self.periods, extra_force=extra[own],
-                record=record, threads=1,
-            )  # fmt: skip
-            states[lane] = record[:, :, 0]
+        record = np.empty((rows, state.shape[1], len(points)))
+        period = self._lane_periods(len(points))
+        new = march(
+            self.compiled, period, state, self.periods, extra_force=extra, record=record, threads=1
+        )
         self.cycles += self.periods
-        image = self._image(points, new).reshape(y.shape)
-        return image, states.reshape(*y.shape[:-1], *states.shape[1:])
+        states = np.ascontiguousarray(np.moveaxis(record, 2, 0))
+        return self._image(points, new).reshape(y.shape), states.reshape(*y.shape[:-1], rows, -1)
 
     def matrix(
         self, y: Array, step: Array | float, *, central: bool = False

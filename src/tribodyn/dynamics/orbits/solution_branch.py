@@ -155,8 +155,10 @@ class Branch(Record):
 
     def _parts(self) -> Parts:
         variables, coordinates, _ = parts = super()._parts()
-        for kind, values in (("real", self.floquet_multipliers.real),
-                             ("imaginary", self.floquet_multipliers.imag)):  # fmt: skip
+        for kind, values in (
+            ("real", self.floquet_multipliers.real),
+            ("imaginary", self.floquet_multipliers.imag),
+        ):
             variables[f"multiplier_{kind}"] = (("point", "multiplier"), values, {"units": "1"})
         special = "special_point", self.special_points
         variables["special_parameter"] = (special[0], [point.parameter for point in special[1]])

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, SpeedFamily, follow
+from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, Follower, SpeedFamily, follow
 from tribodyn.dynamics.run_up import read_outputs
 from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.simulate import read_start
@@ -125,19 +125,23 @@ def speed_sweep(
     linear = read_outputs(outputs, systems[0])
     tables = Tables(systems, 1, float(frequency[0]), steps)
     family = SpeedFamily(tables, known, frequency)
-    found = _follow_all(
+    followed = _follow_all(
         family, directions, start, tolerance, patience, sorted({1, *periods}), progress
     )
     return _result(
-        family, found, linear, tuple(outputs or ()), output_unit, tuple(directions), teeth
+        family, followed, linear, tuple(outputs or ()), output_unit, tuple(directions), teeth
     )
 
 
 def _follow_all(
-    family: SpeedFamily, directions: Sequence[str],
-    start: tuple[ArrayLike, ArrayLike] | None, tolerance: float, patience: int,
-    periods: Sequence[int], progress: Progress,
-) -> list[list[Followed]]:  # fmt: skip
+    family: SpeedFamily,
+    directions: Sequence[str],
+    start: tuple[ArrayLike, ArrayLike] | None,
+    tolerance: float,
+    patience: int,
+    periods: Sequence[int],
+    progress: Progress,
+) -> list[list[Followed]]:
     """Motions of every direction in the order of the speeds."""
     count = family.frequency.size
     progress.start("Sweeping the speed", count * (1 if family.affine else len(directions)))
@@ -155,23 +159,21 @@ def _follow_all(
     begin = None
     if start is not None:
         begin = family.mapping(0, 1).start(read_start(family.system, start))
+    follower = Follower(family, closed, valid, tolerance, patience, periods)
     lock = Lock()
 
     def told() -> None:
         with lock:
             progress.advance()
 
-    def one(direction: str) -> list[Followed]:
+    def follow_direction(direction: str) -> list[Followed]:
         order = range(count) if direction == "up" else range(count)[::-1]
-        met = follow(
-            family, order, closed, valid, start=begin, tolerance=tolerance, patience=patience,
-            periods=periods, told=told,
-        )  # fmt: skip
+        met = follow(follower, order, begin, told)
         return met if direction == "up" else met[::-1]
 
-    found = in_threads(one, directions, len(directions))
+    followed = in_threads(follow_direction, directions, len(directions))
     progress.finish()
-    return found
+    return followed
 
 
 def _shut(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
@@ -187,12 +189,17 @@ def _shut(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
 
 
 def _result(
-    family: SpeedFamily, found: list[list[Followed]], linear: Array, outputs: tuple[str, ...],
-    output_unit: str, directions: tuple[str, ...], teeth: int,
-) -> SpeedSweep:  # fmt: skip
+    family: SpeedFamily,
+    followed: list[list[Followed]],
+    linear: Array,
+    outputs: tuple[str, ...],
+    output_unit: str,
+    directions: tuple[str, ...],
+    teeth: int,
+) -> SpeedSweep:
     system, count = family.system, family.frequency.size
-    flat = [each for met in found for each in met]
-    number = np.tile(np.arange(count), len(found))
+    flat = [each for met in followed for each in met]
+    number = np.tile(np.arange(count), len(followed))
     point = np.array([each.point for each in flat])
     period = np.array([each.period for each in flat], dtype=np.int64)
     figures = family.statistics(number, point, period, _IRREGULAR, linear)
@@ -202,7 +209,7 @@ def _result(
     def shaped(values: Any) -> Any:
         """Directions, speeds and the rest."""
         values = np.asarray(values)
-        return values.reshape(len(found), count, *values.shape[1:])
+        return values.reshape(len(followed), count, *values.shape[1:])
 
     contacts = len(system.contacts)
     names, units = _signals(system, outputs, output_unit)
@@ -224,7 +231,7 @@ def _result(
         position=shaped(state[:, : system.size]),
         velocity=shaped(state[:, system.size :]),
         extra_force=shaped(extra),
-        jumps=_jumps(family.frequency, found, directions),
+        jumps=_jumps(family.frequency, followed, directions),
         names=tuple(system.names),
         step_number=max(
             family.compiled(k).step_number / float(family.frequency[k]) for k in range(count)
@@ -244,10 +251,10 @@ def _signals(
 
 
 def _jumps(
-    frequency: Array, found: list[list[Followed]], directions: tuple[str, ...]
+    frequency: Array, followed: list[list[Followed]], directions: tuple[str, ...]
 ) -> tuple[Jump, ...]:
     jumps: list[Jump] = []
-    for direction, met in zip(directions, found, strict=True):
+    for direction, met in zip(directions, followed, strict=True):
         turn = 1 if direction == "up" else -1
         beats, orbits = frequency[::turn], met[::turn]
         for k in range(1, len(orbits)):

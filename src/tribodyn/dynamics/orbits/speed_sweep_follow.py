@@ -100,9 +100,13 @@ class SpeedFamily:
         return state, extra
 
     def statistics(
-        self, number: Index, y: Array, periods: Index, cycles: int,
+        self,
+        number: Index,
+        y: Array,
+        periods: Index,
+        cycles: int,
         outputs: Array,
-    ) -> Array:  # fmt: skip
+    ) -> Array:
         """March motions over their periods and gather their figures."""
         contacts, others = len(self.system.contacts), self.system.size + len(outputs)
         figures = np.empty((2 * contacts + others, 5, number.size))
@@ -115,9 +119,13 @@ class SpeedFamily:
                 moments = fresh_moments(contacts, others, 0, lanes.size)
                 waves = np.zeros((compiled.grid.steps, 3, 0, 2))
                 march(
-                    compiled, 1.0 / beat, state[lanes], int(length) or cycles,
-                    extra_force=extra[lanes], statistics=Statistics(outputs, waves, moments),
-                )  # fmt: skip
+                    compiled,
+                    1.0 / beat,
+                    state[lanes],
+                    int(length) or cycles,
+                    extra_force=extra[lanes],
+                    statistics=Statistics(outputs, waves, moments),
+                )
                 figures[:, :, lanes] = moments.reshape(-1, 5, lanes.size)
         return figures
 
@@ -172,11 +180,18 @@ def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
     return mapping(y)
 
 
-class _Follower:
+class Follower:
+    """Finds the motion of one speed from that of the speed before."""
+
     def __init__(
-        self, family: SpeedFamily, closed: Orbits | None, valid: Mask,
-        tolerance: float, patience: int, periods: Sequence[int],
-    ) -> None:  # fmt: skip
+        self,
+        family: SpeedFamily,
+        closed: Orbits | None,
+        valid: Mask,
+        tolerance: float,
+        patience: int,
+        periods: Sequence[int],
+    ) -> None:
         self.family, self.closed, self.valid = family, closed, valid
         self.tolerance, self.patience, self.periods = tolerance, patience, sorted(periods)
 
@@ -265,41 +280,32 @@ class _Follower:
 
 
 def follow(
-    family: SpeedFamily,
-    order: Sequence[int],
-    closed: Orbits | None,
-    valid: Mask,
-    *,
-    start: Array | None,
-    tolerance: float,
-    patience: int,
-    periods: Sequence[int],
-    told: Callable[[], None],
+    follower: Follower, order: Sequence[int], start: Array | None, told: Callable[[], None]
 ) -> list[Followed]:
     """Follow the motion over the speeds in one direction."""
-    one = _Follower(family, closed, valid, tolerance, patience, periods)
+    family = follower.family
     done: list[Followed] = []
     shut = False
     for place, number in enumerate(order):
         orbit: Followed | None = None
         if place == 0:
-            orbit = one.shut(number) if start is None else None
+            orbit = follower.shut(number) if start is None else None
             shut = orbit is not None
             begin = family.start(number) if start is None else start
-            orbit = orbit or _settled(one, number, begin)
+            orbit = orbit or _settled(follower, number, begin)
             orbit.jumped = False
         else:
             last = done[-1]
-            orbit = one.shut(number) if shut else None
+            orbit = follower.shut(number) if shut else None
             if orbit is None and last.period > 0:
                 shut = False
                 guess = _guess(family.frequency, order, place, done)
-                orbit = one.continued(number, last, guess)
-                shut = orbit is not None and one.is_shut(number, orbit)
+                orbit = follower.continued(number, last, guess)
+                shut = orbit is not None and follower.is_shut(number, orbit)
             if orbit is None:
                 share = _IRREGULAR if last.period == 0 else 1.0
                 begin = family.mapping(number, 1).rescaled(last.point, max(last.period, 1))
-                orbit = _settled(one, number, begin, share)
+                orbit = _settled(follower, number, begin, share)
                 orbit.jumped = _is_jump(done, orbit)
         done.append(orbit)
         told()
@@ -319,13 +325,13 @@ def _is_jump(done: Sequence[Followed], orbit: Followed) -> bool:
     return away > max(_JUMP * float(np.linalg.norm(last.point)), 3.0 * usual)
 
 
-def _settled(one: _Follower, number: int, begin: Array, share: float = 1.0) -> Followed:
-    patience = max(int(share * one.patience), _LOOK)
+def _settled(follower: Follower, number: int, begin: Array, share: float = 1.0) -> Followed:
+    patience = max(int(share * follower.patience), _LOOK)
     try:
-        return one.lost(number, begin, patience)
+        return follower.lost(number, begin, patience)
     except ComputationError:
         # The motion grew beyond all bounds: begin again at rest.
-        return one.lost(number, one.family.start(number), patience)
+        return follower.lost(number, follower.family.start(number), patience)
 
 
 def _guess(frequency: Array, order: Sequence[int], place: int, done: Sequence[Followed]) -> Array:
