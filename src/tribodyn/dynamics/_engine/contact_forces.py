@@ -92,7 +92,7 @@ def is_dead_zone(law: Law, here: Cursor) -> bool:
 
 
 @nb.njit(**INNER)
-def _sum_terms(lanes: Any, law: Law, first: Any, count: int, read: int, row: int, w: Array) -> Any:
+def sum_terms(lanes: Any, law: Law, first: Any, count: int, read: int, row: int, w: Array) -> Any:
     """``first`` plus the sum of factor times slot."""
     total = first
     for item in range(count):
@@ -101,17 +101,16 @@ def _sum_terms(lanes: Any, law: Law, first: Any, count: int, read: int, row: int
 
 
 @nb.njit(**INNER)
-def compression(lanes: Any, law: Law, here: Cursor, w: Array) -> Any:
-    """Compression of a contact."""
-    error = load(lanes, w, slots_of(law.code).error) - 1.0
-    first = entry(lanes, law.rows, here.row + 2) * error
-    return _sum_terms(lanes, law, first, law.code[here.at], here.read, here.row + 5, w)
+def compression(lanes: Any, law: Law, here: Cursor, error: int, w: Array) -> Any:
+    """Compression of a contact; ``error`` is the slot of its factor."""
+    first = entry(lanes, law.rows, here.row + 2) * (load(lanes, w, error) - 1.0)
+    return sum_terms(lanes, law, first, law.code[here.at], here.read, here.row + 5, w)
 
 
 @nb.njit(forceinline=True, **INNER)
-def compression_and_rate(lanes: Any, law: Law, here: Cursor, w: Array) -> tuple[Any, Any]:
+def compression_and_rate(lanes: Any, law: Law, s: Slots, here: Cursor, w: Array) -> tuple[Any, Any]:
     """Compression of a contact and its rate, in one loop."""
-    s, code, rows = slots_of(law.code), law.code, law.rows
+    code, rows = law.code, law.rows
     beat, error = load(lanes, w, s.beat), load(lanes, w, s.error) - 1.0
     d = entry(lanes, rows, here.row + 2) * error
     rate = entry(lanes, rows, here.row + 3) * (error * beat)
@@ -129,20 +128,20 @@ def compression_and_rate(lanes: Any, law: Law, here: Cursor, w: Array) -> tuple[
 
 
 @nb.njit(**INNER)
-def dead_zone(lanes: Any, law: Law, here: Cursor, w: Array) -> Any:
-    """Half of the dead zone of a contact."""
-    return entry(lanes, law.rows, here.row + 4) * (1.0 + load(lanes, w, slots_of(law.code).gap))
+def dead_zone(lanes: Any, law: Law, here: Cursor, gap: int, w: Array) -> Any:
+    """Half of the dead zone of a contact; ``gap`` is the slot of its factor."""
+    return entry(lanes, law.rows, here.row + 4) * (1.0 + load(lanes, w, gap))
 
 
 @nb.njit(forceinline=True, **INNER)
 def contact_law(
-    lanes: Any, law: Law, here: Cursor, j: int, d: Any, rate: Any, w: Array
+    lanes: Any, law: Law, s: Slots, here: Cursor, j: int, d: Any, rate: Any, w: Array
 ) -> tuple[Any, Any, Any]:
     """Force of a contact on its side, and its derivatives by compression and rate.
 
     Stiffness, damping and dead zone differ between lanes, which costs some operations more.
     """
-    s, code = slots_of(law.code), law.code
+    code = law.code
     k = entry(lanes, law.rows, here.row) * (1.0 + load(lanes, w, s.stiffness))
     c = entry(lanes, law.rows, here.row + 1) * (1.0 + load(lanes, w, s.damping))
     if code[here.at + 2] == 0:
@@ -152,11 +151,11 @@ def contact_law(
     k = touch * k
     if code[here.at + 3] % 2 == 0:
         c = touch * c
-    return k * (d - dead_zone(lanes, law, here, w) * side) + c * rate, k, c
+    return k * (d - dead_zone(lanes, law, here, s.gap, w) * side) + c * rate, k, c
 
 
 @nb.njit(forceinline=True, **INNER)
-def friction_law(lanes: Any, law: Law, here: Cursor, w: Array) -> tuple[Any, Any, Cursor]:
+def friction_law(lanes: Any, law: Law, rub: int, here: Cursor, w: Array) -> tuple[Any, Any, Cursor]:
     """Force of a friction, its derivative by the load, and where the next friction begins."""
     code, rows = law.code, law.rows
     contacts, terms = code[here.at], code[here.at + 1]
@@ -174,7 +173,7 @@ def friction_law(lanes: Any, law: Law, here: Cursor, w: Array) -> tuple[Any, Any
             slope = slope * x + value
             value = value * x + entry(lanes, rows, last - item)
         slope = below(ratio, limit) * (x * slope)
-    scale = 1.0 + load(lanes, w, slots_of(code).rub)
+    scale = 1.0 + load(lanes, w, rub)
     following = Cursor(here.at + 2, here.read + contacts, last + 1)
     return scale * carried * value, scale * (value + slope), following
 
@@ -182,11 +181,11 @@ def friction_law(lanes: Any, law: Law, here: Cursor, w: Array) -> tuple[Any, Any
 @nb.njit(**INNER)
 def friction_forces(lanes: Any, law: Law, here: Cursor, w: Array) -> Cursor:
     """Every friction that follows the load; returns where the coordinates' terms begin."""
-    friction = slots_of(law.code).friction
-    count = law.code[here.at]
+    s = slots_of(law.code)
+    friction, rub, count = s.friction, s.rub, law.code[here.at]
     here = Cursor(here.at + 1, here.read, here.row)
     for f in range(count):
-        force, _, following = friction_law(lanes, law, here, w)
+        force, _, following = friction_law(lanes, law, rub, here, w)
         store(w, friction + f, force)
         here = following
     return here
@@ -198,9 +197,9 @@ def all_forces(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> Cursor
     s, code, rows = slots_of(law.code), law.code, law.rows
     here = first_contact(law, base, buffer)
     for j in range(s.contacts):
-        d, rate = compression_and_rate(lanes, law, here, w)
+        d, rate = compression_and_rate(lanes, law, s, here, w)
         if code[here.at + 3] >= 2:
-            store(w, s.force + j, contact_law(lanes, law, here, j, d, rate, w)[0])
+            store(w, s.force + j, contact_law(lanes, law, s, here, j, d, rate, w)[0])
         else:
             k, c = entry(lanes, rows, here.row), entry(lanes, rows, here.row + 1)
             if code[here.at + 2] == 0:
@@ -218,13 +217,6 @@ def all_forces(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> Cursor
     return Cursor(here.at + 1, here.read, here.row)
 
 
-@nb.njit(**INNER)
-def acceleration_of(lanes: Any, law: Law, here: Cursor, i: int, w: Array) -> Any:
-    """Acceleration of the coordinate ``i``, whose terms begin here, under the forces found."""
-    start = load(lanes, w, slots_of(law.code).load + i)
-    return _sum_terms(lanes, law, start, law.code[here.at], here.read, here.row, w)
-
-
 @nb.njit(forceinline=True, **INNER)
 def next_coordinate(law: Law, here: Cursor) -> Cursor:
     """Where the terms of the next coordinate begin."""
@@ -235,9 +227,12 @@ def next_coordinate(law: Law, here: Cursor) -> Cursor:
 @nb.njit(**INNER)
 def acceleration(lanes: Any, law: Law, base: int, buffer: int, out: int, w: Array) -> None:
     """All forces, and the acceleration of every coordinate into the slots from ``out``."""
+    n, steady = law.code[0], slots_of(law.code).load
     here = all_forces(lanes, law, base, buffer, w)
-    for i in range(law.code[0]):
-        store(w, out + i, acceleration_of(lanes, law, here, i, w))
+    for i in range(n):
+        start = load(lanes, w, steady + i)
+        a = sum_terms(lanes, law, start, law.code[here.at], here.read, here.row, w)
+        store(w, out + i, a)
         here = next_coordinate(law, here)
 
 
@@ -247,17 +242,18 @@ def set_sides(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> None:
     s, here = slots_of(law.code), first_contact(law, base, buffer)
     for j in range(s.contacts):
         if is_dead_zone(law, here):
-            d = compression(lanes, law, here, w)
-            gap = dead_zone(lanes, law, here, w)
+            d = compression(lanes, law, here, s.error, w)
+            gap = dead_zone(lanes, law, here, s.gap, w)
             store(w, s.side + j, above(d, gap) - above(0.0 - d, gap))
         here = next_contact(law, here)
 
 
 @nb.njit(forceinline=True, **INNER)
-def clearances(lanes: Any, law: Law, here: Cursor, j: int, w: Array) -> tuple[Any, Any]:
+def clearances(lanes: Any, law: Law, s: Slots, here: Cursor, j: int, w: Array) -> tuple[Any, Any]:
     """Distances of a contact to both boundaries of its side, which may be one."""
-    d, gap = compression(lanes, law, here, w), dead_zone(lanes, law, here, w)
-    side = load(lanes, w, slots_of(law.code).side + j)
+    d = compression(lanes, law, here, s.error, w)
+    gap = dead_zone(lanes, law, here, s.gap, w)
+    side = load(lanes, w, s.side + j)
     touch = side * side
     inside, free = touch * (side * d - gap), 1.0 - touch
     return inside + free * (gap - d), inside + free * (gap + d)
@@ -266,11 +262,11 @@ def clearances(lanes: Any, law: Law, here: Cursor, j: int, w: Array) -> tuple[An
 @nb.njit(**INNER)
 def left_side(lanes: Any, law: Law, base: int, w: Array) -> Any:
     """Bits of the lanes whose new state (buffer 2) is off the side of a dead zone they were on."""
-    here = first_contact(law, base, I64(2))
+    s, here = slots_of(law.code), first_contact(law, base, I64(2))
     gone = I64(0)
-    for j in range(law.code[1]):
+    for j in range(s.contacts):
         if is_dead_zone(law, here):
-            near, far = clearances(lanes, law, here, j, w)
+            near, far = clearances(lanes, law, s, here, j, w)
             gone |= negative_lanes(near)
             gone |= negative_lanes(far)
         here = next_contact(law, here)

@@ -215,11 +215,11 @@ def change_sides(
 @nb.njit(**INNER)
 def measure(law: Law, base: int, buffer: int, w: Array, room: Array, place: int) -> None:
     """Compression and gap of every contact with a dead zone, from ``place`` of its numbers."""
-    here = first_contact(law, base, buffer)
-    for j in range(law.code[1]):
+    s, here = slots_of(law.code), first_contact(law, base, buffer)
+    for j in range(s.contacts):
         if is_dead_zone(law, here):
-            room[WIDTH * j + place] = first_lane(compression((0.0,), law, here, w))
-            room[WIDTH * j + place + 1] = first_lane(dead_zone((0.0,), law, here, w))
+            room[WIDTH * j + place] = first_lane(compression((0.0,), law, here, s.error, w))
+            room[WIDTH * j + place + 1] = first_lane(dead_zone((0.0,), law, here, s.gap, w))
         here = next_contact(law, here)
 
 

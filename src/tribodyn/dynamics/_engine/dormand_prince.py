@@ -221,10 +221,10 @@ def between(lanes: Any, law: Law, theta: float, speed: bool, w: Array) -> None:
 @nb.njit(**INNER)
 def _distances(lanes: Any, law: Law, buffer: int, slot: int, w: Array) -> None:
     """Distances of every contact to the boundaries of its side, two slots each from ``slot``."""
-    here = first_contact(law, I64(0), buffer)
-    for j in range(law.code[1]):
+    s, here = slots_of(law.code), first_contact(law, I64(0), buffer)
+    for j in range(s.contacts):
         if is_dead_zone(law, here):
-            near, far = clearances(lanes, law, here, j, w)
+            near, far = clearances(lanes, law, s, here, j, w)
             store(w, slot + 2 * j, near)
             store(w, slot + 2 * j + 1, far)
         here = next_contact(law, here)

@@ -97,7 +97,7 @@ def gather(
         acceleration(lanes, law, row, buffer, s.first, w)
         here = first_contact(law, row, buffer)
         for j in range(contacts):
-            d = compression(lanes, law, here, w)
+            d = compression(lanes, law, here, s.error, w)
             _add(lanes, d, weight, j * long, waves, phase, harmonics, m)
             force = load(lanes, w, s.force + j)
             _add(lanes, force, weight, (contacts + j) * long, waves, phase, harmonics, m)

@@ -22,7 +22,6 @@ from tribodyn.dynamics._engine.contact_forces import (
     Cursor,
     Law,
     acceleration,
-    acceleration_of,
     compression_and_rate,
     contact_law,
     first_contact,
@@ -31,6 +30,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     next_contact,
     next_coordinate,
     slots_of,
+    sum_terms,
 )
 from tribodyn.dynamics._engine.lanes import (
     any_above,
@@ -183,7 +183,9 @@ def _without_contacts(
         store(w, f, zero)
     here = _coordinate_terms(law, base, I64(2))
     for i in range(n):
-        store(w, s.second + i, acceleration_of(lanes, law, here, i, w))
+        start = load(lanes, w, s.load + i)
+        b = sum_terms(lanes, law, start, law.code[here.at], here.read, here.row, w)
+        store(w, s.second + i, b)
         here = next_coordinate(law, here)
     for i in range(n):
         a = zero
@@ -196,7 +198,7 @@ def _without_contacts(
         store(w, 5 * n + i, load(lanes, w, 5 * n + i) + fast * a)
     here = first_contact(law, base, I64(2))
     for j in range(s.contacts):
-        d, rate = compression_and_rate(lanes, law, here, w)
+        d, rate = compression_and_rate(lanes, law, s, here, w)
         store(w, o.plain + j, d)
         store(w, o.rates + j, rate)
         store(w, s.force + j, load(lanes, w, o.guess + j))
@@ -273,7 +275,7 @@ def _slopes(lanes: Any, law: Law, here: Cursor, w: Array) -> None:
     s, o = slots_of(law.code), _slots_of(law.code)
     here = Cursor(here.at + 1, here.read, here.row)
     for f in range(s.end - s.friction):
-        force, slope, following = friction_law(lanes, law, here, w)
+        force, slope, following = friction_law(lanes, law, s.rub, here, w)
         store(w, s.friction + f, force)
         store(w, o.slope + f, slope)
         here = following
@@ -316,7 +318,7 @@ def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> boo
                 force = load(lanes, w, s.force + j if j < m else s.friction + j - m)
                 d = d + load(lanes, w, o.effect + i * sources + j) * force
                 rate = rate + load(lanes, w, o.effect + (m + i) * sources + j) * force
-            force, k, c = contact_law(lanes, law, here, i, d, rate, w)
+            force, k, c = contact_law(lanes, law, s, here, i, d, rate, w)
             old = load(lanes, w, s.force + i)
             store(w, o.right + i, force - old)
             size = greatest(size, magnitude(old) + magnitude(force))

@@ -11,10 +11,10 @@ from tribodyn.dynamics._engine.contact_forces import (
     I64,
     INNER,
     Law,
-    acceleration_of,
     all_forces,
     next_coordinate,
     slots_of,
+    sum_terms,
 )
 from tribodyn.dynamics._engine.lanes import load, store
 from tribodyn.dynamics._engine.method import (
@@ -43,7 +43,8 @@ def runge_kutta_step(lanes: Any, law: Law, base: int, w: Array) -> None:
         q, out = 2 * n * buffer, 2 * n * target
         here = all_forces(lanes, law, base + ((stage + 1) // 2) * columns, buffer, w)
         for i in range(n):
-            a = acceleration_of(lanes, law, here, i, w)
+            start = load(lanes, w, s.load + i)
+            a = sum_terms(lanes, law, start, law.code[here.at], here.read, here.row, w)
             here = next_coordinate(law, here)
             q0, v0 = load(lanes, w, i), load(lanes, w, n + i)
             if stage < 3:
