@@ -318,7 +318,7 @@ def test_a_table_case_is_written_swept_and_reported(tmp_path):
     with pytest.raises(InputError, match="no gear pair"):
         case.gear_pair  # noqa: B018
     with pytest.raises(InputError, match="no gear pair"):
-        kept.plot_friction()
+        kept.gear_pair.driver  # noqa: B018
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         limits = {"over": "operation.speed", "between": ("800 rpm", "1000 rpm"), "points": 3}
