@@ -25,6 +25,3 @@ def martin(
 ):
     """Film in the centre of each contact [m]."""
     return factor * dynamic_viscosity * entrainment_speed * equivalent_radius / load_per_width
-
-
-# A slope of the film over the load that is no constant takes the same arguments as the formula.

@@ -236,6 +236,7 @@ EXPECTED: dict[str, Callable[[str], None]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_example_prints_known_figures(path: Path, tmp_path: Path) -> None:
     done = subprocess.run(

@@ -187,6 +187,7 @@ def test_flamant_meets_hertz_far_from_the_load():
     assert beside[0] == pytest.approx(-0.5 * 0.7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GEARS)
 def test_refined_mesh_changes_little(name, record_property):
     gear = GEARS[name]()

@@ -299,6 +299,7 @@ def test_the_printed_sum_is_shown_once_and_is_no_spring() -> None:
     assert np.all(mesh.film_stiffness[mesh.in_contact] < 1e6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["tangent", "secant"])
 def test_coupled_pairs_with_tip_contact_need_no_more_positions(kind: str) -> None:
     # Zones end where a tip corner begins or ceases to carry: no warning, and more change nothing.

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from tribodyn.errors import (
+    Argument,
     ComputationError,
     InputError,
+    ModelOption,
     ModelWarning,
     OutputExistsError,
     Problem,
@@ -103,3 +105,26 @@ def test_warning_carries_code_and_the_place_of_the_caller() -> None:
     assert record.message.code == "friction-range"
     assert str(record.message) == "[friction-range] p = 3 GPa is above 2.5 GPa"
     assert record.filename == __file__
+
+
+def test_a_place_is_told_as_the_caller_writes_it() -> None:
+    assert str(Argument("teeth")) == "argument teeth"
+    assert str(Argument("modification.run_out", gear="wheel")) == (
+        "argument wheel_modification.run_out"
+    )
+    assert str(ModelOption("stiffness", "table", "phase")) == "table stiffness: phase"
+    assert str(ModelOption("stiffness", "table")) == "table stiffness"
+    assert str(ModelOption("stiffness", name="reference")) == "stiffness option reference"
+
+
+def test_an_error_is_made_of_its_parts() -> None:
+    parts = {"where": Argument("nodes"), "why": "At least 4 are needed", "remedy": "Give 30"}
+    error = InputError("nodes = 3", **parts)
+    assert error.problems == (Problem("nodes = 3", **parts),)
+    assert str(error) == "argument nodes: nodes = 3. At least 4 are needed. Give 30."
+
+
+def test_the_argument_at_fault_needs_no_reading() -> None:
+    with pytest.raises(InputError) as caught:
+        require_positive("load_per_width", -1.0, "N/m")
+    assert caught.value.problems[0].where == Argument("load_per_width")

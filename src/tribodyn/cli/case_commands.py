@@ -48,8 +48,8 @@ def check(
         Write one flat JSON object in SI to stdout.
     """
     from tribodyn.study.case.provenance import assumptions
-    from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.geometry import geometry
     from tribodyn.study.pipeline.summary import SUMMARY
 
     checked = changed_case(case, set_ or [])

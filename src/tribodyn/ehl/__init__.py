@@ -1,4 +1,15 @@
-"""The elastohydrodynamic film of a tooth contact: solved, or by formulas named by author."""
+"""The elastohydrodynamic film of a tooth contact: solved, or by formulas named by author.
+
+| module | what it answers |
+|---|---|
+| ``models`` | film models by name, as a case file picks them |
+| ``formulas`` | films by formula: which groups, which regime, which film |
+| ``steady`` | pressure and film of a contact at rest in its frame, one or many |
+| ``transient`` | pressure and film while load, radius and speed change |
+| ``stiffness`` | stiffness and damping of the film |
+| ``traction`` | shear of the oil, and its temperature |
+| ``roughness`` | measured heights of a surface |
+"""
 
 from __future__ import annotations
 

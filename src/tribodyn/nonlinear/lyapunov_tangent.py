@@ -18,9 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.crossing import most_splits
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import unparted_step
+from tribodyn.dynamics.equations.divergence import most_splits, unparted_step
 from tribodyn.dynamics.equations.motion import clearance, quadratic
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.load_friction import push_with_friction
@@ -225,7 +224,7 @@ def carry_over_crossings(
     trace = np.zeros(count)
     lanes = _Lanes(steps, np.zeros(count), state, side.copy())
     waiting = np.arange(count)
-    most = most_splits.py_func(tables.dead.size)  # compiled for kernels only
+    most = most_splits(tables.dead.size)
     for number in range(most + 1):
         ends = engine.advance(lanes, np.ones(waiting.size))
         place, _ = engine.compression(ends, ends.begin)

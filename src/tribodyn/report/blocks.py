@@ -51,29 +51,27 @@ def script_json(text: str) -> str:
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
-def _block(figure: Drawing, result: Any) -> Block:
-    try:
-        reason = figure.missing(result)
-        if reason:
-            return Block(figure.name, figure.heading, missing=reason)
-        drawn = figure(result)
-    except InputError as error:
-        # A mesh table of another program knows no gears.
-        told = error.problems[0]
-        return Block(figure.name, figure.heading, missing=f"{told.what}: {told.why}")
+def drawn_block(name: str, heading: str, drawn: Any, caption: str) -> Block:
+    """A section with a figure, whose title the page prints itself and can break into lines."""
     title, saved = drawn.layout.title.text, drawn.layout.margin.t - _MARGIN
-    # The page prints the title itself, where it can break into lines on a narrow screen.
     drawn.layout.update(
         title=None, margin={"t": _MARGIN}, height=drawn.layout.height - saved, overwrite=False
     )
-    return Block(
-        figure.name,
-        figure.heading,
-        figure.caption_of(result),
-        title=title,
-        height=round(drawn.layout.height),
-        json=script_json(drawn.to_json()),
-    )
+    height, json = round(drawn.layout.height), script_json(drawn.to_json())
+    return Block(name, heading, caption, title=title, height=height, json=json)
+
+
+def _block(figure: Drawing, result: Any) -> Block:
+    try:
+        reason = figure.missing(result)
+        drawn = None if reason else figure(result)
+    except InputError as error:
+        # A mesh table of another program knows no gears.
+        told = error.problems[0]
+        reason, drawn = f"{told.what}: {told.why}", None
+    if drawn is None:
+        return Block(figure.name, figure.heading, missing=reason)
+    return drawn_block(figure.name, figure.heading, drawn, figure.caption_of(result))
 
 
 def _joined(blocks: Iterable[Block]) -> list[Block]:

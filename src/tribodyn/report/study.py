@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tribodyn.plot import FIGURES
-from tribodyn.report.blocks import Block, script_json
+from tribodyn import plot
+from tribodyn.report.blocks import Block, drawn_block
 from tribodyn.report.html import plotly_script, template, text_of
 from tribodyn.report.numbers import in_words
 from tribodyn.report.origin import operating_point, provenance, version
@@ -28,6 +29,22 @@ SWEEP_FIGURES = (
 )
 #: Rows of the table; more are in the files beside it.
 _ROWS = 400
+
+
+@dataclass(frozen=True)
+class _Page:
+    """What a study puts into its report."""
+
+    kind: str  #: of study
+    lead: str  #: what varies, in a line
+    varied: Sequence[str]  #: keys of the case that vary
+    blocks: Sequence[Block]  #: figures
+    cards: Sequence[tuple[str, str]]  #: counts, each with its word
+    notice_heading: str
+    notices: Sequence[str]
+    head: Sequence[str]  #: of the table
+    rows: Sequence[Sequence[str]]
+    more: str = ""  #: where rows are that the table leaves out
 
 
 @report_of("Sweep")
@@ -52,9 +69,9 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
         If the place cannot be written to.
     """
     names = [name for name in SWEEP_FIGURES if name in found.figures]
-    caption = str(getattr(FIGURES["sweep"], "caption", ""))
+    caption = plot.sweep.caption_of(found)
     blocks = [
-        _block(name, in_words(name), found.plot(name), caption if name == names[0] else "")
+        drawn_block(name, in_words(name), found.plot(name), caption if name == names[0] else "")
         for name in names
     ]
     head = [_headed(axis.name, axis.display_unit) for axis in found.axes]
@@ -68,8 +85,8 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
         rows.append([*cells, *shown, point.failed])
     failed = [point for point in found.points if point.failed]
     lacking = "" if found.complete else f"Interrupted: {len(found.points)} of {found.failed.size}"
-    return _write(
-        Path(path), found.case, kind="sweep", lead=repr(found)[6:-1], blocks=blocks,
+    page = _Page(
+        kind="sweep", lead=repr(found)[6:-1], blocks=blocks,
         varied=[axis.key for axis in found.axes], notice_heading="Take care",
         cards=[("Values", f"{len(found.points)}"), ("Failed", f"{len(failed)}")],
         notices=[
@@ -80,6 +97,7 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
         more=f"The first {_ROWS} values; all of them are in sweep.csv."
         if len(found.points) > _ROWS else "",
     )  # fmt: skip
+    return _write(Path(path), found.case, page)
 
 
 def write_bifurcation_report(
@@ -121,34 +139,23 @@ def write_bifurcation_report(
     InputError
         If the place cannot be written to.
     """
-    caption = str(getattr(FIGURES["bifurcation"], "caption", ""))
+    caption = plot.bifurcation.caption_of(found)
     counts = [(word.capitalize(), str(count)) for word, count in found.verdicts().items()]
     if lost := int(found.ran_away.sum()):
         counts.append(("Ran away", str(lost)))
-    return _write(
-        Path(path), case, kind="bifurcation diagram", lead=lead,
+    page = _Page(
+        kind="bifurcation diagram", lead=lead,
         varied=[found.parameter_name], notice_heading="What it says",
-        blocks=[_block("bifurcation", "Motion once per mesh cycle", found.plot(), caption)],
+        blocks=[drawn_block("bifurcation", "Motion once per mesh cycle", found.plot(), caption)],
         cards=[("Motions", str(int(found.finished.sum()))), *counts], notices=list(told), head=head,
-        rows=rows, more="",
+        rows=rows,
     )  # fmt: skip
+    return _write(Path(path), case, page)
 
 
 def _headed(words: str, unit: str) -> str:
     text = words.replace("_", " ")
     return f"{text[:1].upper()}{text[1:]} [{unit}]" if unit else f"{text[:1].upper()}{text[1:]}"
-
-
-def _block(name: str, heading: str, drawn: Any, caption: str) -> Block:
-    title, saved = drawn.layout.title.text, drawn.layout.margin.t - 44
-    # The page prints the title itself, where it can break into lines on a narrow screen.
-    drawn.layout.update(
-        title=None, margin={"t": 44}, height=drawn.layout.height - saved, overwrite=False
-    )
-    return Block(
-        name, heading, caption, title=title, height=round(drawn.layout.height),
-        json=script_json(drawn.to_json()),
-    )  # fmt: skip
 
 
 #: Keys of the case -> what the operating point calls them.
@@ -160,23 +167,23 @@ _CHIPS = {
 }  # fmt: skip
 
 
-def _write(path: Path, case: Any, *, varied: Sequence[str], **parts: Any) -> Path:
+def _write(path: Path, case: Any, page: _Page) -> Path:
     from markupsafe import Markup
 
-    gone = {_CHIPS.get(key, "") for key in varied}
-    drawn = ",\n".join(f'"{block.name}": {block.json}' for block in parts["blocks"])
-    page = template("study.html.j2").render(
+    gone = {_CHIPS.get(key, "") for key in page.varied}
+    drawn = ",\n".join(f'"{block.name}": {block.json}' for block in page.blocks)
+    text = template("study.html.j2").render(
         title=case.title,
         version=version(),
         operating_point=[chip for chip in operating_point(case) if chip[0] not in gone],
-        assumptions=[row for row in assumptions(case) if row.key not in varied],
+        assumptions=[row for row in assumptions(case) if row.key not in page.varied],
         provenance=provenance(None),
         case_text=case.to_toml(),
         figures=Markup("{\n" + drawn + "\n}"),
         style=text_of("report.css"),
         script=text_of("report.js"),
         plotly_js=plotly_script(),
-        **parts,
+        **vars(page),
     )
-    write_file(path, str(page))
+    write_file(path, str(text))
     return path

@@ -156,30 +156,6 @@ def contact_law(
 
 
 @nb.njit(forceinline=True, **INNER)
-def contact_forces(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> Cursor:
-    """Force of every contact; returns where the frictions begin."""
-    s, code, rows = slots_of(law.code), law.code, law.rows
-    here = first_contact(law, base, buffer)
-    for j in range(s.contacts):
-        d, rate = compression_and_rate(lanes, law, here, w)
-        if code[here.at + 3] >= 2:
-            store(w, s.force + j, contact_law(lanes, law, here, j, d, rate, w)[0])
-        else:
-            k, c = entry(lanes, rows, here.row), entry(lanes, rows, here.row + 1)
-            if code[here.at + 2] == 0:
-                store(w, s.force + j, k * d + c * rate)
-            else:
-                side = load(lanes, w, s.side + j)
-                spring = side * side * (k * (d - entry(lanes, rows, here.row + 4) * side))
-                if code[here.at + 3] == 0:
-                    store(w, s.force + j, spring + side * side * (c * rate))
-                else:
-                    store(w, s.force + j, spring + c * rate)
-        here = next_contact(law, here)
-    return here
-
-
-@nb.njit(forceinline=True, **INNER)
 def friction_law(lanes: Any, law: Law, here: Cursor, w: Array) -> tuple[Any, Any, Cursor]:
     """Force of a friction, its derivative by the load, and where the next friction begins."""
     code, rows = law.code, law.rows
@@ -219,8 +195,25 @@ def friction_forces(lanes: Any, law: Law, here: Cursor, w: Array) -> Cursor:
 @nb.njit(forceinline=True, **INNER)
 def all_forces(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> Cursor:
     """Contact forces and frictions; returns where the coordinates' terms begin."""
-    here = contact_forces(lanes, law, base, buffer, w)
-    if law.code[here.at] > 0:
+    s, code, rows = slots_of(law.code), law.code, law.rows
+    here = first_contact(law, base, buffer)
+    for j in range(s.contacts):
+        d, rate = compression_and_rate(lanes, law, here, w)
+        if code[here.at + 3] >= 2:
+            store(w, s.force + j, contact_law(lanes, law, here, j, d, rate, w)[0])
+        else:
+            k, c = entry(lanes, rows, here.row), entry(lanes, rows, here.row + 1)
+            if code[here.at + 2] == 0:
+                store(w, s.force + j, k * d + c * rate)
+            else:
+                side = load(lanes, w, s.side + j)
+                spring = side * side * (k * (d - entry(lanes, rows, here.row + 4) * side))
+                if code[here.at + 3] == 0:
+                    store(w, s.force + j, spring + side * side * (c * rate))
+                else:
+                    store(w, s.force + j, spring + c * rate)
+        here = next_contact(law, here)
+    if code[here.at] > 0:
         return friction_forces(lanes, law, here, w)
     return Cursor(here.at + 1, here.read, here.row)
 

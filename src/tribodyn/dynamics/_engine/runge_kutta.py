@@ -80,24 +80,28 @@ def _restart(lanes, method, law, base, w):  # type: ignore[no-untyped-def]
     return None
 
 
-@nb.njit(**INNER)
-def _step(lanes: Any, law: Law, base: int, w: Array) -> bool:
-    runge_kutta_step(lanes, law, base, w)
-    return True
-
-
 @overload(step)
 def _whole_step(lanes, method, law, number, base, w):  # type: ignore[no-untyped-def]
-    if is_method(method, RungeKutta4):
-        return lambda lanes, method, law, number, base, w: _step(lanes, law, base, w)
-    return None
+    if not is_method(method, RungeKutta4):
+        return None
+
+    def march(lanes, method, law, number, base, w):  # type: ignore[no-untyped-def]
+        runge_kutta_step(lanes, law, base, w)
+        return True
+
+    return march
 
 
 @overload(part_step)
 def _part_step(method, law, w):  # type: ignore[no-untyped-def]
-    if is_method(method, RungeKutta4):
-        return lambda method, law, w: _step((0.0,), law, I64(0), w)
-    return None
+    if not is_method(method, RungeKutta4):
+        return None
+
+    def march(method, law, w):  # type: ignore[no-untyped-def]
+        runge_kutta_step((0.0,), law, I64(0), w)
+        return True
+
+    return march
 
 
 @nb.njit(**INNER)

@@ -108,32 +108,21 @@ def shared_arguments(function: F) -> F:
 def film_formula(law: Callable[[Groups], Array]) -> FilmFormula:
     """Make a law of the dimensionless groups a formula of the six arguments in SI."""
 
-    def value(*arguments: ArrayLike) -> Array:
-        return np.asarray(law(line_contact_groups(*arguments)))[()]
+    def value(*arguments: Any, **named: Any) -> Array:
+        return np.asarray(law(line_contact_groups(*arguments, **named)))[()]
 
-    def formula(
-        load_per_width: ArrayLike,
-        equivalent_radius: ArrayLike,
-        entrainment_speed: ArrayLike,
-        dynamic_viscosity: ArrayLike,
-        pressure_viscosity_coefficient: ArrayLike,
-        effective_modulus: ArrayLike,
-    ) -> Array:
-        return value(
-            load_per_width,
-            equivalent_radius,
-            entrainment_speed,
-            dynamic_viscosity,
-            pressure_viscosity_coefficient,
-            effective_modulus,
-        )
+    def formula(*arguments: Any, **named: Any) -> Array:
+        return value(*arguments, **named)
 
     # With the globals of the law's module: there the search for doctests expects it.
     public = FunctionType(
         formula.__code__, law.__globals__, law.__name__, None, formula.__closure__
     )
-    public.__annotations__, public.__module__ = formula.__annotations__, law.__module__
-    public.__qualname__, public.__doc__ = law.__qualname__, law.__doc__
+    taken = inspect.signature(line_contact_groups).replace(return_annotation="Array")
+    public.__signature__ = taken  # type: ignore[attr-defined]
+    public.__annotations__ = {**line_contact_groups.__annotations__, "return": "Array"}
+    public.__module__, public.__qualname__ = law.__module__, law.__qualname__
+    public.__doc__ = law.__doc__
     return cast(FilmFormula, shared_arguments(public))
 
 

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,14 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
+from tribodyn.ehl.stiffness.film_stiffness import central_film_slope
 from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
 from tribodyn.interrupt import Threads
+from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    from tribodyn.lubricant import Lubricant
-
 
 #: Contacts handed to the threads ahead of the one that is collected.
 _AHEAD = 64
@@ -220,8 +218,6 @@ def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
 
 
 def _row(solution: LineContactSolution, stiffness: bool) -> list[float]:
-    from tribodyn.ehl.stiffness.film_stiffness import central_film_slope
-
     error = solution.central_film_error
     return [
         solution.central_film,

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tribodyn.errors import InputError, Problem, require_between, require_one_of, require_positive
+from tribodyn.lubricant import Lubricant
 from tribodyn.lubricant.roelands import ROELANDS_PRESSURE
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    from tribodyn.lubricant import Lubricant
-
 
 #: Pressure laws of the viscosity, by the number that the kernels know them by.
 LAWS = {"isoviscous": 0.0, "barus": 1.0, "roelands": 2.0}
@@ -206,8 +203,6 @@ def moes_case(
 
 
 def _check_lubricant(lubricant: Any) -> None:
-    from tribodyn.lubricant import Lubricant
-
     if not isinstance(lubricant, Lubricant):
         raise InputError(
             Problem(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,11 +16,8 @@ from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, estimate_film
 from tribodyn.ehl.steady.rescue import solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
 from tribodyn.errors import InputError, Problem, require_between, warn
+from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    from tribodyn.lubricant import Lubricant
-
 
 #: Heights that are added to the gap, at the nodes or over the position.
 Profile = Callable[[Array], ArrayLike]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
 from tribodyn.ehl.steady.grid import MOST
+from tribodyn.ehl.steady.multigrid_engine import multigrid_engine
 from tribodyn.ehl.steady.newton_engine import first_intervals, newton_engine
 from tribodyn.ehl.steady.verification import Verification, verify
 from tribodyn.errors import ComputationError, Problem
@@ -80,29 +81,20 @@ Engine = Callable[[ContactProblem], Outcome]
 #: The solvers by name.
 ENGINES: Registry[Engine] = Registry("film solver", "tribodyn.film_solver")
 ENGINES.register("newton")(newton_engine)
+ENGINES.register("multigrid")(multigrid_engine)
 
 
-@ENGINES.register("multigrid")
-def _multigrid(problem: ContactProblem) -> Outcome:
-    from tribodyn.ehl.steady.multigrid_engine import multigrid_engine
+@dataclass(frozen=True, eq=False)
+class Verified:
+    """A verified solution and how it was reached."""
 
-    outcome: Outcome = multigrid_engine(problem)
-    return outcome
-
-
-class Solved:
-    """A verified solution and how it was found."""
-
-    def __init__(
-        self, outcome: Outcome, check: Verification, method: str, attempts: tuple[str, ...]
-    ) -> None:
-        self.outcome = outcome
-        self.check = check
-        self.method = method
-        self.attempts = attempts
+    outcome: Outcome
+    check: Verification
+    method: str  #: engine that found it
+    attempts: tuple[str, ...]  #: what failed before
 
 
-def solve_problem(problem: ContactProblem, method: str) -> Solved:
+def solve_problem(problem: ContactProblem, method: str) -> Verified:
     """Solve a contact with one engine, and with all other means where that fails."""
     engine = ENGINES[method]
     log: list[str] = []
@@ -113,7 +105,7 @@ def solve_problem(problem: ContactProblem, method: str) -> Solved:
             check = verify(outcome.grid)
             complaint = check.complaint(1.05 * problem.flux_tolerance + 1e-9)
             if not complaint:
-                return Solved(outcome, check, name, tuple(log))
+                return Verified(outcome, check, name, tuple(log))
             complaint = f"{name}: {complaint}"
         log.append(complaint)
         if "rounding" in complaint:

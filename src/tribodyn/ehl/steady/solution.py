@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,14 +12,12 @@ from tribodyn.drawing import draw
 from tribodyn.ehl.steady.contact_case import ContactCase
 from tribodyn.ehl.steady.contact_problem import DiscreteContact
 from tribodyn.ehl.steady.grid import Domain, regime_name
-from tribodyn.ehl.steady.rescue import Solved
+from tribodyn.ehl.steady.rescue import Verified
 from tribodyn.ehl.stiffness.film_stiffness import film_stiffness
 from tribodyn.ehl.stiffness.frequency import frequency_response
+from tribodyn.lubricant import Lubricant
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    from tribodyn.lubricant import Lubricant
 
 
 @record
@@ -258,7 +256,7 @@ def pressure_spike(grid: DiscreteContact) -> tuple[float, float] | None:
     return float(P[last]), float(grid.X[last])
 
 
-def assemble(case: ContactCase, domain: Domain, solved: Solved) -> LineContactSolution:
+def assemble(case: ContactCase, domain: Domain, solved: Verified) -> LineContactSolution:
     """Solution with its units and its errors."""
     grid, check, scales = solved.outcome.grid, solved.check, case.scales
     assert grid is not None  # a verified outcome has a grid

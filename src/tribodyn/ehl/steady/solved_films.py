@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.ehl.steady.batch import solve_line_contacts
 from tribodyn.errors import quiet, warn
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
@@ -41,8 +42,6 @@ def solved_films(
     progress: Progress = SILENT,
 ) -> Films:
     """Solve many contacts in threads."""
-    from tribodyn.ehl.steady.batch import solve_line_contacts
-
     tangent = stiffness in ("none", "tangent")
     with quiet("film-stiffness"):
         # Whoever uses the stiffness says what a negative one means for it.

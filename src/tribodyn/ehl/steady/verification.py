@@ -25,18 +25,20 @@ class Verification:
 
     def complaint(self, flux_tolerance: float, load_tolerance: float = 1e-6) -> str:
         """What is wrong, or nothing."""
-        found = []
+        complaints = []
         if not self.lowest_pressure >= 0.0:
-            found.append(f"least pressure {self.lowest_pressure:.3g} p_h is negative")
+            complaints.append(f"least pressure {self.lowest_pressure:.3g} p_h is negative")
         if not self.cavity_residual >= _CAVITY:
-            found.append(f"mass balance behind the outlet {self.cavity_residual:.3g} is negative")
+            complaints.append(
+                f"mass balance behind the outlet {self.cavity_residual:.3g} is negative"
+            )
         if not self.flux_error <= flux_tolerance:
-            found.append(f"flux error {self.flux_error:.3g} exceeds {flux_tolerance:.3g}")
+            complaints.append(f"flux error {self.flux_error:.3g} exceeds {flux_tolerance:.3g}")
         if not self.load_error <= load_tolerance:
-            found.append(f"load error {self.load_error:.3g} exceeds {load_tolerance:.3g}")
+            complaints.append(f"load error {self.load_error:.3g} exceeds {load_tolerance:.3g}")
         if not self.film_error <= 1e-6:
-            found.append(f"film differs from that of the pressure by {self.film_error:.3g}")
-        return "; ".join(found)
+            complaints.append(f"film differs from that of the pressure by {self.film_error:.3g}")
+        return "; ".join(complaints)
 
 
 def _transform(n: int, dx: float) -> tuple[int, Array]:

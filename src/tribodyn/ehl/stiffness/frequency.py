@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, SolvedContact
+from tribodyn.ehl.steady.rescue import solve_problem
 from tribodyn.ehl.stiffness.film_stiffness import InletChange, central_film_slope, inlet_change
 from tribodyn.errors import require_between, require_one_of, require_positive
 from tribodyn.types import Array, ComplexArray
@@ -134,8 +135,6 @@ def _linearize(grid: DiscreteContact, inlet: InletChange) -> _Linear:
 
 def _on_coarse_grid(solution: SolvedContact) -> DiscreteContact:
     """Steady state on a grid of at most 512 intervals."""
-    from tribodyn.ehl.steady.rescue import solve_problem
-
     grid = solution._grid
     if grid.n <= _INTERVALS:
         return grid

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array, Index
-
-if TYPE_CHECKING:
-    from tribodyn.ehl.steady.solution import LineContactSolution
-    from tribodyn.lubricant import Lubricant
 
 
 @dataclass(frozen=True, eq=False)

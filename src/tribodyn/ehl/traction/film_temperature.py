@@ -251,8 +251,8 @@ def film_temperature_rise(heat: Callable[[Array], tuple[Array, Array]], resistan
     low = np.zeros(np.shape(resistance))
     rise, high = low, resistance * heat(low)[0]
     for _ in range(_MOST_STEPS):
-        made, slope = heat(rise)
-        excess = resistance * made - rise
+        produced, slope = heat(rise)
+        excess = resistance * produced - rise
         low, high = np.where(excess >= 0.0, rise, low), np.where(excess <= 0.0, rise, high)
         step = rise + excess / (1.0 - resistance * slope)
         outside = ((step <= low) | (step >= high)) & (step != rise)

@@ -18,6 +18,7 @@ from tribodyn.ehl.formulas.lubrication_regimes import (
 )
 from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
 from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
+from tribodyn.ehl.steady.line_contact import solve_line_contact
 from tribodyn.errors import ComputationError, InputError, Problem, require_one_of, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
@@ -420,7 +421,6 @@ class MovingContact:
     def _reference_state(self) -> State:
         """Steady state of the widest dry contact at the speed of the first instant."""
         from tribodyn.ehl._kernel.transient import Instant
-        from tribodyn.ehl.steady.line_contact import solve_line_contact
 
         solution = solve_line_contact(
             self.scale.load,

@@ -22,7 +22,7 @@ from tribodyn.plot.film.line_contact import (
 )
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.look.panels import event_lines
-from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, figure
+from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, figure, player
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ _HALF = 0.44
 _HEIGHT = 760
 #: Time for which a place is shown [ms].
 _FRAME = 160
+_SLIDER = {"active": 0, "x": 0.0, "len": 1.0, "y": -0.12, "pad": {"t": 0}}
 #: Frames of an animation over time: more are not seen and make the file large.
 _FRAMES = 60
 
@@ -152,45 +153,6 @@ def _letters(track: Track) -> dict[str, Any]:
     return {"shapes": shapes, "annotations": notes}
 
 
-def _controls(words: Sequence[str]) -> dict[str, Any]:
-    """Slider over the places, and buttons that run through them."""
-    at_once = {"mode": "immediate", "transition": {"duration": 0}}
-    shown = {"frame": {"duration": _FRAME, "redraw": False}, "transition": {"duration": 0}}
-    still = {"frame": {"duration": 0, "redraw": False}, **at_once}
-    hidden = {"color": "rgba(0,0,0,0)", "size": 1}
-    slider = {
-        "active": 0,
-        "x": 0.0,
-        "len": 1.0,
-        "y": -0.12,
-        "yanchor": "top",
-        "pad": {"t": 0},
-        "ticklen": 3,
-        "font": hidden,
-        "currentvalue": {"font": {"color": INK, "size": 13}, "xanchor": "left"},
-        "steps": [
-            {"label": label, "method": "animate", "args": [[str(number)], still]}
-            for number, label in enumerate(words)
-        ],
-    }
-    buttons = {
-        "type": "buttons",
-        "direction": "right",
-        "showactive": False,
-        "x": 0.0,
-        "xanchor": "left",
-        "y": -0.3,
-        "yanchor": "top",
-        "bgcolor": "white",
-        "font": {"size": 12},
-        "buttons": [
-            {"label": "play", "method": "animate", "args": [None, {**shown, "fromcurrent": True}]},
-            {"label": "pause", "method": "animate", "args": [[None], still]},
-        ],
-    }
-    return {"sliders": [slider], "updatemenus": [buttons]}
-
-
 def animation(
     title: str,
     contacts: Sequence[Any],
@@ -224,7 +186,7 @@ def animation(
         {
             **_axes(contacts, scales, track),
             **_letters(track),
-            **_controls(words),
+            **player(words, _FRAME, redraw=False, slider=_SLIDER, buttons=-0.3),
             "height": _HEIGHT,
             "hovermode": "closest",
             "margin": {"l": 70, "r": 24, "t": 74, "b": 200},

@@ -13,7 +13,7 @@ from tribodyn.drawing import drawing
 from tribodyn.errors import InputError, Problem
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line, marked
 from tribodyn.types import Array
 
 #: Films are drawn up to this many times the thickest central film: beyond lies the open gap.
@@ -180,11 +180,8 @@ def point(
     x: float, y: float, name: str, color: str, *, unit: str = "", symbol: str = "circle"
 ) -> dict[str, Any]:
     """Describe one marked point with a name in the legend."""
-    described = line([x], [y], name, color, unit=unit)
-    del described["line"]
-    edge = {"color": color, "width": 2}
-    marker = {"size": 9, "symbol": symbol, "color": color, "line": edge}
-    return {**described, "mode": "markers", "marker": marker}
+    mark = marked([x], [y], name, color, size=9, symbol=symbol, unit=unit)
+    return {**mark, "marker": {**mark["marker"], "line": {"color": color, "width": 2}}}
 
 
 def _pressure(solution: Any, kept: Any, scales: Scales) -> list[Trace]:

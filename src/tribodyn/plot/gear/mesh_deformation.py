@@ -11,7 +11,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action
 from tribodyn.plot.look.labels import axis_label, displayed, rounded, significant
-from tribodyn.plot.look.style import FILLS, INK, MUTED, PINION, WHEEL, Trace, figure
+from tribodyn.plot.look.style import FILLS, INK, MUTED, PINION, WHEEL, Trace, figure, player
 from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
 from tribodyn.types import ComplexArray
 
@@ -103,40 +103,9 @@ def _arrows(pair: SpurPair, mesh: BentMesh, factor: float, greatest: float) -> l
     ]
 
 
-def _controls(words: Sequence[str]) -> dict[str, Any]:
-    """Slider over the phases, with buttons that run through them."""
-    at_once = {"mode": "immediate", "transition": {"duration": 0}}
-    still = {"frame": {"duration": 0, "redraw": True}, **at_once}
-    shown = {"frame": {"duration": _FRAME, "redraw": True}, "transition": {"duration": 0}}
-    slider = {
-        "x": 0.16,
-        "len": 0.84,
-        "y": -0.1,
-        "yanchor": "top",
-        "ticklen": 3,
-        "font": {"color": "rgba(0,0,0,0)", "size": 1},
-        "currentvalue": {"font": {"color": INK, "size": 13}, "xanchor": "left"},
-        "steps": [
-            {"label": label, "method": "animate", "args": [[str(number)], still]}
-            for number, label in enumerate(words)
-        ],
-    }
-    buttons = {
-        "type": "buttons",
-        "direction": "right",
-        "showactive": False,
-        "x": 0.0,
-        "xanchor": "left",
-        "y": -0.12,
-        "yanchor": "top",
-        "bgcolor": "white",
-        "font": {"size": 12},
-        "buttons": [
-            {"label": "play", "method": "animate", "args": [None, {**shown, "fromcurrent": True}]},
-            {"label": "pause", "method": "animate", "args": [[None], still]},
-        ],
-    }
-    return {"sliders": [slider], "updatemenus": [buttons]}
+def _player(words: Sequence[str]) -> dict[str, Any]:
+    slider = {"x": 0.16, "len": 0.84, "y": -0.1}
+    return player(words, _FRAME, redraw=True, slider=slider, buttons=-0.12)
 
 
 def _window(pair: SpurPair) -> dict[str, Any]:
@@ -227,7 +196,7 @@ def mesh_deformation(
         frames[0],
         {
             **_window(pair),
-            **(_controls(words) if several else {}),
+            **(_player(words) if several else {}),
             "height": _HEIGHT,
             "hovermode": False,
             "margin": {"l": 70, "r": 24, "t": 74, "b": 150 if several else 58},

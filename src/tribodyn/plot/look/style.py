@@ -112,3 +112,40 @@ def line(
         "line": {"color": color, "dash": dash, "width": width},
         "hovertemplate": f"%{{y:.4g}} {unit}".rstrip() + f"<extra>{name}</extra>",
     }
+
+
+def player(
+    words: Sequence[str], milliseconds: int, *, redraw: bool, slider: dict[str, Any], buttons: float
+) -> dict[str, Any]:
+    """Slider over frames called 0, 1, ... with a text each, and buttons that run through them.
+
+    ``slider`` places the slider, ``buttons`` is the height of the buttons.
+    """
+    at_once = {"duration": 0}
+    still = {"frame": {"duration": 0, "redraw": redraw}, "mode": "immediate", "transition": at_once}
+    shown = {"frame": {"duration": milliseconds, "redraw": redraw}, "transition": at_once}
+    run = {"label": "play", "method": "animate", "args": [None, {**shown, "fromcurrent": True}]}
+    steps = [
+        {"label": label, "method": "animate", "args": [[str(number)], still]}
+        for number, label in enumerate(words)
+    ]
+    bar = {
+        "yanchor": "top", "ticklen": 3, "font": {"color": "rgba(0,0,0,0)", "size": 1},
+        "currentvalue": {"font": {"color": INK, "size": 13}, "xanchor": "left"}, "steps": steps,
+    }  # fmt: skip
+    menu = {
+        "type": "buttons", "direction": "right", "showactive": False, "x": 0.0, "xanchor": "left",
+        "y": buttons, "yanchor": "top", "bgcolor": "white", "font": {"size": 12},
+        "buttons": [run, {"label": "pause", "method": "animate", "args": [[None], still]}],
+    }  # fmt: skip
+    return {"sliders": [{**slider, **bar}], "updatemenus": [menu]}
+
+
+def marked(
+    x: Any, y: Any, name: str, color: str, *, size: float, symbol: str, unit: str = ""
+) -> Trace:
+    """Describe marked points whose hover text carries their unit."""
+    points = line(x, y, name, color, unit=unit)
+    del points["line"]
+    marker = {"size": size, "symbol": symbol, "color": color}
+    return {**points, "mode": "markers", "marker": marker}

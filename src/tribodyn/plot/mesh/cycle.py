@@ -39,11 +39,27 @@ def pair_life(mesh: MeshTable, column: str) -> Curve:
     return ages.T[touching], values.T[touching]
 
 
+def closed_life(mesh: MeshTable, column: str) -> Curve:
+    """Follow one tooth pair from zero and back to zero, so that the ends are drawn."""
+    return closed(*pair_life(mesh, column))
+
+
+def closed(age: Array, values: Array) -> Curve:
+    """Begin and end a curve at zero."""
+    return np.concatenate((age[:1], age, age[-1:])), np.concatenate(([0.0], values, [0.0]))
+
+
+def between(phase: Array, values: Array, ends: tuple[float, float]) -> Curve:
+    """Repeat a mesh cycle over the ages of a tooth pair between two ends."""
+    numbers = range(int(np.floor(ends[0])), int(np.ceil(ends[1])))
+    age = np.concatenate([phase + number for number in numbers])
+    seen = (age >= ends[0]) & (age <= ends[1])
+    return age[seen], np.tile(values, len(numbers))[seen]
+
+
 def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
     """Follow every tooth pair that touches within the cycles drawn, from zero and back to zero."""
-    age, values = pair_life(mesh, column)
-    age = np.concatenate((age[:1], age, age[-1:]))
-    values = np.concatenate(([0.0], values, [0.0]))
+    age, values = closed_life(mesh, column)
     lives = []
     for start in range(1 - mesh.in_contact.shape[1], CYCLES):
         seen = (age + start >= 0.0) & (age + start <= CYCLES)

@@ -13,6 +13,7 @@ from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, 
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import TOTAL, Trace, line
+from tribodyn.plot.mesh.cycle import between
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -129,12 +130,8 @@ def _over(contact: LoadedContact, values: Array) -> tuple[Array, Array]:
     """Values of the whole mesh over what the figure has as its horizontal axis."""
     if several_cycles(contact):
         return whole_cycles(contact.phase, values, contact.mesh_cycles)
-    first, last = span(contact)
-    cycles = range(int(np.floor(first)), int(np.ceil(last)))
-    age = np.concatenate([contact.phase + cycle for cycle in cycles])
-    seen = (age >= first) & (age <= last)
-    angle = displayed("roll_angle", roll_angle_of(contact.gear_pair, age[seen]))
-    return angle, np.tile(values, len(cycles))[seen]
+    age, repeated = between(contact.phase, values, span(contact))
+    return displayed("roll_angle", roll_angle_of(contact.gear_pair, age)), repeated
 
 
 def _curves(contact: LoadedContact, quantity: str, values: Array, **look: Any) -> list[Trace]:

@@ -15,6 +15,9 @@ from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, line
 from tribodyn.plot.mesh.cycle import (
     CYCLES,
     TABLE,
+    between,
+    closed,
+    closed_life,
     cycles,
     mesh_events,
     pair_life,
@@ -78,9 +81,7 @@ def mesh_stiffness(mesh: MeshTable) -> Any:
 
 def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array, Array]]:
     """Stiffness of the pair between A and E, and of those before and after it."""
-    age, stiffness = pair_life(mesh, "stiffness")
-    age = np.concatenate((age[:1], age, age[-1:]))
-    stiffness = np.concatenate(([0.0], stiffness, [0.0]))
+    age, stiffness = closed_life(mesh, "stiffness")
     found = []
     for shift in range(-len(mesh.path[0]), len(mesh.path[0]) + 1):
         seen = (age + shift >= ends[0]) & (age + shift <= ends[1])
@@ -88,14 +89,6 @@ def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array,
             name = _PAIR if shift == 0 else "its neighbours"
             found.append((name, age[seen] + shift, stiffness[seen]))
     return sorted(found, key=lambda each: each[0] != _PAIR)
-
-
-def _total(mesh: MeshTable, values: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
-    """Repeat a column of the whole mesh over the ages that are shown."""
-    cycles = range(int(np.floor(ends[0])), int(np.ceil(ends[1])))
-    age = np.concatenate([mesh.phase + cycle for cycle in cycles])
-    seen = (age >= ends[0]) & (age <= ends[1])
-    return age[seen], np.tile(values, len(cycles))[seen]
 
 
 @drawing(
@@ -126,8 +119,11 @@ def static_stiffness(mesh: MeshTable) -> Any:
         return line(x, displayed("mesh_stiffness", values), name, color, unit=unit, dash=dash)
 
     traces = [
-        curve(*_total(mesh, mesh.mesh_stiffness, ends), "all pairs, secant", TOTAL, "solid"),
-        curve(*_total(mesh, mesh.mesh_stiffness_tangent, ends), "all pairs, tangent", TOTAL, "dot"),
+        curve(*between(mesh.phase, values, ends), f"all pairs, {kind}", TOTAL, dash)
+        for kind, values, dash in (
+            ("secant", mesh.mesh_stiffness, "solid"),
+            ("tangent", mesh.mesh_stiffness_tangent, "dot"),
+        )
     ]
     named: set[str] = set()
     for name, age, stiffness in _pairs(mesh, ends):
@@ -162,12 +158,6 @@ def whole_life(mesh: MeshTable) -> tuple[Array, Array]:
     )
 
 
-def _closed(age: Array, share: Array) -> tuple[Array, Array]:
-    """From zero and back to zero, so that the ends are drawn."""
-    ends = np.concatenate((age[:1], age, age[-1:]))
-    return ends, np.concatenate(([0.0], share, [0.0]))
-
-
 def _caption(mesh: MeshTable) -> str:
     words = "How much of the load one tooth pair carries from where it comes in to where it leaves."
     if np.any(mesh.corner_share > _LOADED):
@@ -198,7 +188,7 @@ def load_sharing(mesh: MeshTable) -> Any:
     plotly.graph_objects.Figure
     """
     pair = mesh.gear_pair
-    age, share = _closed(*whole_life(mesh))
+    age, share = closed(*whole_life(mesh))
     x = displayed("roll_angle", roll_angle_of(pair, age))
     newton = display_unit("normal_force")
     hover = f"%{{y:.4g}} (%{{customdata:.4g}} {newton})<extra>load share</extra>"

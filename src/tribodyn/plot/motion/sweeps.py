@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.look.labels import axis_label, displayed, readable, rounded
 from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.units import convert
 
@@ -43,9 +43,7 @@ def _dots(sweep: SpeedSweep, values: Any, chosen: Any, name: str, color: str, sy
     y = np.concatenate([row[each] for row, each in zip(values, chosen, strict=True)])
     if not x.size:
         return []
-    made = line(x, y, name, color)
-    del made["line"]
-    return [{**made, "mode": "markers", "marker": {"color": color, "size": 6, "symbol": symbol}}]
+    return [marked(x, y, name, color, size=6, symbol=symbol)]
 
 
 def _jumps(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
@@ -145,20 +143,20 @@ def _told(axis: Axis, value: Any) -> str:
     return f"{float(number):.4g} {readable(unit)}".rstrip()
 
 
-def _values(found: Sweep, name: str) -> tuple[Any, str]:
+def _values(study: Sweep, name: str) -> tuple[Any, str]:
     """Figure in its display unit, and that unit."""
     shown = SUMMARY[name]
     factor = convert(1.0, shown.unit, shown.display_unit) if shown.unit else 1.0
-    return found[name] * factor, readable(shown.display_unit)
+    return study[name] * factor, readable(shown.display_unit)
 
 
-def _case_title(found: Sweep, name: str, values: Any, unit: str) -> str:
-    failed = sum(bool(point.failed) for point in found.points)
+def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
+    failed = sum(bool(point.failed) for point in study.points)
     if not np.any(np.isfinite(values)):
         return f"No value has this figure; {failed} failed"
     place = np.unravel_index(int(np.nanargmax(values)), values.shape)
     where = ", ".join(
-        _told(axis, axis.values[at]) for axis, at in zip(found.axes, place, strict=True)
+        _told(axis, axis.values[at]) for axis, at in zip(study.axes, place, strict=True)
     )
     lost = f"; {failed} of {values.size} failed" if failed else ""
     return f"Greatest {_words(name).lower()}: {np.nanmax(values):.4g} {unit}".rstrip() + (
@@ -182,25 +180,25 @@ def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> li
     return [curve, cross]
 
 
-def _case_curves(found: Sweep, values: Any, unit: str) -> list[Trace]:
+def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
     """Curves over the first key, one for each combination of the others."""
-    x, traces = found.axes[0].shown(), []
-    others = list(product(*(range(len(axis.values)) for axis in found.axes[1:])))
+    x, traces = study.axes[0].shown(), []
+    others = list(product(*(range(len(axis.values)) for axis in study.axes[1:])))
     for number, place in enumerate(others):
-        pairs = zip(found.axes[1:], place, strict=True)
+        pairs = zip(study.axes[1:], place, strict=True)
         name = ", ".join(_told(axis, axis.values[at]) for axis, at in pairs) or "figure"
         column: Any = (slice(None), *place)
         color = _COLORS[number % len(_COLORS)]
-        traces += _marked(x, values[column], found.failed[column], name, color, unit)
+        traces += _marked(x, values[column], study.failed[column], name, color, unit)
     return traces
 
 
-def _map(found: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
-    first, second = found.axes
+def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
+    first, second = study.axes
     heat = {
         "type": "heatmap", "x": first.shown(), "y": second.shown(), "z": values.T,
         "colorscale": "Viridis", "colorbar": {"title": {"text": label, "side": "right"}},
-        "text": found.failed.T, "hoverongaps": True,
+        "text": study.failed.T, "hoverongaps": True,
         "hovertemplate": f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}<extra></extra>",
     }  # fmt: skip
     return figure(
@@ -221,12 +219,12 @@ def _map(found: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
     made_by='Call tribodyn.sweep(case, {"operation.speed": ("400 rpm", "3500 rpm", '
     "60)}) and its plot method.",
 )
-def sweep(found: Sweep, figure: str = "rms_mesh_force") -> Any:
+def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
     """Draw a figure of the summary over the keys that vary.
 
     Parameters
     ----------
-    found : Sweep
+    study : Sweep
         What :func:`tribodyn.sweep` returns.
     figure : str
         Name in the summary.
@@ -235,13 +233,13 @@ def sweep(found: Sweep, figure: str = "rms_mesh_force") -> Any:
     -------
     plotly.graph_objects.Figure
     """
-    values, unit = _values(found, figure)
-    title = _case_title(found, figure, values, unit)
+    values, unit = _values(study, figure)
+    title = _case_title(study, figure, values, unit)
     curves = int(np.prod(values.shape[1:]))
     label = f"{_words(figure)} [{unit}]" if unit else _words(figure)
-    if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in found.axes):
-        return _map(found, values, label, unit, title)
-    panel = Panel(label, _case_curves(found, values, unit), height=1.6)
-    drawn = stack(title, _axis_text(found.axes[0]), [panel])
-    varied = ", ".join(_words(axis.name) for axis in found.axes[1:])
+    if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in study.axes):
+        return _map(study, values, label, unit, title)
+    panel = Panel(label, _case_curves(study, values, unit), height=1.6)
+    drawn = stack(title, _axis_text(study.axes[0]), [panel])
+    varied = ", ".join(_words(axis.name) for axis in study.axes[1:])
     return drawn.update_layout(legend={"title": {"text": varied, "font": {"size": 13}}})

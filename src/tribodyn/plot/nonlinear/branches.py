@@ -18,7 +18,7 @@ from tribodyn.plot.look.labels import (
     unit_of,
 )
 from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.types import Array, Mask
 from tribodyn.units import convert
 
@@ -46,38 +46,38 @@ _MARKS = {
 }
 
 
-def _scale(found: Bifurcation) -> tuple[float, str]:
+def _scale(diagram: Bifurcation) -> tuple[float, str]:
     """Factor and unit in which lengths below a tenth of a millimetre are drawn."""
-    largest = float(np.nanmax(np.abs(found.section), initial=0.0))
+    largest = float(np.nanmax(np.abs(diagram.section), initial=0.0))
     return (1e6, "µm") if largest < 1e-3 else (1.0, "m")
 
 
-def _bifurcation_parameter(found: Bifurcation) -> tuple[Any, str]:
+def _bifurcation_parameter(diagram: Bifurcation) -> tuple[Any, str]:
     """Values of the parameter as engineers read them, and their label."""
-    name = found.parameter_name.rpartition(".")[2]
-    if name in QUANTITIES and QUANTITIES[name].unit == found.parameter_unit:
-        return displayed(name, found.parameter), axis_label(name)
-    words, unit = name.replace("_", " ").capitalize(), found.parameter_unit
+    name = diagram.parameter_name.rpartition(".")[2]
+    if name in QUANTITIES and QUANTITIES[name].unit == diagram.parameter_unit:
+        return displayed(name, diagram.parameter), axis_label(name)
+    words, unit = name.replace("_", " ").capitalize(), diagram.parameter_unit
     if unit in ("", "-"):
-        return found.parameter, words
+        return diagram.parameter, words
     kind = name.rpartition("_")[2]
     alike = [each.display_unit for each in QUANTITIES.values()
              if each.unit == unit and each.name.rpartition("_")[2] == kind]  # fmt: skip
     shown = alike[0] if alike else unit
     factor = convert(1.0, unit, shown) if alike else 1.0
-    return found.parameter * factor, f"{words} [{readable(shown)}]"
+    return diagram.parameter * factor, f"{words} [{readable(shown)}]"
 
 
-def _section(found: Bifurcation, parameter: Any, factor: float, unit: str) -> list[Trace]:
+def _section(diagram: Bifurcation, parameter: Any, factor: float, unit: str) -> list[Trace]:
     """Points of every branch; those that a long step made are grey."""
     traces = []
-    for number, branch in enumerate(found.branches):
-        limited = found.verdict[number] == "step-limited"
+    for number, branch in enumerate(diagram.branches):
+        limited = diagram.verdict[number] == "step-limited"
         for grey in (True, False):
             chosen = limited if grey else ~limited
             if not chosen.any():
                 continue
-            rows = found.section[number][chosen]
+            rows = diagram.section[number][chosen]
             name = "step-limited, not physics" if grey else _WORDS[branch]
             color = _STEP_LIMITED if grey else _COLORS[branch]
             x = np.repeat(parameter[chosen], rows.shape[1])
@@ -88,7 +88,7 @@ def _section(found: Bifurcation, parameter: Any, factor: float, unit: str) -> li
     return traces
 
 
-def _curves(found: Bifurcation, parameter: Any, values: Any, unit: str) -> list[Trace]:
+def _curves(diagram: Bifurcation, parameter: Any, values: Any, unit: str) -> list[Trace]:
     return [
         {
             **line(
@@ -97,16 +97,16 @@ def _curves(found: Bifurcation, parameter: Any, values: Any, unit: str) -> list[
             ),
             "showlegend": False,
         }
-        for number, branch in enumerate(found.branches)
+        for number, branch in enumerate(diagram.branches)
     ]  # fmt: skip
 
 
-def _two_motions(found: Bifurcation, parameter: Any, label: str) -> str:
+def _two_motions(diagram: Bifurcation, parameter: Any, label: str) -> str:
     """Where the motion depends on the direction of the sweep."""
-    if not {"up", "down"} <= set(found.branches):
+    if not {"up", "down"} <= set(diagram.branches):
         return ""
-    up, down = (found.rms[found.branches.index(name)] for name in ("up", "down"))
-    apart = np.abs(up - down) > _APART * np.nanmax(found.rms, initial=0.0)
+    up, down = (diagram.rms[diagram.branches.index(name)] for name in ("up", "down"))
+    apart = np.abs(up - down) > _APART * np.nanmax(diagram.rms, initial=0.0)
     if not apart.any():
         return ""
     unit = label.rpartition("[")[2].rstrip("]") if "[" in label else ""
@@ -114,15 +114,15 @@ def _two_motions(found: Bifurcation, parameter: Any, label: str) -> str:
     return f"Two motions are possible from {low} to {high}"
 
 
-def _bifurcation_title(found: Bifurcation, parameter: Any, label: str) -> str:
-    count, lost = found.verdict.size, int(found.ran_away.sum())
-    done = found.finished & (found.verdict != "step-limited") & ~found.ran_away
-    limited = found.verdicts().get("step-limited", 0)
+def _bifurcation_title(diagram: Bifurcation, parameter: Any, label: str) -> str:
+    count, lost = diagram.verdict.size, int(diagram.ran_away.sum())
+    done = diagram.finished & (diagram.verdict != "step-limited") & ~diagram.ran_away
+    limited = diagram.verdicts().get("step-limited", 0)
     if limited > _FEW * count:
         return f"{limited} of {count} motions are made by the step, not by physics"
-    wild = int(np.count_nonzero((found.period == 0) & done))
-    longest = int(np.max(found.period, where=done, initial=0))
-    two = _two_motions(found, parameter, label)
+    wild = int(np.count_nonzero((diagram.period == 0) & done))
+    longest = int(np.max(diagram.period, where=done, initial=0))
+    two = _two_motions(diagram, parameter, label)
     parts = [two] if two else []
     if wild:
         within = "" if two else f" within {_PERIODS} mesh cycles"
@@ -150,30 +150,30 @@ def _bifurcation_title(found: Bifurcation, parameter: Any, label: str) -> str:
     made_by='Call tribodyn.bifurcation(case, over="operation.speed", between=("400 '
     'rpm", "3500 rpm")) and its plot method.',
 )
-def bifurcation(found: Bifurcation) -> Any:
+def bifurcation(diagram: Bifurcation) -> Any:
     """Draw the section, the rms and, if it is there, the largest exponent over the parameter.
 
     Parameters
     ----------
-    found : Bifurcation
+    diagram : Bifurcation
         What :func:`tribodyn.bifurcation` returns.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    factor, unit = _scale(found)
-    parameter, label = _bifurcation_parameter(found)
-    rms = _curves(found, parameter, factor * found.rms, unit)
+    factor, unit = _scale(diagram)
+    parameter, label = _bifurcation_parameter(diagram)
+    rms = _curves(diagram, parameter, factor * diagram.rms, unit)
     panels = [
-        Panel(f"Section [{unit}]", _section(found, parameter, factor, unit), height=1.6),
+        Panel(f"Section [{unit}]", _section(diagram, parameter, factor, unit), height=1.6),
         Panel(f"Rms [{unit}]", rms, {"rangemode": "tozero"}),
     ]
-    if np.any(np.isfinite(found.largest_exponent)):
+    if np.any(np.isfinite(diagram.largest_exponent)):
         zero = {**line(parameter[[0, -1]], [0.0, 0.0], "zero", MUTED), "showlegend": False}
-        curves = [zero, *_curves(found, parameter, found.largest_exponent, "1/s")]
+        curves = [zero, *_curves(diagram, parameter, diagram.largest_exponent, "1/s")]
         panels.append(Panel("Largest exponent [1/s]", curves))
-    return stack(_bifurcation_title(found, parameter, label), label, panels)
+    return stack(_bifurcation_title(diagram, parameter, label), label, panels)
 
 
 def _branch_parameter(branch: Branch, values: Any) -> Array:
@@ -209,10 +209,9 @@ def _points(branch: Branch, values: list[float], unit: str, legend: bool) -> lis
         if not own:
             continue
         x = _branch_parameter(branch, [branch.special_points[n].parameter for n in own])
-        trace = line(x, [values[n] for n in own], words, color, unit=unit)
-        del trace["line"]
-        marker = {"size": 9, "symbol": symbol, "color": color}
-        drawn.append({**trace, "mode": "markers", "marker": marker, "showlegend": legend})
+        y = [values[n] for n in own]
+        mark = marked(x, y, words, color, size=9, symbol=symbol, unit=unit)
+        drawn.append({**mark, "showlegend": legend})
     return drawn
 
 

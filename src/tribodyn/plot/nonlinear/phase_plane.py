@@ -188,12 +188,12 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
     return figure(_section_title(section), [trace], layout)
 
 
-def _exponent_title(found: LyapunovExponents) -> str:
-    value, error = found.vibrating[0], found.standard_error[0]
+def _exponent_title(spectrum: LyapunovExponents) -> str:
+    value, error = spectrum.vibrating[0], spectrum.standard_error[0]
     words = f"{value:.4g} 1/s, standard error {error:.1g} 1/s"
-    if found.verdict == "step-limited":
+    if spectrum.verdict == "step-limited":
         return f"Made by the step, not by physics: the largest exponent is {words}"
-    if found.chaotic:
+    if spectrum.chaotic:
         return f"Chaotic: the largest exponent is {words}"
     return f"Not chaotic: the largest exponent is {words}"
 
@@ -207,24 +207,25 @@ def _exponent_title(found: LyapunovExponents) -> str:
     of="LyapunovExponents",
     made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
 )
-def lyapunov(found: LyapunovExponents) -> Any:
+def lyapunov(spectrum: LyapunovExponents) -> Any:
     """Draw the running means of the largest exponents.
 
     Parameters
     ----------
-    found : LyapunovExponents
+    spectrum : LyapunovExponents
         What :func:`tribodyn.analysis.lyapunov_exponents` returns.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    cycles = len(found.growth)
+    cycles = len(spectrum.growth)
     count = np.arange(1, cycles + 1)
     kept = np.unique(np.linspace(0, cycles - 1, min(cycles, _KEPT)).astype(int))
-    means = np.cumsum(found.growth, axis=0) / count[:, None]
+    means = np.cumsum(spectrum.growth, axis=0) / count[:, None]
     order = np.argsort(-means[-1])[:_DRAWN]
-    errors = np.delete(found.standard_error, np.flatnonzero(found.exponents == 0.0)[: found.free])
+    zeros = np.flatnonzero(spectrum.exponents == 0.0)[: spectrum.free]
+    errors = np.delete(spectrum.standard_error, zeros)
     traces: list[Trace] = []
     x = count[kept]
     for number, column in enumerate(order):
@@ -238,7 +239,7 @@ def lyapunov(found: LyapunovExponents) -> Any:
             "line": {"width": 0}, "hoverinfo": "skip", "showlegend": False,
         })  # fmt: skip
         traces.append(line(x, mean, f"exponent {number + 1}", color, unit="1/s"))
-        level = np.full(2, found.vibrating[number])
+        level = np.full(2, spectrum.vibrating[number])
         dotted = line(x[[0, -1]], level, "result", color, dash="dot", width=1.0)
         traces.append({**dotted, "showlegend": False})
     zero = line(x[[0, -1]], [0.0, 0.0], "zero", MUTED, width=1.0)
@@ -248,4 +249,4 @@ def lyapunov(found: LyapunovExponents) -> Any:
     margin = 0.1 * float(np.ptp(span)) or 1.0
     limits = {"range": [float(span.min()) - margin, float(span.max()) + margin]}
     panel = Panel("Exponent [1/s]", traces, limits, height=1.6)
-    return stack(_exponent_title(found), "Mesh cycles", [panel])
+    return stack(_exponent_title(spectrum), "Mesh cycles", [panel])

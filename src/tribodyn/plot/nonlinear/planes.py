@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,21 +29,26 @@ _SCALE = [[0.0, "#f7fbff"], [0.35, "#9ecae1"], [0.7, "#3182bd"], [1.0, "#08306b"
 _USUAL = 0.98
 
 
-def _name(found: Basins, number: int, factor: float, unit: str) -> str:
-    each = found.attractors[number]
+def _name(plane: Basins, number: int, factor: float, unit: str) -> str:
+    each = plane.attractors[number]
     kind = f"period {each.period}" if each.period else "does not repeat"
     size = significant(factor * each.rms)
     return f"{kind}, rms {size} {unit}: {100.0 * each.share:.1f} %"
 
 
-def _plane(found: Basins, x: Any, y: Any) -> dict[str, Any]:
-    """Heat map of the numbers of the attractors, in steps of one colour each."""
-    count = len(found.attractors)
-    colors = [_NOWHERE, *(_COLORS[n % len(_COLORS)] for n in range(count))]
+def _stepped(colors: Sequence[str]) -> list[list[Any]]:
+    """Scale of colours in steps of one colour each."""
     edges = np.linspace(0.0, 1.0, len(colors) + 1)
-    scale = [[float(e), c] for n, c in enumerate(colors) for e in edges[n : n + 2]]
+    return [[float(e), c] for n, c in enumerate(colors) for e in edges[n : n + 2]]
+
+
+def _plane(plane: Basins, x: Any, y: Any) -> dict[str, Any]:
+    """Heat map of the numbers of the attractors, in steps of one colour each."""
+    count = len(plane.attractors)
+    colors = [_NOWHERE, *(_COLORS[n % len(_COLORS)] for n in range(count))]
+    scale = _stepped(colors)
     words = ["no attractor", *(f"attractor {n + 1}" for n in range(count))]
-    label = np.clip(found.attractor, -1, None).T
+    label = np.clip(plane.attractor, -1, None).T
     return {
         "type": "heatmap",
         "x": x,
@@ -59,11 +65,11 @@ def _plane(found: Basins, x: Any, y: Any) -> dict[str, Any]:
     }
 
 
-def _component(found: Basins, number: int, name: str) -> Any:
-    """Component of the states of an attractor; ``found`` has names of coordinates only."""
-    each = found.attractors[number]
+def _component(plane: Basins, number: int, name: str) -> Any:
+    """Component of the states of an attractor; ``plane`` has names of coordinates only."""
+    each = plane.attractors[number]
     base, velocity = name.removesuffix("_velocity"), name.endswith("_velocity")
-    column = found.names.index(base)
+    column = plane.names.index(base)
     return (each.velocity if velocity else each.position)[:, column]
 
 
@@ -76,40 +82,40 @@ def _component(found: Basins, number: int, name: str) -> Any:
     of="Basins",
     made_by="Call tribodyn.analysis.basins(...) and its plot method.",
 )
-def basins(found: Basins) -> Any:
+def basins(plane: Basins) -> Any:
     """Draw the plane of starts.
 
     Parameters
     ----------
-    found : Basins
+    plane : Basins
         What :func:`tribodyn.analysis.basins` returns.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    one, two = found.coordinates
-    x, x_label = parameter_axis(one, found.first, found.units[0])
-    y, y_label = parameter_axis(two, found.second, found.units[1])
+    one, two = plane.coordinates
+    x, x_label = parameter_axis(one, plane.first, plane.units[0])
+    y, y_label = parameter_axis(two, plane.second, plane.units[1])
     factors = [
-        float(d[-1] / v[-1]) if v[-1] else 1.0 for d, v in ((x, found.first), (y, found.second))
+        float(d[-1] / v[-1]) if v[-1] else 1.0 for d, v in ((x, plane.first), (y, plane.second))
     ]
-    factor, unit = scaled([each.rms for each in found.attractors], unit_of(found.signal))
-    traces = [_plane(found, x, y)]
-    for number in range(len(found.attractors)):
+    factor, unit = scaled([each.rms for each in plane.attractors], unit_of(plane.signal))
+    traces = [_plane(plane, x, y)]
+    for number in range(len(plane.attractors)):
         color = _COLORS[number % len(_COLORS)]
         traces.append({
             "type": "scatter", "mode": "markers",
-            "x": factors[0] * _component(found, number, one),
-            "y": factors[1] * _component(found, number, two),
-            "name": _name(found, number, factor, unit),
+            "x": factors[0] * _component(plane, number, one),
+            "y": factors[1] * _component(plane, number, two),
+            "name": _name(plane, number, factor, unit),
             "marker": {
                 "symbol": "x", "size": 11, "color": color,
                 "line": {"color": "white", "width": 1.5},
             },
         })  # fmt: skip
-    if found.unresolved:
-        words = f"no attractor: {100.0 * found.unresolved:.2g} %"
+    if plane.unresolved:
+        words = f"no attractor: {100.0 * plane.unresolved:.2g} %"
         traces.append({
             "type": "scatter", "mode": "markers", "x": [None], "y": [None], "name": words,
             "marker": {"symbol": "square", "size": 11, "color": _NOWHERE},
@@ -121,30 +127,30 @@ def basins(found: Basins) -> Any:
         "height": 620,
         "legend": {"orientation": "h", "x": 0.0, "y": -0.14, "yanchor": "top"},
     }  # fmt: skip
-    return figure(_basin_title(found), traces, layout)
+    return figure(_basin_title(plane), traces, layout)
 
 
-def _basin_title(found: Basins) -> str:
-    count = len(found.attractors)
+def _basin_title(plane: Basins) -> str:
+    count = len(plane.attractors)
     if not count:
         return "No start comes to a motion that repeats"
     if count == 1:
         return "All starts come to the same motion"
-    first = found.attractors[0]
-    factor, unit = scaled([each.rms for each in found.attractors], unit_of(found.signal))
+    first = plane.attractors[0]
+    factor, unit = scaled([each.rms for each in plane.attractors], unit_of(plane.signal))
     return (
         f"{count} motions are possible; {100.0 * first.share:.0f} % of the starts come to the one "
         f"of {significant(factor * first.rms)} {unit} rms"
     )
 
 
-def _class(found: ParameterMap) -> Any:
+def _class(survey: ParameterMap) -> Any:
     """Number of the colour of every motion; NaN where there is none yet."""
-    period = found.period
+    period = survey.period
     number = np.select(
-        [~np.isfinite(found.rms), period == 0, period > 4], [6.0, 5.0, 4.0], period - 1.0
+        [~np.isfinite(survey.rms), period == 0, period > 4], [6.0, 5.0, 4.0], period - 1.0
     )
-    return np.where(found.finished, number, np.nan)
+    return np.where(survey.finished, number, np.nan)
 
 
 def _heat(x: Any, y: Any, z: Any, words: str, **more: Any) -> dict[str, Any]:
@@ -164,26 +170,25 @@ def _range(rms: Any) -> dict[str, float]:
     return {"zmin": 0.0, "zmax": usual} if 0.0 < 2.0 * usual < most else {}
 
 
-def _periods(found: ParameterMap, x: Any, y: Any) -> dict[str, Any]:
-    edges = np.linspace(0.0, 1.0, len(_PERIODS) + 1)
-    scale = [[float(e), c] for n, (_, c) in enumerate(_PERIODS) for e in edges[n : n + 2]]
+def _periods(survey: ParameterMap, x: Any, y: Any) -> dict[str, Any]:
+    scale = _stepped([color for _, color in _PERIODS])
     ticks = {"tickvals": list(range(len(_PERIODS))), "ticktext": [word for word, _ in _PERIODS]}
     return _heat(
-        x, y, _class(found), "period %{customdata[0]}, %{customdata[1]}", zmin=-0.5,
+        x, y, _class(survey), "period %{customdata[0]}, %{customdata[1]}", zmin=-0.5,
         zmax=len(_PERIODS) - 0.5, colorscale=scale, colorbar=ticks,
-        customdata=np.dstack((found.period.T, found.verdict.T)),
+        customdata=np.dstack((survey.period.T, survey.verdict.T)),
     )  # fmt: skip
 
 
-def _map_title(found: ParameterMap) -> str:
-    if lost := int(found.ran_away.sum()):
+def _map_title(survey: ParameterMap) -> str:
+    if lost := int(survey.ran_away.sum()):
         verb = "grows" if lost == 1 else "grow"
-        return f"{lost} of {found.rms.size} motions {verb} beyond all bounds"
-    seen = found.finished & np.isfinite(found.rms)
+        return f"{lost} of {survey.rms.size} motions {verb} beyond all bounds"
+    seen = survey.finished & np.isfinite(survey.rms)
     if not seen.any():
         return "No motion is finished"
-    irregular = float(np.mean(found.period[seen] != 1))
-    loss = float(np.mean(found.contact_loss_share[seen] > 0.0))
+    irregular = float(np.mean(survey.period[seen] != 1))
+    loss = float(np.mean(survey.contact_loss_share[seen] > 0.0))
     if irregular == 0.0 and loss == 0.0:
         return "Every motion repeats with the mesh, and the teeth never part"
     if irregular == 0.0:
@@ -203,29 +208,29 @@ def _map_title(found: ParameterMap) -> str:
     of="ParameterMap",
     made_by="Call tribodyn.analysis.parameter_map(...) and its plot method.",
 )
-def parameter_map(found: ParameterMap) -> Any:
+def parameter_map(survey: ParameterMap) -> Any:
     """Draw period, rms and contact loss.
 
     Parameters
     ----------
-    found : ParameterMap
+    survey : ParameterMap
         What :func:`tribodyn.analysis.parameter_map` returns.
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
-    x, x_label = parameter_axis(found.names[0], found.first, found.units[0])
-    y, y_label = parameter_axis(found.names[1], found.second, found.units[1])
-    factor, unit = scaled(found.rms, unit_of(found.signal))
-    loss, rms = 100.0 * found.contact_loss_share, factor * found.rms
+    x, x_label = parameter_axis(survey.names[0], survey.first, survey.units[0])
+    y, y_label = parameter_axis(survey.names[1], survey.second, survey.units[1])
+    factor, unit = scaled(survey.rms, unit_of(survey.signal))
+    loss, rms = 100.0 * survey.contact_loss_share, factor * survey.rms
     maps = [
-        ("Period [mesh cycles]", _periods(found, x, y)),
+        ("Period [mesh cycles]", _periods(survey, x, y)),
         (f"Rms [{unit}]", _heat(x, y, rms, f"rms %{{z:.4g}} {unit}", **_range(rms))),
         ("Contact loss [%]", _heat(x, y, loss, "apart for %{z:.3g} % of the time")),
     ]
     rows = [Row(x_label, Panel(y_label, [trace], height=1.25)) for _, trace in maps]
-    made = stack_rows(_map_title(found), rows, {"hovermode": "closest"})
+    made = stack_rows(_map_title(survey), rows, {"hovermode": "closest"})
     for number, (words, _) in enumerate(maps):
         low, high = made.layout[f"yaxis{number + 1 if number else ''}"].domain
         bar = made.data[number].colorbar

@@ -6,17 +6,15 @@ on the mating flank, and belongs to the pair.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 #: Distance beyond the end nodes, over their span, that is rounding and not a place off the flank.
 _ROUNDING = 1e-9

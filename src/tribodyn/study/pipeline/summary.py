@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.model import Registry
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.pipeline.geometry import geometry
 from tribodyn.study.pipeline.record import (
     centre_column,
     compression,
