@@ -11,7 +11,7 @@ from tribodyn.contact import Kinematics
 from tribodyn.errors import require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.cycle import GearData, mesh_cycle, pairs_in_contact
+from tribodyn.mesh.cycle import mesh_cycle, pairs_in_contact
 from tribodyn.mesh.film import FILM_COLUMNS, as_columns
 from tribodyn.mesh.loads import (
     quasi_static_loads,
@@ -172,15 +172,12 @@ def mesh_table(
         **as_columns(reported, roughness),
     }
     in_series = films.film_stiffness if settings.film_in_series else None
-    gears = GearData(pair)
     return MeshTable(
         grid=cycle.grid,
         path=cycle.path,
         in_contact=cycle.in_contact,
         **shared_load_columns(teeth, loads.shared, in_series, force_law=force_law),
-        mesh_order=pair.pinion.teeth,
-        direction=gears.direction,
-        gears=gears,
+        gear_pair=pair,
         pinion_speed=float(pinion_speed),
         pinion_torque=float(pinion_torque),
         composite_roughness=roughness,

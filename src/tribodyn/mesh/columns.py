@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
 from tribodyn.gear import SpurPair
-from tribodyn.mesh.cycle import COORDINATES, GearData
+from tribodyn.mesh.cycle import COORDINATES, GearData, NoGears
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.types import Array, Mask
 
@@ -73,14 +73,9 @@ class MeshColumns:
         film that does not fall with the load counts as rigid: its stiffness has a bound.
     maximum_single_pair_stiffness : float [N/m]
         Greatest stiffness of one pair that carries the whole load alone.
-    mesh_order : int
-        Mesh cycles in one turn of the pinion: its number of teeth.
-    direction : array (6,) or (n, 6)
-        Change of the compression with the coordinates ``pinion_x``, ``pinion_y``,
-        ``pinion_theta``, ``wheel_x``, ``wheel_y``, ``wheel_theta`` [1 or m]: y along, x across
-        the line of action.
-    gears : GearData, optional
-        The spur gears that the table was computed for; a table of another program has none.
+    gear_pair : SpurPair
+        Both gears in their working position. A table of another program has none: there whatever
+        asks for it is told so.
     pinion_speed : float [rad/s]
         Speed of the pinion.
     pinion_torque : float [N*m]
@@ -92,6 +87,12 @@ class MeshColumns:
     film_stiffness_kind : str
         Film stiffness asked for: ``"tangent"`` and ``"secant"`` are in series with the teeth,
         ``"none"`` and ``"seed"`` are not.
+    mesh_order : int
+        Mesh cycles in one turn of the pinion; by default its number of teeth.
+    direction : array (6,) or (n, 6)
+        Change of the compression with the coordinates ``pinion_x``, ``pinion_y``,
+        ``pinion_theta``, ``wheel_x``, ``wheel_y``, ``wheel_theta`` [1 or m]: y along, x across
+        the line of action. By default that of the base radii.
     friction_direction : array (n, pairs, 6) or None
         Generalized force of one newton of friction of each contact, with the sign of sliding
         [1 or m]. Where None, friction acts across the line of action, with the radii of curvature
@@ -129,9 +130,7 @@ class MeshColumns:
     film_pressure: Array | None
     film_stiffness: Array | None
     maximum_single_pair_stiffness: float
-    mesh_order: int
-    direction: Array
-    gears: GearData | None
+    gear_pair: SpurPair | NoGears
     pinion_speed: float
     pinion_torque: float
     composite_roughness: float
@@ -139,22 +138,20 @@ class MeshColumns:
     friction_law: str
     film_model: str
     film_stiffness_kind: str
+    mesh_order: int = 0
+    direction: Array = field(default_factory=lambda: np.zeros(0))
     friction_direction: Array | None = None
     unloaded_transmission_error: Array | None = None
 
-    @property
-    def gear_pair(self) -> SpurPair:
-        """Both gears in their working position, of a table that was computed for spur gears."""
-        if self.gears is None:
-            raise InputError(
-                Problem(
-                    what="this mesh table has no gear pair",
-                    where="MeshTable.gear_pair",
-                    why="Another program made it, and such a table knows contacts, not gears",
-                    remedy="Ask for what is a column of the table",
-                )
-            )
-        return self.gears.pair
+    def __post_init__(self) -> None:
+        if self.gears is not None:
+            object.__setattr__(self, "direction", self.gears.direction)
+            object.__setattr__(self, "mesh_order", self.gears.pair.pinion.teeth)
+
+    @cached_property
+    def gears(self) -> GearData | None:
+        """The spur gears behind the table; None if another program made it."""
+        return None if isinstance(self.gear_pair, NoGears) else GearData(self.gear_pair)
 
     @property
     def driver(self) -> str:

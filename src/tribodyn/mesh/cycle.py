@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from tribodyn.contact import (
 )
 from tribodyn.ehl import FILM_MODELS, moes_central
 from tribodyn.ehl.steady.solved_films import Films
-from tribodyn.errors import require_between
+from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
@@ -27,6 +27,27 @@ from tribodyn.types import Array, Index, Mask
 COORDINATES = (
     "pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta",
 )  # fmt: skip
+
+
+class NoGears:
+    """What stands for the gear pair in a table of another program: it says that there is none."""
+
+    def __getattr__(self, name: str) -> NoReturn:
+        """Answer every question about the gears with one sentence."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise InputError(
+            Problem(
+                what="this mesh table has no gear pair",
+                where="MeshTable.gear_pair",
+                why="Another program made it, and such a table knows contacts, not gears",
+                remedy="Ask for what is a column of the table",
+            )
+        )
+
+    def __repr__(self) -> str:
+        """One line."""
+        return "no gear pair"
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import MISSING, Field, asdict, fields
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, OutputExistsError, Problem, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
-from tribodyn.mesh.cycle import GearData
+from tribodyn.mesh.cycle import NoGears
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import QUANTITIES
@@ -118,28 +118,27 @@ def load(path: str | PathLike[str]) -> MeshTable:
         tuple(float(value) for value in data["event_phase"].values),
         tuple(int(value) for value in data["intervals"].values),
     )
-    values: dict[str, Any] = {"grid": grid, "gears": None}
-    if "gear_pair" in data.attrs:
-        gears = GearData(_read_pair(data.attrs["gear_pair"]))
-        values |= {
-            "gears": gears,
-            "direction": gears.direction,
-            "mesh_order": gears.pair.pinion.teeth,
-        }
+    told = data.attrs.get("gear_pair")
+    pair = _read_pair(told) if told is not None else NoGears()
+    values: dict[str, Any] = {"grid": grid, "gear_pair": pair}
     for field in fields(MeshTable):
         if field.name in data:
             values[field.name] = data[field.name].values
-        elif field.name not in values:
+        elif field.name not in values and (told is None or _is_required(field)):
             values[field.name] = _plain(data.attrs.get(field.name))
     if data.attrs["format"] in _EARLIER:
         values = _earlier(values)
     return MeshTable(**values)
 
 
+def _is_required(field: Field[Any]) -> bool:
+    return field.default is MISSING and field.default_factory is MISSING
+
+
 def _earlier(values: dict[str, Any]) -> dict[str, Any]:
     """Add what earlier tables did not have: their pairs were independent springs."""
     whole = values["stiffness"].sum(axis=1)
-    force = values["pinion_torque"] / values["gears"].pair.pinion.base_radius
+    force = values["pinion_torque"] / values["gear_pair"].pinion.base_radius
     new = {
         "tooth_stiffness": values["stiffness"],
         "film_stiffness_kind": "none",

@@ -14,7 +14,7 @@ import numpy as np
 
 from tribodyn import units
 from tribodyn.errors import InputError, OutputExistsError, Problem
-from tribodyn.mesh.cycle import COORDINATES, GearData
+from tribodyn.mesh.cycle import COORDINATES, GearData, NoGears
 from tribodyn.mesh.force_law import at_rest
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.storage import is_mesh_table, load
@@ -116,13 +116,13 @@ class TableFile:
         direction = self.direction(driver)
         normal_force = pinion_torque / self.lever("pinion_theta")
         complete = self._complete(columns, normal_force)
-        gears, law = self.gears, "none" if friction_coefficient == 0.0 else "table"
+        law = "none" if friction_coefficient == 0.0 else "table"
         return MeshTable(
             grid=self.grid,
             **complete,
             mesh_order=teeth,
-            direction=gears.direction if gears else direction,
-            gears=gears,
+            direction=direction,
+            gear_pair=self.gears.pair if self.gears else NoGears(),
             pinion_speed=float(pinion_speed),
             pinion_torque=float(pinion_torque),
             composite_roughness=0.0,

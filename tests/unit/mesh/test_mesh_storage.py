@@ -12,7 +12,6 @@ from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.gear import FlankModification, Material, ProfileMap, flank_ranges
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, build
-from tribodyn.mesh.cycle import GearData
 from tribodyn.nomenclature import QUANTITIES
 
 # The laws say for themselves where they are used beyond their range.
@@ -67,7 +66,7 @@ def test_modifications_come_back(mesh, fzg, tmp_path):
         ),
         misalignment=-4e-6,
     )
-    replace(mesh, gears=GearData(pair)).save(tmp_path / "mesh.nc")
+    replace(mesh, gear_pair=pair).save(tmp_path / "mesh.nc")
     again = MeshTable.load(tmp_path / "mesh.nc").gear_pair
     assert again == pair
     assert hash(again) == hash(pair)

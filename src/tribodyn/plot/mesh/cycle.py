@@ -70,7 +70,7 @@ def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
 def _driving(mesh: MeshTable) -> tuple[Array, float]:
     """Radius of curvature of the driving flank along a pair's life, and its base radius [m]."""
     if getattr(mesh, "gears", mesh) is None:
-        mesh.gear_pair  # noqa: B018 (says why there is none)
+        mesh.gear_pair.driver  # noqa: B018 (says why there is none)
     radius = pair_life(mesh, f"{mesh.driver}_curvature_radius")[1]
     return radius, getattr(mesh, f"base_radius_{mesh.driver}")
 
