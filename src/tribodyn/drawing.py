@@ -44,7 +44,11 @@ class Need:
         return "" if any(value is not None for value in values) else self.reason
 
 
-@dataclass(frozen=True)
+def _always(subject: Any) -> str:
+    """Give no reason against a figure: it fits whatever it draws."""
+    return ""
+
+
 class Drawing:
     """A figure function together with what a reader should know about it.
 
@@ -58,21 +62,31 @@ class Drawing:
         Heading of the figure in a report.
     caption : str or callable
         What to look for, in plain language; a callable takes what is drawn and says it.
+    missing : callable
+        Takes what is drawn and says in one sentence why it has no such figure; empty if it has.
     of : tuple of str
         Classes that it draws, by name: ``"Campbell"``, or ``"Result.mesh"`` for a part of one.
     made_by : str
         How to come by such a result, told to whoever draws it from another one.
-    needs : callable, optional
-        Says in one sentence why this result has no such figure; empty if it has.
     """
 
-    name: str
-    draw: Callable[..., Any]
-    heading: str
-    caption: str | Callable[[Any], str]
-    of: tuple[str, ...] = ()
-    made_by: str = ""
-    needs: Lack | None = None
+    def __init__(
+        self,
+        name: str,
+        draw: Callable[..., Any],
+        heading: str,
+        caption: str | Callable[[Any], str],
+        missing: Lack = _always,
+        *,
+        of: tuple[str, ...] = (),
+        made_by: str = "",
+    ) -> None:
+        self.name, self.draw, self.heading, self.caption = name, draw, heading, caption
+        self.of, self.made_by, self._lack = of, made_by, missing
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"Drawing({self.name!r}, of {', '.join(self.of) or 'any result'})"
 
     def subject(self, result: Any) -> Any:
         """Return the result, or the part of it, that the figure draws; None if it draws another.
@@ -114,7 +128,7 @@ class Drawing:
         if subject is None:
             kinds = " or ".join(dict.fromkeys(place.partition(".")[0] for place in self.of))
             return f"This figure draws a {kinds}. {self.made_by}".strip()
-        return "" if self.needs is None else self.needs(subject)
+        return self._lack(subject)
 
     def caption_of(self, result: Any) -> str:
         """Tell what to look for in the figure of a result.
@@ -163,9 +177,9 @@ def drawing(
     *,
     heading: str,
     caption: str | Callable[[Any], str],
+    missing: Lack = _always,
     of: str | Iterable[str] = (),
     made_by: str = "",
-    needs: Lack | None = None,
 ) -> Callable[[Callable[..., Any]], Drawing]:
     """Register a figure function under a name and for the classes that it draws.
 
@@ -177,13 +191,13 @@ def drawing(
         Heading of the figure in a report.
     caption : str or callable
         What to look for, in plain language; a callable takes what is drawn and says it.
+    missing : callable
+        Takes what is drawn and says why it has no such figure, empty if it has, see :class:`Need`.
     of : str or iterable of str
         Classes that it draws, by name, or parts of them: ``("MeshTable", "Result.mesh")``. The
         function is handed the part. Empty: any result, which is handed over as it is.
     made_by : str
         How to come by such a result, told to whoever draws it from another one.
-    needs : callable, optional
-        Takes what is drawn and says why it has no such figure, empty if it has, see :class:`Need`.
 
     Returns
     -------
@@ -199,7 +213,7 @@ def drawing(
     kinds = (of,) if isinstance(of, str) else tuple(of)
 
     def keep(draw: Callable[..., Any]) -> Drawing:
-        figure = Drawing(name, draw, heading, caption, kinds, made_by, needs)
+        figure = Drawing(name, draw, heading, caption, missing, of=kinds, made_by=made_by)
         FIGURES.register(name)(figure)
         return figure
 

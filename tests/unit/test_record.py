@@ -83,7 +83,7 @@ def test_saved_whole_and_never_over_another(tmp_path) -> None:
 @pytest.fixture
 def figure():
     @drawing("level-of-test", heading="Level", caption="Look.", of=("Level", "Outer.level"),
-             made_by="Call level().", needs=Need("force", "No force was computed."))  # fmt: skip
+             made_by="Call level().", missing=Need("force", "No force was computed."))  # fmt: skip
     def level_figure(subject: Level, scale: float = 1.0) -> float:
         return scale * float(np.nanmax(subject.force))
 

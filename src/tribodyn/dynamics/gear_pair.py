@@ -95,7 +95,7 @@ def gear_contact(
     )
 
 
-def with_error_of(mesh: MeshFunctions, error: Entry) -> Entry:
+def with_error_of(mesh: object, error: Entry) -> Entry:
     """Error of a contact: the one prescribed, and that of a mesh that has one of its own."""
     of_mesh = getattr(mesh, "error", None)
     if of_mesh is None:

@@ -318,7 +318,7 @@ def _asked(solved: SolvedPath, chosen: Index, speeds: Array) -> Array:
         equivalent_radius=radius,
         dynamic_viscosity=pairs.lubricant.dynamic_viscosity,
         composite_roughness=settings.composite_roughness,
-        film=FilmState.from_solutions(places.solution, index),
+        film=FilmState.from_solutions(list(places.solution), index),
     )
     found = LAWS[settings.friction_law](contact, **settings.friction_options)
     return np.asarray(found).reshape(chosen.size, speeds.size)

@@ -132,7 +132,7 @@ class TableFile:
             film_stiffness_kind="none",
         )
 
-    def _complete(self, columns: dict[str, Array], normal_force: float) -> dict[str, Any]:
+    def _complete(self, columns: dict[str, Any], normal_force: float) -> dict[str, Any]:
         """Fill in what follows from what the file gives."""
         stiffness = columns["stiffness"]
         count, shape = stiffness.shape[0], stiffness.shape

@@ -153,7 +153,7 @@ def _frictionless(mesh: MeshTable) -> str:
     caption=_friction_caption,
     of=("MeshTable", "Result.mesh"),
     made_by=TABLE,
-    needs=_frictionless,
+    missing=_frictionless,
 )
 def friction(mesh: MeshTable) -> Any:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle.
@@ -206,7 +206,7 @@ def _film_axis(films: list[Array]) -> dict[str, Any]:
     "roughness. Where the ratio comes near one, the highest asperities touch.",
     of=("MeshTable", "Result.mesh"),
     made_by=TABLE,
-    needs=_has_film,
+    missing=_has_film,
 )
 def film(mesh: MeshTable) -> Any:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear.
@@ -262,7 +262,7 @@ def _no_pressure(mesh: MeshTable) -> str:
     caption=_pressure_caption,
     of=("MeshTable", "Result.mesh"),
     made_by=TABLE,
-    needs=_no_pressure,
+    missing=_no_pressure,
 )
 def film_pressure(mesh: MeshTable) -> Any:
     """Draw the greatest film pressure of one tooth pair over the roll angle.
@@ -316,7 +316,7 @@ def _no_stiffness(mesh: MeshTable) -> str:
     caption=_stiffness_caption,
     of=("MeshTable", "Result.mesh"),
     made_by=TABLE,
-    needs=_no_stiffness,
+    missing=_no_stiffness,
 )
 def film_stiffness(mesh: MeshTable) -> Any:
     """Draw the stiffness of film, teeth and pair over the roll angle.

@@ -144,7 +144,7 @@ def _run_out(pair: SpurPair) -> Row:
     caption="How far the flanks stand apart where perfect involutes would touch: material is "
     "missing where the curves are above zero. The profile is drawn at the middle of the face, the "
     "face in the middle of the profile against its own middle.",
-    needs=_perfect,
+    missing=_perfect,
     of=_HOLDERS,
     made_by=RUN,
 )

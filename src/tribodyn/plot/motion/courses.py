@@ -178,7 +178,7 @@ def _shake_caption(result: Result) -> str:
     "acceleration",
     heading="Accelerations",
     caption=_shake_caption,
-    needs=no_translation,
+    missing=no_translation,
     of="Result",
     made_by=RUN,
 )
@@ -217,7 +217,7 @@ def _bearing_caption(result: Result) -> str:
     "bearing_force",
     heading="Bearing forces",
     caption=_bearing_caption,
-    needs=no_translation,
+    missing=no_translation,
     of="Result",
     made_by=RUN,
 )

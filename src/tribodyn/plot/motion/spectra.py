@@ -132,7 +132,7 @@ def _decades(panel: Panel) -> list[float]:
     caption="How strong each mesh harmonic is. Harmonic 1 is the mesh frequency, the teeth that "
     "pass in a second. A high bar at a higher harmonic tells of a natural frequency near it. The "
     "buttons switch to a logarithmic scale, on which small harmonics show.",
-    needs=_no_harmonics,
+    missing=_no_harmonics,
     of="Result",
     made_by=RUN,
 )
@@ -175,7 +175,7 @@ def _no_bearing_harmonics(result: Result) -> str:
     heading="Spectra of the bearing forces",
     caption="What the bearings pass on to the housing, by mesh harmonic. A harmonic that meets a "
     "natural frequency of the housing is the one that is heard.",
-    needs=_no_bearing_harmonics,
+    missing=_no_bearing_harmonics,
     of="Result",
     made_by=RUN,
 )
