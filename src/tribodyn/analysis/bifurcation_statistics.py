@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.analysis.attractors import Motions
 from tribodyn.analysis.poincare_march import repeat_period
+from tribodyn.dynamics._engine import blocks
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array, Index
 
@@ -78,7 +79,8 @@ def _gather(
         moments[:, 2], moments[:, 3] = np.inf, -np.inf
         flat = moments.reshape(-1, lanes)
         state = motions.march(
-            index, state, 1, motions.force[index], outputs=outputs, moments=flat,
+            index, state, 1, motions.force[index],
+            statistics=blocks.Statistics(outputs, np.zeros((1, 3, 0, 2)), flat),
             width=1 if lanes < 4 else 16, threads=os.cpu_count() or 1,
         )  # fmt: skip
         state = motions.coordinates.expand(motions.coordinates.reduce(state))
