@@ -102,7 +102,9 @@ class Result(Record):
         array [m]
         """
         own = self.mesh.functions().error
-        return static_error(self.case, phase) + (0.0 if own is None else own(np.asarray(phase, dtype=float)))
+        return static_error(self.case, phase) + (
+            0.0 if own is None else own(np.asarray(phase, dtype=float))
+        )
 
     def loaded_contact(self) -> LoadedContact:
         """Loaded tooth contact at rest: over all teeth where these differ, without oil film.
