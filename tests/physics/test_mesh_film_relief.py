@@ -174,7 +174,7 @@ def test_films_over_operation_leave_them_out_too() -> None:
 
 
 def test_too_few_places_leave_films_out_and_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    import tribodyn.mesh.film_refinement as refinement
+    import tribodyn.mesh.film.film_refinement as refinement
 
     monkeypatch.setattr(refinement, "MOST_ADDED", 40)
     with pytest.warns(ModelWarning, match=r"film-positions.*at \d+ of \d+ contacts.*film") as told:

@@ -1,33 +1,44 @@
 """Lumped structures with time-varying contacts: steady states, transients, ensembles."""
 
-from tribodyn.dynamics.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.engines import ENGINES, Engine
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
 from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.follow_load import follow_load
-from tribodyn.dynamics.force_law import MeshForce, law_contacts
-from tribodyn.dynamics.forced_response import ForcedResponse, forced_response
-from tribodyn.dynamics.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12
-from tribodyn.dynamics.load_friction import LoadFriction
-from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
+from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
+from tribodyn.dynamics.linear.forced_response import ForcedResponse, forced_response
+from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.continuation import continuation
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.orbits.speed_sweep import Jump, SpeedSweep, speed_sweep
 from tribodyn.dynamics.orbits.steady_state import steady_state
-from tribodyn.dynamics.run_up import run_up
-from tribodyn.dynamics.run_up_profile import SpeedProfile, speed_ramp
-from tribodyn.dynamics.run_up_result import RunUp
-from tribodyn.dynamics.shafts import Body, GearMesh, assemble, shaft_chain, torsional_stiffness
-from tribodyn.dynamics.spur6 import SPUR6_NAMES, spur6
-from tribodyn.dynamics.structures import STRUCTURES, Gearing, Structure
+from tribodyn.dynamics.running_up.run_up import run_up
+from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, speed_ramp
+from tribodyn.dynamics.running_up.run_up_result import RunUp
+from tribodyn.dynamics.structure.follow_load import follow_load
+from tribodyn.dynamics.structure.force_law import MeshForce, law_contacts
+from tribodyn.dynamics.structure.fzg12 import (
+    FZG12_LIGHT,
+    FZG12_MESH_FREQUENCY,
+    FZG12_NAMES,
+    fzg12,
+)
+from tribodyn.dynamics.structure.load_friction import LoadFriction
+from tribodyn.dynamics.structure.shafts import (
+    Body,
+    GearMesh,
+    assemble,
+    shaft_chain,
+    torsional_stiffness,
+)
+from tribodyn.dynamics.structure.spur6 import SPUR6_NAMES, spur6
+from tribodyn.dynamics.structure.structures import STRUCTURES, Gearing, Structure
+from tribodyn.dynamics.structure.torsional import TORSIONAL_NAMES, torsional
 from tribodyn.dynamics.time.adaptive_solution import AdaptiveSolution, solve_adaptive
 from tribodyn.dynamics.time.energy import EnergyAudit, energy_audit
 from tribodyn.dynamics.time.ensemble import Ensemble, LaneStatistics, simulate_ensemble
 from tribodyn.dynamics.time.response import FineSamples, Response
 from tribodyn.dynamics.time.simulate import simulate
-from tribodyn.dynamics.torsional import TORSIONAL_NAMES, torsional
 
 __all__ = [
     "ENGINES",

@@ -12,7 +12,7 @@ from tribodyn.errors import require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import mesh_cycle, pairs_in_contact
-from tribodyn.mesh.film import FILM_COLUMNS, as_columns
+from tribodyn.mesh.film.film_columns import FILM_COLUMNS, as_columns
 from tribodyn.mesh.loads import (
     quasi_static_loads,
     reported_films,

@@ -13,8 +13,8 @@ from tribodyn.ehl.steady.solved_films import Films
 from tribodyn.errors import ComputationError, Problem, quiet, warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
-from tribodyn.mesh.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
-from tribodyn.mesh.path_film import FilmAt, film_of
+from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
+from tribodyn.mesh.film.path_film import FilmAt, film_of
 from tribodyn.mesh.sharing import SharedLoad, Teeth
 from tribodyn.mesh.tooth_contact import ToothContact
 from tribodyn.progress import Progress

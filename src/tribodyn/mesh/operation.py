@@ -15,7 +15,7 @@ from tribodyn.errors import InputError, Problem, require_between, require_positi
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import PathPositions, path_positions
-from tribodyn.mesh.film import as_columns, film_places
+from tribodyn.mesh.film.film_columns import as_columns, film_places
 from tribodyn.mesh.sharing import LEAST_SHARE, teeth_of
 from tribodyn.mesh.tooth_contact import ToothContact
 from tribodyn.nomenclature import QUANTITIES

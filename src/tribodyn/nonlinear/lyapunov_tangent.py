@@ -30,8 +30,8 @@ from tribodyn.dynamics.equations.motion import (
     rows_within,
 )
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.load_friction import push_with_friction
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
+from tribodyn.dynamics.structure.load_friction import push_with_friction
 from tribodyn.errors import ComputationError, InputError, Problem
 from tribodyn.types import Array, Index, Mask
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tribodyn.dynamics.run_up_result import RunUp
+from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.order_map import OrderCut, OrderMap

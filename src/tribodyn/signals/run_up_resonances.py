@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.dynamics.natural_modes import NaturalModes
-from tribodyn.dynamics.run_up_result import RunUp
+from tribodyn.dynamics.linear.natural_modes import NaturalModes
+from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.signals.run_up_orders import Part, order_cut
 from tribodyn.types import Array

@@ -19,7 +19,7 @@ from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
 from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes, refuse_unstable_step
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.load_friction import coefficient_count
+from tribodyn.dynamics.structure.load_friction import coefficient_count
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.types import Index, Mask
 

@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.load_friction import friction_force
+from tribodyn.dynamics.structure.load_friction import friction_force
 from tribodyn.types import Array, Index, Mask
 
 

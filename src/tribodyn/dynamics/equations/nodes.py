@@ -12,7 +12,10 @@ import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.load_friction import friction_coefficients, friction_directions
+from tribodyn.dynamics.structure.load_friction import (
+    friction_coefficients,
+    friction_directions,
+)
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

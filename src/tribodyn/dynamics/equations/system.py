@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry, read_events
-from tribodyn.dynamics.load_friction import LoadFriction
+from tribodyn.dynamics.structure.load_friction import LoadFriction
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

@@ -12,7 +12,7 @@ from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, Orbits, newton
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
 from tribodyn.dynamics.time.ensemble import fresh_moments
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array, ComplexArray, Index, Mask

@@ -7,7 +7,11 @@ import numpy as np
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.motion import compression
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.load_friction import carried_load, friction_secant, push_with_friction
+from tribodyn.dynamics.structure.load_friction import (
+    carried_load,
+    friction_secant,
+    push_with_friction,
+)
 from tribodyn.types import Array, Mask
 
 #: Rounds in which the ramps of a force law open and close; each round goes down the law.

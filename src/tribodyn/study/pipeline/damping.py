@@ -49,7 +49,7 @@ def damping_of(case: Case, mesh: MeshTable) -> Damping:
 
 
 def _support(case: Case, mass: float) -> float:
-    from tribodyn.dynamics.structures import support_damping
+    from tribodyn.dynamics.structure.structures import support_damping
 
     names = ("bearing_stiffness", "bearing_damping", "bearing_damping_ratio")
     values = [effective(case).get(f"dynamics.{name}") for name in names]

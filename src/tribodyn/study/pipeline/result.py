@@ -8,6 +8,8 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+import numpy as np
+
 from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.record import Parts, Record, record
 from tribodyn.reporting import write_report_of
@@ -101,10 +103,8 @@ class Result(Record):
         -------
         array [m]
         """
-        own = self.mesh.functions().error
-        return static_error(self.case, phase) + (
-            0.0 if own is None else own(np.asarray(phase, dtype=float))
-        )
+        own, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
+        return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 
     def loaded_contact(self) -> LoadedContact:
         """Loaded tooth contact at rest: over all teeth where these differ, without oil film.

@@ -15,7 +15,7 @@ from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.load_friction import (
+from tribodyn.dynamics.structure.load_friction import (
     carried_load,
     friction_secant,
     friction_tangent,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.load_friction import LoadFriction
+from tribodyn.dynamics.structure.load_friction import LoadFriction
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

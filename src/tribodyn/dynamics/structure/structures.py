@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.dynamics.fzg12 import fzg12
-from tribodyn.dynamics.spur6 import spur6
-from tribodyn.dynamics.torsional import torsional
+from tribodyn.dynamics.structure.fzg12 import fzg12
+from tribodyn.dynamics.structure.spur6 import spur6
+from tribodyn.dynamics.structure.torsional import torsional
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.gear_pair import Driver
+from tribodyn.dynamics.structure.gear_pair import Driver
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.types import Array
 

@@ -12,16 +12,16 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.force_law import MeshForce, carried
-from tribodyn.dynamics.fzg12_mesh import BASE_RADIUS, RectangularMesh
-from tribodyn.dynamics.gear_pair import (
+from tribodyn.dynamics.structure.force_law import MeshForce, carried
+from tribodyn.dynamics.structure.fzg12_mesh import BASE_RADIUS, RectangularMesh
+from tribodyn.dynamics.structure.gear_pair import (
     Driver,
     TorqueBalance,
     balance_direction,
     torques,
     with_error_of,
 )
-from tribodyn.dynamics.shafts import Body, GearMesh, assemble, row_of, shaft_chain
+from tribodyn.dynamics.structure.shafts import Body, GearMesh, assemble, row_of, shaft_chain
 from tribodyn.errors import InputError, Problem, require_between
 from tribodyn.types import Array
 

@@ -12,8 +12,8 @@ from tribodyn.dynamics.equations.divergence import unparted_step
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
-from tribodyn.dynamics.run_up_profile import SpeedProfile
-from tribodyn.dynamics.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
+from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
 from tribodyn.dynamics.time.ensemble import fresh_moments
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.interrupt import refuse_stopped, stop_flag

@@ -8,8 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.natural_modes_elements import structure_elements
-from tribodyn.dynamics.natural_modes_linear import LinearSystem, ModePhase, linear_system
+from tribodyn.dynamics.linear.natural_modes_elements import structure_elements
+from tribodyn.dynamics.linear.natural_modes_linear import (
+    LinearSystem,
+    ModePhase,
+    linear_system,
+)
 from tribodyn.errors import InputError, Problem
 from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array, ComplexArray

@@ -28,8 +28,8 @@ from tribodyn.mesh.cycle import (
     lobatto_polynomial,
     path_positions,
 )
-from tribodyn.mesh.film import film_places
-from tribodyn.mesh.film_refinement import (
+from tribodyn.mesh.film.film_columns import film_places
+from tribodyn.mesh.film.film_refinement import (
     PRESSURE,
     PROMISED,
     QUANTITIES,

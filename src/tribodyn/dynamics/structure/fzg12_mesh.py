@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.dynamics.gear_pair import Driver
+from tribodyn.dynamics.structure.gear_pair import Driver
 from tribodyn.types import Array
 
 _MODULE, _TEETH = 4.5e-3, (16, 24)

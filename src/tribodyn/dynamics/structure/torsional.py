@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.force_law import MeshForce, gear_contacts
-from tribodyn.dynamics.gear_pair import (
+from tribodyn.dynamics.structure.force_law import MeshForce, gear_contacts
+from tribodyn.dynamics.structure.gear_pair import (
     Driver,
     TorqueBalance,
     balance_direction,

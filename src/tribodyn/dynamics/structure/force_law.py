@@ -16,7 +16,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact
-from tribodyn.dynamics.gear_pair import gear_contact
+from tribodyn.dynamics.structure.gear_pair import gear_contact
 from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.dynamics.run_up_profile import SpeedProfile
+from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
 from tribodyn.dynamics.time.ensemble import LaneStatistics
 from tribodyn.errors import InputError, Problem
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.natural_modes import NaturalModes
+    from tribodyn.dynamics.linear.natural_modes import NaturalModes
 
 
 @dataclass(frozen=True)

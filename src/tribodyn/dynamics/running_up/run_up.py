@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.natural_modes import NaturalModes, natural_modes
+from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
-from tribodyn.dynamics.run_up_march import CycleMarcher, Pace
-from tribodyn.dynamics.run_up_profile import SpeedProfile, read_profile
-from tribodyn.dynamics.run_up_result import CycleStatistics, RunUp
-from tribodyn.dynamics.run_up_samples import Samples
-from tribodyn.dynamics.run_up_tables import Tables, systems_by_frequency
+from tribodyn.dynamics.running_up.run_up_march import CycleMarcher, Pace
+from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, read_profile
+from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
+from tribodyn.dynamics.running_up.run_up_samples import Samples
+from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import LaneStatistics
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import (

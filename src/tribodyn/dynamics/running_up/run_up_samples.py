@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.dynamics.equations.motion import compression, forces, has_gap, sides
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.run_up_tables import Table
+from tribodyn.dynamics.running_up.run_up_tables import Table
 from tribodyn.types import Array
 
 
