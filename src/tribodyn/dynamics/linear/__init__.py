@@ -5,7 +5,8 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 | module | what it answers |
 |---|---|
 | ``natural_modes`` | natural frequencies, modes and where their energy sits |
-| ``natural_modes_linear``, ``natural_modes_elements`` | matrices with the contacts in touch, and their springs |
+| ``natural_modes_linear`` | matrices with the contacts in touch |
+| ``natural_modes_elements`` | the springs of which a stiffness matrix is made |
 | ``forced_response`` | what a harmonic transmission error does |
 | ``campbell`` | at which speeds mesh orders meet natural frequencies |
 """
