@@ -130,7 +130,7 @@ class MeshColumns:
     film_pressure: Array | None
     film_stiffness: Array | None
     maximum_single_pair_stiffness: float
-    gear_pair: SpurPair | NoGears
+    gear_pair: SpurPair  # a NoGears, which says so when asked, where a table has none
     pinion_speed: float
     pinion_torque: float
     composite_roughness: float

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, cast
 
 import numpy as np
 
@@ -122,7 +122,7 @@ class TableFile:
             **complete,
             mesh_order=teeth,
             direction=direction,
-            gear_pair=self.gears.pair if self.gears else NoGears(),
+            gear_pair=self.gears.pair if self.gears else cast(Any, NoGears()),
             pinion_speed=float(pinion_speed),
             pinion_torque=float(pinion_torque),
             composite_roughness=0.0,
