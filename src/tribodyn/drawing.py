@@ -44,11 +44,12 @@ class Need:
         return "" if any(value is not None for value in values) else self.reason
 
 
-def _always(subject: Any) -> str:
+def _always(result: Any) -> str:
     """Give no reason against a figure: it fits whatever it draws."""
     return ""
 
 
+@dataclass(frozen=True)
 class Drawing:
     """A figure function together with what a reader should know about it.
 
@@ -70,23 +71,27 @@ class Drawing:
         How to come by such a result, told to whoever draws it from another one.
     """
 
-    def __init__(
-        self,
-        name: str,
-        draw: Callable[..., Any],
-        heading: str,
-        caption: str | Callable[[Any], str],
-        missing: Lack = _always,
-        *,
-        of: tuple[str, ...] = (),
-        made_by: str = "",
-    ) -> None:
-        self.name, self.draw, self.heading, self.caption = name, draw, heading, caption
-        self.of, self.made_by, self._lack = of, made_by, missing
+    name: str
+    draw: Callable[..., Any]
+    heading: str
+    caption: str | Callable[[Any], str]
+    missing: Lack = _always
+    of: tuple[str, ...] = ()
+    made_by: str = ""
 
-    def __repr__(self) -> str:
-        """One line."""
-        return f"Drawing({self.name!r}, of {', '.join(self.of) or 'any result'})"
+    def __post_init__(self) -> None:
+        """Let ``missing`` answer for any result, not only for what the figure draws."""
+        lack = self.missing
+
+        def missing(result: Any) -> str:
+            """Say in one sentence why a result has no such figure; empty if it has."""
+            subject = self.subject(result)
+            if subject is not None:
+                return lack(subject)
+            kinds = " or ".join(dict.fromkeys(place.partition(".")[0] for place in self.of))
+            return f"This figure draws a {kinds}. {self.made_by}".strip()
+
+        object.__setattr__(self, "missing", missing)
 
     def subject(self, result: Any) -> Any:
         """Return the result, or the part of it, that the figure draws; None if it draws another.
@@ -111,24 +116,6 @@ class Drawing:
             if part is not None:
                 return part
         return None if self.of else result
-
-    def missing(self, result: Any) -> str:
-        """Say in one sentence why a result has no such figure; empty if it has.
-
-        Parameters
-        ----------
-        result : object
-            Any result.
-
-        Returns
-        -------
-        str
-        """
-        subject = self.subject(result)
-        if subject is None:
-            kinds = " or ".join(dict.fromkeys(place.partition(".")[0] for place in self.of))
-            return f"This figure draws a {kinds}. {self.made_by}".strip()
-        return self._lack(subject)
 
     def caption_of(self, result: Any) -> str:
         """Tell what to look for in the figure of a result.
@@ -213,7 +200,7 @@ def drawing(
     kinds = (of,) if isinstance(of, str) else tuple(of)
 
     def keep(draw: Callable[..., Any]) -> Drawing:
-        figure = Drawing(name, draw, heading, caption, missing, of=kinds, made_by=made_by)
+        figure = Drawing(name, draw, heading, caption, missing, kinds, made_by)
         FIGURES.register(name)(figure)
         return figure
 

@@ -111,6 +111,11 @@ class Film(Section):
 
     model: str = model_choice("none", _films, meaning="how the oil film is found")
 
+    @property
+    def stiffness(self) -> str:
+        """Stiffness of the film in the mesh; ``"none"`` where nothing else was chosen."""
+        return vars(self).get("stiffness") or "none"
+
 
 class Stiffness(Section):
     """The ``[stiffness]`` table: how the teeth give way."""
