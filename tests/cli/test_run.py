@@ -149,16 +149,18 @@ def test_ctrl_c_leaves_nothing(folder: Path, moment: str) -> None:
 
 
 _SLOW_REPORT = """
-import threading, time
+import time
 import tribodyn.report
-tribodyn.report.write_report = lambda result, path: time.sleep(60)
+from tribodyn.reporting import REPORTS
+REPORTS.register("Result")(lambda result, path: time.sleep(60))
 """
 
 
 # Says beside itself that the motion is being computed.
 _AT_WORK = """
 import pathlib
-import tribodyn.study.pipeline as pipeline
+from importlib import import_module
+pipeline = import_module("tribodyn.study.pipeline.run")
 original = pipeline.motion_of
 def motion_of(*words):
     pathlib.Path(__file__).with_name("at-work").touch()

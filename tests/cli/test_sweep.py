@@ -185,7 +185,7 @@ def test_a_diagram_goes_over_one_range(capsys: pytest.CaptureFixture[str]) -> No
 _HOOKS = {
     "sweep": """
 import pathlib, time
-import tribodyn.study.parameter_sweep as module
+import tribodyn.study.studies.sweep as module
 original = module._point
 def point(*words):
     found = original(*words)
