@@ -150,16 +150,13 @@ def test_pairs_that_do_not_touch_have_no_film() -> None:
 
 def test_figures_leave_out_pairs_that_do_not_touch() -> None:
     mesh = relieved()
-    from types import SimpleNamespace
-
-    result = SimpleNamespace(mesh=mesh, case=SimpleNamespace(gear_pair=mesh.gear_pair))
     for name in ("film", "film_pressure", "film_stiffness"):
-        figure = FIGURES[name](result)
+        figure = FIGURES[name](mesh)
         assert "nan" not in figure.layout.title.text
         assert np.isnan(np.array(figure.data[0].y, dtype=float)).sum() > 100
-    assert "reaches 0.7" in FIGURES["film_pressure"](result).layout.title.text
+    assert "reaches 0.7" in FIGURES["film_pressure"](mesh).layout.title.text
     # a pair that is about to leave contact has a film of 50 um: the others must still be seen
-    assert FIGURES["film"](result).layout.yaxis.type == "log"
+    assert FIGURES["film"](mesh).layout.yaxis.type == "log"
 
 
 def test_films_over_operation_leave_them_out_too() -> None:
