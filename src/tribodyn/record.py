@@ -146,7 +146,7 @@ class Record:
 
         Parameters
         ----------
-        **options
+        *arguments, **options
             Of that figure.
 
         Returns

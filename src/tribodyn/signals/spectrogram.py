@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from scipy.signal import ShortTimeFFT
 
 from tribodyn.errors import require_between, require_positive
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.recorded_signal import checked_signal, window_values
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    pass
 
 
 @record
@@ -143,6 +139,8 @@ def spectrogram(
     if last < first:
         hop, first, last = length // 2, 1, 1
     weights = window_values(window, length)
+    from scipy.signal import ShortTimeFFT
+
     transform = ShortTimeFFT(
         weights,
         hop,

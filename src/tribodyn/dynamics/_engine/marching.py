@@ -58,7 +58,7 @@ def put_lane(lane: int, width: int, first: int, last: int, w: Array, single: Arr
 
 def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> tuple[Law, int]:
     """Law of one lane and where its three rows begin; gathered if lanes have rows of their own."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")
 
 
 @overload(_rows_of_lane)
@@ -77,7 +77,7 @@ def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-d
 
 def _moments_of(gathered: Any) -> Any:
     """Numbers of all moments and of the waves of a step; none without statistics."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")
 
 
 @overload(_moments_of)

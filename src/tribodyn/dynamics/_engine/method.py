@@ -45,29 +45,29 @@ def is_method(kind: Any, method: type) -> bool:
 
 def own_slots(method: Any, law: Any) -> tuple[int, int]:
     """Slots of the method, and how many of them a step changes for good."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")
 
 
 def prepare(method: Any, law: Any, base: int, period: float, w: Array) -> None:
     """Set up the slots of one lane."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")
 
 
 def restart(lanes: Any, method: Any, law: Any, base: int, w: Array) -> None:
     """Begin anew at an event or a change of side; ``base`` is the row there."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")
 
 
 def step(lanes: Any, method: Any, law: Any, number: int, base: int, w: Array) -> bool:
     """March every lane by a whole step, from buffer 0 to buffer 2; False if it was not found."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")
 
 
 def part_step(method: Any, law: Any, w: Array) -> bool:
     """March one lane by a part of a step, whose three rows are those of ``law``."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")
 
 
 def accept(lanes: Any, method: Any, law: Any, w: Array) -> None:
     """Let the end of the step be the beginning of the next."""
-    raise NotImplementedError
+    raise TypeError("chosen by type where it is compiled")

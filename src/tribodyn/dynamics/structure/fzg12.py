@@ -142,15 +142,7 @@ def fzg12(
     """
     radii = row_of("base_radius", base_radius, 2, "m")
     require_between("torque", torque, 0.0, np.inf, "N*m")
-    if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
-        raise InputError(
-            Problem(
-                what="the mesh has contact directions of its own",
-                where="argument mesh",
-                why="The shafts of this structure move in one plane, with levers of base circles",
-                remedy="Take spur6, or a mesh with base radii",
-            )
-        )
+    _refuse_directions(mesh)
     teeth = mesh or RectangularMesh(
         single_pair_stiffness,
         double_pair_stiffness,
@@ -216,3 +208,16 @@ def _shafts(**values: ArrayLike) -> list[Body]:
         )
         for number, part in enumerate((slice(0, 2), slice(2, 4)))
     ]
+
+
+def _refuse_directions(mesh: Any) -> None:
+    """Refuse a mesh whose contacts have directions of their own."""
+    if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
+        raise InputError(
+            Problem(
+                what="the mesh has contact directions of its own",
+                where="argument mesh",
+                why="The shafts of this structure move in one plane, with levers of base circles",
+                remedy="Take spur6, or a mesh with base radii",
+            )
+        )

@@ -195,7 +195,13 @@ class Case(Section, whole=True):
 
     @cached_property
     def gear_pair(self) -> SpurPair:
-        """Both gears in their working position; a case with a mesh table has none."""
+        """Both gears in their working position.
+
+        Raises
+        ------
+        InputError
+            If the case has a mesh table of another program instead.
+        """
         if self.gears.kind == "table":
             raise InputError(derive.no_gear_pair())
         return derive.gear_pair(self.gears, self.dynamics.backlash)
