@@ -53,7 +53,7 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> Any:
 
     def make(way: str, shares: tuple[float, ...], changes: dict[str, Any] | None = None) -> Result:
         for place in ("assembly", "motion"):
-            monkeypatch.setattr(f"tribodyn.study.{place}.mesh_law_of", lambda case: way)
+            monkeypatch.setattr(f"tribodyn.study.pipeline.{place}.mesh_law_of", lambda case: way)
         case = read_case(SOUND, "pair.toml").replace(_CHANGES | (changes or {}))
         mesh = _with_law(mesh_of(case), shares)
         damping = damping_of(case, mesh)
@@ -113,7 +113,7 @@ def test_without_play_a_pulling_mesh_is_told(
     monkeypatch: pytest.MonkeyPatch, way: str, told: str
 ) -> None:
     for place in ("assembly", "motion"):
-        monkeypatch.setattr(f"tribodyn.study.{place}.mesh_law_of", lambda case: way)
+        monkeypatch.setattr(f"tribodyn.study.pipeline.{place}.mesh_law_of", lambda case: way)
     light = _LOOSE | {"dynamics.backlash": 0.0}
     case = read_case(SOUND, "pair.toml").replace(_CHANGES | light)
     with pytest.warns(td.ModelWarning, match=f"mesh-tension.*backlash 0 {told}"):
