@@ -9,7 +9,6 @@ from references import (
     backlash_orbits,
     film_cases,
     friction_table,
-    gear_compliance,
     gear_pair_orbits,
 )
 
@@ -66,26 +65,3 @@ def test_films_of_the_gear_pair(torque: int) -> None:
     assert (hertz, half_width) == pytest.approx(stated[:2], rel=1e-4)
     assert central == pytest.approx(stated[2], rel=4e-4)
     assert minimum == pytest.approx(stated[3], rel=1e-3)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", gear_compliance.TRIANGLES, ids=str)
-def test_compliances_of_gears(name: str | tuple[int, float, float]) -> None:
-    _, own, cross = gear_compliance.TRIANGLES[name]
-    found = gear_compliance.compliances(name)
-    assert found[0] == pytest.approx(own, rel=0.005)
-    assert found[1] == pytest.approx(cross, rel=0.005, abs=0.02 * max(own))
-
-
-@pytest.mark.slow
-def test_stiffness_of_one_pair() -> None:
-    found = gear_compliance.Pair(gear_compliance.PITCH_POINT).stiffness()
-    assert found == pytest.approx(gear_compliance.STIFFNESS, rel=0.005)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("roll", gear_compliance.DEFLECTIONS)
-def test_deflection_of_one_pair(roll: float) -> None:
-    pair = gear_compliance.Pair(roll)
-    found = [pair.deflection(torque) for torque in gear_compliance.TORQUES]
-    assert found == pytest.approx(gear_compliance.DEFLECTIONS[roll], rel=0.005)
