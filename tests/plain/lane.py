@@ -6,6 +6,7 @@ the physics readable, slower by a factor of thousands.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import NamedTuple
 
 import numpy as np
@@ -34,7 +35,7 @@ class Motion(NamedTuple):
     a: Array
 
 
-class PlainLane:
+class PlainLane(ABC):
     """Splits steps; a method gives ``advance``."""
 
     def __init__(self, system: System, grid: Grid, nodes: Nodes, mesh_frequency: float) -> None:
@@ -47,9 +48,9 @@ class PlainLane:
     def acceleration(self, row: Nodes, q: Array, v: Array, side: Array) -> Array:
         return forces(self.system, row, self.beat, q, v, side=side).acceleration
 
+    @abstractmethod
     def advance(self, step: int, begin: float, end: float, old: Motion, side: Array) -> Motion:
         """Step from one fraction of a step to another, with one force law."""
-        raise NotImplementedError
 
     def distances(self, step: int, tau: float, q: Array, side: Array, leaving: Array) -> Array:
         row = self.row(step, tau)
