@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
-from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.equations.system import System, no_direction
 from tribodyn.dynamics.structure.load_friction import (
     friction_coefficients,
     friction_directions,
@@ -63,6 +63,8 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         return out
 
     direction = vector("direction", rows.values)
+    for j in np.flatnonzero(~direction.any(axis=(0, 1, 3))):
+        raise no_direction(f"contacts[{j}].direction")
     gap = scalar("gap", rows.values)
     if np.any(gap < 0.0):
         raise InputError(

@@ -15,9 +15,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.entry import Entry, read_events
+from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.dynamics.structure.load_friction import LoadFriction
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, Problem, real_numbers
 from tribodyn.types import Array
 
 
@@ -44,14 +44,15 @@ class Contact:
         Generalized friction force per unit contact force [1 or m].
     events : tuple of float
         Mesh phases at which an entry jumps. They become grid points, and values there are taken
-        from the left and from the right separately.
+        from the left and from the right separately. The beginning of the mesh cycle always is one;
+        a function that jumps anywhere else, or is not one of the phase alone, is refused.
     damping_in_gap : bool
         Keep the damping in free flight. Unphysical; for comparison with published models.
 
     Raises
     ------
     InputError
-        If an event lies outside [0, 1).
+        If an event lies outside [0, 1), or the direction is zero.
 
     Examples
     --------
@@ -70,6 +71,9 @@ class Contact:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
+        where = "Contact.direction"
+        if not varies(self.direction) and not real_numbers(where, self.direction).any():
+            raise no_direction(where)
 
     def __repr__(self) -> str:
         """One line."""
@@ -78,8 +82,20 @@ class Contact:
         return f"Contact(stiffness={stiffness}, gap={gap}, events={self.events})"
 
 
+def no_direction(where: str) -> InputError:
+    """Error of a contact that no motion compresses."""
+    return InputError(
+        Problem(
+            what="the direction is zero",
+            where=where,
+            why="No coordinate compresses the contact, so that it could never carry",
+            remedy="Give the derivative of the compression with respect to each coordinate",
+        )
+    )
+
+
 def _matrix(name: str, value: ArrayLike) -> Array:
-    matrix = np.array(value, dtype=float, ndmin=2)
+    matrix = np.array(real_numbers(f"System.{name}", value), ndmin=2)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise InputError(
             Problem(
@@ -162,7 +178,7 @@ class System:
         _refuse_singular(matrices["mass"], names)
         _refuse_missing_contacts(self)
         if self.balance is not None:
-            balance = np.asarray(self.balance, dtype=float)
+            balance = real_numbers("System.balance", self.balance)
             if balance.shape != (size,):
                 raise InputError(
                     Problem(

@@ -18,6 +18,7 @@ from tribodyn.study.case.sections import LubricantData, MaterialData
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
+    from tribodyn.friction import FrictionLaw, TribologicalContact
     from tribodyn.gear import FlankModification, Material, ProfileMap, SpurPair
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
@@ -324,7 +325,61 @@ def case_problems(case: Case) -> list[tuple[str, Problem]]:
         return _table_problems(case)
     found = _faults("gears", lambda: case.gear_pair)
     found += _faults("lubricant", lambda: case.lubricant_properties)
-    return found + _bores(case)
+    found += _bores(case)
+    return found or _friction_problems(case)
+
+
+def _friction_problems(case: Case) -> list[tuple[str, Problem]]:
+    """A friction law that refuses the teeth where one pair carries the whole load."""
+    law, oil = cast("FrictionLaw | None", case.friction.chosen), case.lubricant_properties
+    if law is None or law.needs_film or oil is None:
+        return []
+
+    def tried() -> object:
+        with collected():  # What the law only warns of is said where it is used.
+            return law(_lone_pairs(case, oil), **chosen_options(case, "friction"))
+
+    found = [problem for _, problem in _faults("friction", tried)]
+    return [(_key_in(case, problem) or "friction.law", problem) for problem in found]
+
+
+def _lone_pairs(case: Case, oil: Lubricant) -> TribologicalContact:
+    """Tooth contacts over one mesh cycle, each with an even share of the load."""
+    import numpy as np
+
+    from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
+    from tribodyn.friction import TribologicalContact
+
+    pair, material = case.gear_pair, case.material_properties
+    contact = path_of_contact(pair)
+    places, touching = contact.pair_paths((np.arange(32) + 0.5) / 32.0)
+    count = touching.sum(axis=1, keepdims=True)
+    carrying = touching & (count == count.min())
+    motion = contact.kinematics(places[carrying], case.pinion_speed)
+    width = pair.common_face_width * float(count.min())
+    load = np.full(motion.sliding_speed.shape, case.pinion_torque / pair.pinion.base_radius / width)
+    modulus = effective_modulus(material, material)
+    return TribologicalContact(
+        load,
+        hertz_line(load, motion.equivalent_radius, modulus).maximum_pressure,
+        motion.sliding_speed,
+        motion.entrainment_speed,
+        motion.slide_to_roll_ratio,
+        motion.equivalent_radius,
+        oil.dynamic_viscosity,
+        case.composite_roughness or 0.0,
+    )
+
+
+def chosen_options(case: Case, section: str) -> dict[str, Any]:
+    """Options in force of the model that a table names, called as the model calls them."""
+    model, values = getattr(case, section).chosen, case._effective
+    found = {
+        option.argument or name: values[f"{section}.{name}"]
+        for name, option in model.declared.items()
+        if option.in_case
+    }
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def _bores(case: Case) -> list[tuple[str, Problem]]:

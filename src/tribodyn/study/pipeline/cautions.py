@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.errors import ModelWarning, collected
+from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
 from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
 from tribodyn.study.pipeline.record import (
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Hertzian pressure that case-hardened steel does not survive [Pa].
 _STEEL = 3e9
+#: Friction coefficient above which friction is the first suspect where a motion runs away.
+_RUBS = 0.3
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
 #: Ratio of a given mass or inertia to that of the solid, or the inverse, that is a slip.
@@ -114,6 +117,24 @@ def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
     """Find a load that no gear stands, and flanks that the film does not keep apart."""
     return (*_pressure(mesh), *_mixed(mesh))
+
+
+@contextmanager
+def friction_suspected(mesh: MeshTable) -> Iterator[None]:
+    """Name friction that no lubricated tooth has before any other cause of a motion that fails."""
+    try:
+        yield
+    except ComputationError as error:
+        greatest = float(np.nanmax(mesh.friction_coefficient, initial=0.0))
+        if greatest <= _RUBS:
+            raise
+        suspect = Problem(
+            f"the friction coefficient reaches {greatest:.3g}",
+            "friction.law",
+            "Lubricated steel hardly exceeds 0.2, and such friction can drive the motion by itself",
+            "Check roughness and speed, or choose another friction law",
+        )
+        raise ComputationError([suspect, *error.problems]) from None
 
 
 def friction_cautions(

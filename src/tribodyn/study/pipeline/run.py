@@ -12,6 +12,7 @@ from tribodyn.study.pipeline.assembly import system_of
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
     friction_cautions,
+    friction_suspected,
     mesh_cautions,
     motion_cautions,
     teeth_cautions,
@@ -74,7 +75,8 @@ def computed(case: Case, progress: Progress = SILENT) -> Result:
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
         progress.finish()
-        response = motion_of(case, system, mesh.mesh_frequency, progress)
+        with friction_suspected(mesh):
+            response = motion_of(case, system, mesh.mesh_frequency, progress)
         compared = None
         if friction is not None:
             table = system_of(case, mesh, damping)

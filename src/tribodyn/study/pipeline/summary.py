@@ -131,6 +131,8 @@ def summarize(result: Result) -> dict[str, float]:
     values["omega_max_dt"] = result.response.step_number
     if is_steady(result.response):
         values["steady_state_error"] = result.response.error
+        if np.isfinite(result.response.step_error):
+            values["step_error"] = result.response.step_error
     measures = MEASURES.all().items()
     values |= {name: measure(result) for name, measure in measures}
     return {name: float(value) for name, value in values.items() if value is not None}

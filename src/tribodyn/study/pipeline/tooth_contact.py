@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import ComputationError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
-from tribodyn.study.case.derive import friction_of_table, mesh_law_of
-from tribodyn.study.case.provenance import effective
+from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_law_of
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
@@ -17,17 +16,6 @@ if TYPE_CHECKING:
 
 #: Load over the nominal load below which friction may be missing.
 _LIGHT = 0.3
-
-
-def chosen_options(case: Case, section: str) -> dict[str, Any]:
-    """Options in force of the model that a table names, called as the model calls them."""
-    model, values = getattr(case, section).chosen, effective(case)
-    found = {
-        option.argument or name: values[f"{section}.{name}"]
-        for name, option in model.declared.items()
-        if option.in_case
-    }
-    return {name: value for name, value in found.items() if value is not None}
 
 
 def model_settings(case: Case) -> dict[str, Any]:
