@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, OutputExistsError, Problem, quiet
+from tribodyn.files import whole
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.cycle import NoGears
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.stored import write_dataset
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -89,7 +91,8 @@ def save(table: MeshTable, path: str | PathLike[str]) -> None:
                 remedy="Choose another name or remove the file",
             )
         )
-    to_xarray(table).to_netcdf(Path(path), engine="h5netcdf")
+    with whole(Path(path)) as partial:
+        write_dataset(to_xarray(table), partial)
 
 
 def is_mesh_table(path: Path) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 
 from tribodyn import units
 from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.files import whole
 from tribodyn.mesh.cycle import COORDINATES, GearData, NoGears
 from tribodyn.mesh.force_law import at_rest
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
@@ -492,4 +493,5 @@ def write_csv(table: MeshTable, path: str | os.PathLike[str]) -> None:
     lines = [f"# {name} = {value!r} {_FACTS[name]}" for name, value in facts.items()]
     lines.append(",".join(columns))
     lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
-    place.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with whole(place) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
