@@ -36,7 +36,7 @@ def check(
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Check a case and show the geometry that follows from it; nothing is computed beyond.
+    """Check a case, rehearse its run and show the geometry that follows from it.
 
     Parameters
     ----------
@@ -50,10 +50,12 @@ def check(
     from tribodyn.study.case.provenance import assumptions
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.geometry import geometry
+    from tribodyn.study.pipeline.run import rehearse
     from tribodyn.study.pipeline.summary import SUMMARY
 
     checked = changed_case(case, set_ or [])
     values = geometry(checked)
+    rehearse(checked)
     if json:
         say_json(values)
     else:

@@ -34,6 +34,7 @@ def test_continuous_functions_are_taken(name):
 def test_a_jump_where_no_event_is(height, place):
     """Refused with its place, whatever it stands on; as an event it is taken."""
     for name, smooth in SMOOTH.items():
+
         def jumping(phase, smooth=smooth):
             return smooth(phase) + np.where(phase < place, 0.0, height)
 

@@ -14,6 +14,7 @@ from broken import SOUND
 import tribodyn as td
 from tribodyn.errors import ComputationError, OutputExistsError
 from tribodyn.study import SUMMARY, read_case
+from tribodyn.study.pipeline.run import rehearse
 from tribodyn.study.pipeline.save import RESULT_FILES
 
 _NAMED = """
@@ -235,11 +236,12 @@ def test_repr_is_one_line(result: Any) -> None:
 )
 def test_faults_found_while_running_name_their_key(old: str, new: str, place: str) -> None:
     case = read_case(SOUND.replace(old, new), "pair.toml")
-    with pytest.raises(td.InputError) as caught:
-        if place.startswith("replace"):
-            case = case.replace({"gears.composite_roughness": "1.2 um"})
-        td.run(case)
-    assert str(caught.value).startswith(place)
+    if place.startswith("replace"):
+        case = case.replace({"gears.composite_roughness": "1.2 um"})
+    for asked in (rehearse, td.run):
+        with pytest.raises(td.InputError) as caught:
+            asked(case)
+        assert str(caught.value).startswith(place)
 
 
 def test_a_result_says_that_it_is_not_pickled(result: Any) -> None:

@@ -18,7 +18,6 @@ from tribodyn.study.case.sections import LubricantData, MaterialData
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
-    from tribodyn.friction import FrictionLaw, TribologicalContact
     from tribodyn.gear import FlankModification, Material, ProfileMap, SpurPair
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
@@ -325,50 +324,7 @@ def case_problems(case: Case) -> list[tuple[str, Problem]]:
         return _table_problems(case)
     found = _faults("gears", lambda: case.gear_pair)
     found += _faults("lubricant", lambda: case.lubricant_properties)
-    found += _bores(case)
-    return found or _friction_problems(case)
-
-
-def _friction_problems(case: Case) -> list[tuple[str, Problem]]:
-    """A friction law that refuses the teeth where one pair carries the whole load."""
-    law, oil = cast("FrictionLaw | None", case.friction.chosen), case.lubricant_properties
-    if law is None or law.needs_film or oil is None:
-        return []
-
-    def tried() -> object:
-        with collected():  # What the law only warns of is said where it is used.
-            return law(_lone_pairs(case, oil), **chosen_options(case, "friction"))
-
-    found = [problem for _, problem in _faults("friction", tried)]
-    return [(_key_in(case, problem) or "friction.law", problem) for problem in found]
-
-
-def _lone_pairs(case: Case, oil: Lubricant) -> TribologicalContact:
-    """Tooth contacts over one mesh cycle, each with an even share of the load."""
-    import numpy as np
-
-    from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
-    from tribodyn.friction import TribologicalContact
-
-    pair, material = case.gear_pair, case.material_properties
-    contact = path_of_contact(pair)
-    places, touching = contact.pair_paths((np.arange(32) + 0.5) / 32.0)
-    count = touching.sum(axis=1, keepdims=True)
-    carrying = touching & (count == count.min())
-    motion = contact.kinematics(places[carrying], case.pinion_speed)
-    width = pair.common_face_width * float(count.min())
-    load = np.full(motion.sliding_speed.shape, case.pinion_torque / pair.pinion.base_radius / width)
-    modulus = effective_modulus(material, material)
-    return TribologicalContact(
-        load,
-        hertz_line(load, motion.equivalent_radius, modulus).maximum_pressure,
-        motion.sliding_speed,
-        motion.entrainment_speed,
-        motion.slide_to_roll_ratio,
-        motion.equivalent_radius,
-        oil.dynamic_viscosity,
-        case.composite_roughness or 0.0,
-    )
+    return found + _bores(case)
 
 
 def chosen_options(case: Case, section: str) -> dict[str, Any]:

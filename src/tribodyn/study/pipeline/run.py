@@ -18,7 +18,7 @@ from tribodyn.study.pipeline.cautions import (
     teeth_cautions,
 )
 from tribodyn.study.pipeline.damping import damping_of
-from tribodyn.study.pipeline.motion import motion_of
+from tribodyn.study.pipeline.motion import motion_of, steps_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
 
@@ -64,6 +64,17 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     for warning in result.warnings:
         warnings.warn(warning, stacklevel=stacklevel)
     return result
+
+
+def rehearse(case: Case) -> None:
+    """Refuse what a run would refuse because of the case alone."""
+    from tribodyn.dynamics.equations.compiled import compile_for
+
+    with placed(case), collected():
+        mesh = mesh_of(case, rehearsal=True)
+        system = system_of(case, mesh, damping_of(case, mesh))
+        steps = steps_of(case, system, mesh.mesh_frequency)
+        compile_for(system, mesh.mesh_frequency, steps)
 
 
 def computed(case: Case, progress: Progress = SILENT) -> Result:
