@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
 from tribodyn.nonlinear.survey import (
@@ -26,9 +26,6 @@ from tribodyn.nonlinear.survey import (
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
-
-if TYPE_CHECKING:
-    pass
 
 Sweep = Literal["up", "down", "both", "independent"]
 
@@ -133,7 +130,7 @@ def bifurcation(
     ([[1, 1]], {'physical': 2})
     """
     if sweep not in _BRANCHES:
-        raise InputError(Problem(f'sweep = "{sweep}"', "argument sweep", f"One of {[*_BRANCHES]}"))
+        raise InputError(f'sweep = "{sweep}"', where="argument sweep", why=f"One of {[*_BRANCHES]}")
     values = _read_values(systems, mesh_frequency, steps)
     given = _read_parameter(parameter, values)
     name = signal_name(values.systems[0], signal)
@@ -210,7 +207,7 @@ def _read_parameter(parameter: ArrayLike | None, values: Points) -> Array:
     given = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
     if given.shape not in ((), (values.count,)):
         what = f"parameter has the shape {given.shape}, and there are {values.count} values"
-        raise InputError(Problem(what, "argument parameter"))
+        raise InputError(what, where="argument parameter")
     return np.broadcast_to(given, (values.count,)).copy()
 
 
@@ -224,16 +221,14 @@ def _read_values(
         (count,) = shapes
     except ValueError as error:
         raise InputError(
-            Problem(
-                f"{len(given)} systems, {np.shape(mesh_frequency)} mesh frequencies and "
-                f"{np.shape(steps)} steps",
-                "argument systems",
-                "Each is one, or one for each value of the parameter",
-            )
+            f"{len(given)} systems, {np.shape(mesh_frequency)} mesh frequencies and "
+            f"{np.shape(steps)} steps",
+            where="argument systems",
+            why="Each is one, or one for each value of the parameter",
         ) from error
     if not given or np.any(np.asarray(steps) < 1):
         what = "no system" if not given else f"steps = {np.min(np.asarray(steps))}"
-        raise InputError(Problem(what, "argument systems" if not given else "argument steps"))
+        raise InputError(what, where="argument systems" if not given else "argument steps")
     frequency = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (count,)).copy()
     whole = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
     return Points(given * count if len(given) == 1 else given, frequency, whole)
@@ -242,11 +237,9 @@ def _read_values(
 def _read_survey(survey: Survey) -> Survey:
     if not 2 <= survey.keep <= survey.cycles or survey.transient < 0:
         raise InputError(
-            Problem(
-                f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
-                "argument keep",
-                "At least two points are kept, of as many mesh cycles or more",
-            )
+            f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
+            where="argument keep",
+            why="At least two points are kept, of as many mesh cycles or more",
         )
     return survey
 

@@ -32,7 +32,7 @@ from tribodyn.dynamics.equations.motion import (
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.structure.load_friction import push_with_friction
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.types import Array, Index, Mask
 
 #: Terms of the exponential series of a matrix no larger than a quarter: exact to rounding.
@@ -112,14 +112,12 @@ def _with_friction(compiled: Compiled) -> Nodes:
     if np.any(coefficients[..., 1:]):
         bent = int(np.flatnonzero(np.any(coefficients[..., 1:], axis=(0, 1, 3)))[0])
         raise InputError(
-            Problem(
-                what=f"frictions[{bent}] has {coefficients.shape[-1]} coefficients",
-                where=f"System.frictions[{bent}].coefficients",
-                why="The tangent method carries disturbances with matrices that know only which "
-                "contacts carry, and a coefficient that follows the load changes with the motion",
-                remedy="Use a single coefficient, for example its value at the mean load, or look "
-                "at the Floquet multipliers of steady_state, which include the whole friction",
-            )
+            f"frictions[{bent}] has {coefficients.shape[-1]} coefficients",
+            where=f"System.frictions[{bent}].coefficients",
+            why="The tangent method carries disturbances with matrices that know only which "
+            "contacts carry, and a coefficient that follows the load changes with the motion",
+            remedy="Use a single coefficient, for example its value at the mean load, or look "
+            "at the Floquet multipliers of steady_state, which include the whole friction",
         )
     return nodes._replace(force_direction=push_with_friction(system, nodes, coefficients[..., 0]))
 

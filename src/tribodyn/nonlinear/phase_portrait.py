@@ -6,7 +6,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.response import Response
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.nonlinear.poincare import poincare
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
@@ -102,12 +102,10 @@ def phase_portrait(
     contact = not isinstance(of, str) and 0 <= of < motion.deflection.shape[1]
     if cycles < 1 or not (known or contact):
         raise InputError(
-            Problem(
-                what=f"{of!r} after {transient} of {motion.periods} mesh cycles",
-                where="argument of",
-                why=f"A contact from 0 to {motion.deflection.shape[1] - 1}, or one of "
-                f"{', '.join(motion.names)}, over at least one mesh cycle",
-            )
+            f"{of!r} after {transient} of {motion.periods} mesh cycles",
+            where="argument of",
+            why=f"A contact from 0 to {motion.deflection.shape[1] - 1}, or one of "
+            f"{', '.join(motion.names)}, over at least one mesh cycle",
         )
     steps = len(motion.position) // motion.periods
     rows = slice(transient * steps, None)

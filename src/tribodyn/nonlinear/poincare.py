@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,15 +16,11 @@ from tribodyn.dynamics.orbits.periods import closed_period, open_period
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.response import Response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.survey import Path, Verdict, follow, step_verdict
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    pass
-
 
 #: An rms below this share of the largest compression is that of a motion at rest: means of squares
 #: do not tell smaller ones.
@@ -153,7 +149,7 @@ def poincare(
     if mesh_frequency is None or cycles < 1 or transient < 0:
         what = f"mesh_frequency = {mesh_frequency}, cycles = {cycles}, transient = {transient}"
         why = "A system needs a mesh frequency, at least one mesh cycle and no negative transient"
-        raise InputError(Problem(what, "argument mesh_frequency", why))
+        raise InputError(what, where="argument mesh_frequency", why=why)
     compiled = compile_for(motion, mesh_frequency, steps)
     state = static_start(compiled) if start is None else read_start(motion, start)
     force = np.zeros(motion.size) if extra_force is None else np.asarray(extra_force, dtype=float)

@@ -21,7 +21,7 @@ from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.periods import open_period
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import in_threads
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.progress import SILENT, Progress
@@ -63,11 +63,9 @@ def signal_name(system: System, signal: int | str) -> str:
     if signal == 0 and not system.contacts:
         return names[0]
     raise InputError(
-        Problem(
-            f"signal = {signal!r}",
-            "argument signal",
-            f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
-        )
+        f"signal = {signal!r}",
+        where="argument signal",
+        why=f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
     )
 
 

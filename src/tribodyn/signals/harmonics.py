@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribodyn.dynamics.time.response import FineSamples, Response
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, ComplexArray
 
@@ -52,12 +52,10 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
     if orders.size and orders[-1] * 8.0 > fine.phase.size / 3.0 / max(span, 1):
         limit = fine.phase.size / 3.0 / max(span, 1) / 8.0
         raise InputError(
-            Problem(
-                what=f"mesh harmonic {orders[-1]:g} asked for",
-                where="argument count",
-                why=f"With this step it is resolved up to harmonic {limit:.0f}, eight steps each",
-                remedy="Use more steps per mesh cycle",
-            )
+            f"mesh harmonic {orders[-1]:g} asked for",
+            where="argument count",
+            why=f"With this step it is resolved up to harmonic {limit:.0f}, eight steps each",
+            remedy="Use more steps per mesh cycle",
         )
     turns = np.exp(-2j * np.pi * orders[:, None] * fine.phase) * fine.weight
     return np.asarray(2.0 * np.tensordot(turns, signal, axes=(1, 0)))
@@ -137,11 +135,9 @@ def amplitude_spectrum(
     fine = response.fine
     if signal.shape != fine.phase.shape:
         raise InputError(
-            Problem(
-                what=f"signal has the shape {signal.shape}",
-                where="argument signal",
-                why=f"It must be one signal on the fine samples, {fine.phase.shape}",
-            )
+            f"signal has the shape {signal.shape}",
+            where="argument signal",
+            why=f"It must be one signal on the fine samples, {fine.phase.shape}",
         )
     steps = fine.phase.size // 3 // response.periods
     top = min(50, steps // 8) if highest is None else highest

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.dynamics.time.response import FineSamples
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.signals.recorded_signal import checked_signal
 from tribodyn.types import Array
 
@@ -277,11 +277,9 @@ def direction_shares(along: Any, across: Any) -> tuple[float, float]:
     total = float(np.var(first) + np.var(second))
     if first.size != second.size or total == 0.0:
         raise InputError(
-            Problem(
-                what=f"{first.size} samples along and {second.size} across, with the variance "
-                f"{total:g} together",
-                where="arguments along and across",
-                why="Both must be sampled alike, and one must vibrate",
-            )
+            f"{first.size} samples along and {second.size} across, with the variance "
+            f"{total:g} together",
+            where="arguments along and across",
+            why="Both must be sampled alike, and one must vibrate",
         )
     return float(np.var(first)) / total, float(np.var(second)) / total

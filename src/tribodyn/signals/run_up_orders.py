@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from tribodyn.dynamics.running_up.run_up_result import RunUp
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.order_map import OrderCut, OrderMap
 from tribodyn.signals.recorded_signal import window_values
 from tribodyn.types import Array, Index, Mask
-
-if TYPE_CHECKING:
-    pass
-
 
 Part = Literal["all", "up", "down"]
 
@@ -58,7 +54,7 @@ class OverallLevel(Record):
 def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
     """Tell which blocks lie wholly in a part of the run."""
     if part not in ("all", "up", "down"):
-        raise InputError(Problem(f'part = "{part}"', "argument part", '"all", "up" or "down"'))
+        raise InputError(f'part = "{part}"', where="argument part", why='"all", "up" or "down"')
     if part == "all":
         return np.ones(starts.size, dtype=bool)
     inside = run.cycles.rate > 0.0 if part == "up" else run.cycles.rate < 0.0
@@ -66,11 +62,9 @@ def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
     found = count[starts + cycles] - count[starts] == cycles
     if not found.any():
         raise InputError(
-            Problem(
-                what=f"the speed never goes {part} for {cycles} mesh cycles",
-                where="argument part",
-                remedy='Take part="all", or a profile that does',
-            )
+            f"the speed never goes {part} for {cycles} mesh cycles",
+            where="argument part",
+            remedy='Take part="all", or a profile that does',
         )
     return np.asarray(found)
 
@@ -80,12 +74,10 @@ def _starts(run: RunUp, cycles: int, hop: int, part: Part) -> tuple[Index, Index
     total = run.cycles.time.size
     if total < cycles:
         raise InputError(
-            Problem(
-                what=f"the run has {total} mesh cycles",
-                where="argument cycles",
-                why=f"One block takes {cycles}",
-                remedy="Take shorter blocks, or a longer run",
-            )
+            f"the run has {total} mesh cycles",
+            where="argument cycles",
+            why=f"One block takes {cycles}",
+            remedy="Take shorter blocks, or a longer run",
         )
     starts: Index = np.arange(0, total - cycles + 1, hop, dtype=np.int64)
     starts = starts[_wholly(run, starts, cycles, part)]
@@ -220,17 +212,15 @@ def order_cut(
     if isinstance(source, OrderMap):
         return source.cut(order)
     if of not in ("mesh", "shaft"):
-        raise InputError(Problem(f'of = "{of}"', "argument of", '"mesh" or "shaft"'))
+        raise InputError(f'of = "{of}"', where="argument of", why='"mesh" or "shaft"')
     require_positive("order", order)
     mesh = order / source.teeth if of == "shaft" else order
     if mesh >= source.samples / 2:
         raise InputError(
-            Problem(
-                what=f"mesh order {mesh:g} with {source.samples} samples per mesh cycle",
-                where="argument order",
-                why="Orders up to half of the samples can be told",
-                remedy=f"Run with samples = {4 * int(np.ceil(mesh))} or more",
-            )
+            f"mesh order {mesh:g} with {source.samples} samples per mesh cycle",
+            where="argument order",
+            why="Orders up to half of the samples can be told",
+            remedy=f"Run with samples = {4 * int(np.ceil(mesh))} or more",
         )
     values, unit = source.signal(signal)
     count = cycles or _whole(mesh)

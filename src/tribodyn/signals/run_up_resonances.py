@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.dynamics.linear.natural_modes import NaturalModes
 from tribodyn.dynamics.running_up.run_up_result import RunUp
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, require_between
 from tribodyn.signals.run_up_orders import Part, order_cut
 from tribodyn.types import Array
 
@@ -115,7 +115,7 @@ def resonances(
 
     lines = [float(order) for order in orders]
     if not lines:
-        raise InputError(Problem(what="no order is asked for", where="argument orders"))
+        raise InputError("no order is asked for", where="argument orders")
     require_between("prominence", prominence, 0.0, 1.0)
     known = modes if modes is not None else run.modes
     cuts = [order_cut(run, order, signal, part=part) for order in lines]

@@ -25,7 +25,7 @@ from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import compile_system, lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, require_between
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
@@ -176,13 +176,11 @@ def adaptive_engine(
     table = build_table(system, scaled=scaled, split=split) if table is None else table
     if table.error > rtol:
         raise InputError(
-            Problem(
-                what=f"rtol = {rtol:.1e}, and the entries of the system are known over the mesh "
-                f"phase to {table.error:.1e}",
-                where="argument rtol",
-                why="Their kinks or noise cannot be followed any closer",
-                remedy=f"Give rtol of at least {table.error:.0e}, or smoother entries",
-            )
+            f"rtol = {rtol:.1e}, and the entries of the system are known over the mesh "
+            f"phase to {table.error:.1e}",
+            where="argument rtol",
+            why="Their kinks or noise cannot be followed any closer",
+            remedy=f"Give rtol of at least {table.error:.0e}, or smoother entries",
         )
     grid, nodes, program = compile_system(system, max(_SAMPLE, 2 * table.events.size))
     compiled = Compiled(system, grid, nodes, program, math.nan)

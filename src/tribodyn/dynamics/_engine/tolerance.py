@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 #: An absolute tolerance: one number, one for positions and one for velocities, or one per state.
@@ -34,12 +34,10 @@ def read_atol(atol: Tolerance, size: int) -> Array:
         values = np.repeat(values, size)
     if values.shape not in ((1,), (2 * size,)) or not np.all(np.isfinite(values) & (values > 0.0)):
         raise InputError(
-            Problem(
-                what=f"atol = {atol!r}",
-                where="argument atol",
-                why="One positive number, one for positions and one for velocities, or one for "
-                f"each of the {2 * size} states",
-            )
+            f"atol = {atol!r}",
+            where="argument atol",
+            why="One positive number, one for positions and one for velocities, or one for "
+            f"each of the {2 * size} states",
         )
     return np.array(np.broadcast_to(values, (2 * size,)))
 

@@ -20,7 +20,7 @@ from tribodyn.dynamics.equations.program import Program, build_program, compile_
 from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes, refuse_unstable_step
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.structure.load_friction import coefficient_count
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Index, Mask
 
 
@@ -78,9 +78,7 @@ class Compiled:
 def require_steps(steps: int) -> None:
     """Refuse steps that are no whole number of at least one."""
     if int(steps) != steps or steps < 1:
-        raise InputError(
-            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
-        )
+        raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
 
 
 def compile_for(
@@ -155,10 +153,8 @@ def _refuse_different(systems: list[System]) -> None:
 
     if not systems or not all(isinstance(one, System) for one in systems):
         raise InputError(
-            Problem(
-                what="systems is neither a System nor a sequence of one System for each lane",
-                where="argument systems",
-            )
+            "systems is neither a System nor a sequence of one System for each lane",
+            where="argument systems",
         )
     known = {id(systems[0]): facts(systems[0])}
     first = known[id(systems[0])]
@@ -169,14 +165,12 @@ def _refuse_different(systems: list[System]) -> None:
         for name, value in own.items():
             if value != first[name]:
                 raise InputError(
-                    Problem(
-                        what=f"the system of lane {lane} has {value} {name}, that of lane 0 has "
-                        f"{first[name]}",
-                        where="argument systems",
-                        why="Lanes march side by side and have the same structure, with values of "
-                        "their own",
-                        remedy="March different structures in separate ensembles",
-                    )
+                    f"the system of lane {lane} has {value} {name}, that of lane 0 has "
+                    f"{first[name]}",
+                    where="argument systems",
+                    why="Lanes march side by side and have the same structure, with values of "
+                    "their own",
+                    remedy="March different structures in separate ensembles",
                 )
 
 
@@ -186,12 +180,10 @@ def _refuse_mixed_gaps(members: list[Member]) -> None:
         apart = np.flatnonzero(own != dead[0])
         if apart.size:
             raise InputError(
-                Problem(
-                    what=f"contact {apart[0]} has a dead zone in lane "
-                    f"{(one if own[apart[0]] else members[0]).lanes[0]} and none in lane "
-                    f"{(members[0] if own[apart[0]] else one).lanes[0]}",
-                    where="argument systems",
-                    why="A contact without a dead zone also pulls, which is another force law",
-                    remedy="Give it a gap in every lane, however small, or in none",
-                )
+                f"contact {apart[0]} has a dead zone in lane "
+                f"{(one if own[apart[0]] else members[0]).lanes[0]} and none in lane "
+                f"{(members[0] if own[apart[0]] else one).lanes[0]}",
+                where="argument systems",
+                why="A contact without a dead zone also pulls, which is another force law",
+                remedy="Give it a gap in every lane, however small, or in none",
             )

@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 #: A constant, or a vectorized function of the mesh phase in [0, 1).
@@ -20,11 +20,9 @@ def read_events(given: Any, where: str) -> tuple[float, ...]:
     bad = [event for event in events if not 0.0 <= event < 1.0]
     if bad:
         raise InputError(
-            Problem(
-                what=f"events holds {bad[0]:g}",
-                where=where,
-                why="Events are mesh phases and lie in [0, 1)",
-                remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
-            )
+            f"events holds {bad[0]:g}",
+            where=where,
+            why="Events are mesh phases and lie in [0, 1)",
+            remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
         )
     return events

@@ -16,7 +16,7 @@ from tribodyn.dynamics.structure.load_friction import (
     friction_coefficients,
     friction_directions,
 )
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 #: Sums of stiffnesses below zero by less than this part of the largest are rounding.
@@ -66,12 +66,10 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     gap = scalar("gap", rows.values)
     if np.any(gap < 0.0):
         raise InputError(
-            Problem(
-                what=f"gap = {gap.min():.6g} m",
-                where="Contact.gap",
-                why="The gap is half the dead zone and cannot be negative",
-                remedy="Use `error` for an interference",
-            )
+            f"gap = {gap.min():.6g} m",
+            where="Contact.gap",
+            why="The gap is half the dead zone and cannot be negative",
+            remedy="Use `error` for an interference",
         )
     nodes = Nodes(
         phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
@@ -111,13 +109,11 @@ def refuse_falling_force(
         if total.min() < floor:
             at = np.unravel_index(int(np.argmin(total)), total.shape)
             raise InputError(
-                Problem(
-                    what=f"the force falls by {-total[at]:.4g} N per m of compression beyond "
-                    f"{1e6 * gap[(*at, j)]:.4g} um, at the mesh phase {phase[at]:.4g}",
-                    where=f"contacts[{j}].stiffness",
-                    why="A contact that is pressed together pushes back more: a force law that "
-                    "falls has several compressions for one load",
-                    remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
-                    "to any other, is not negative",
-                )
+                f"the force falls by {-total[at]:.4g} N per m of compression beyond "
+                f"{1e6 * gap[(*at, j)]:.4g} um, at the mesh phase {phase[at]:.4g}",
+                where=f"contacts[{j}].stiffness",
+                why="A contact that is pressed together pushes back more: a force law that "
+                "falls has several compressions for one load",
+                remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
+                "to any other, is not negative",
             )

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry, read_events
 from tribodyn.dynamics.structure.load_friction import LoadFriction
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 
@@ -82,14 +82,12 @@ def _matrix(name: str, value: ArrayLike) -> Array:
     matrix = np.array(value, dtype=float, ndmin=2)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise InputError(
-            Problem(
-                what=f"{name} has the shape {matrix.shape}",
-                where=f"System.{name}",
-                why="It must be a square (n, n) matrix",
-            )
+            f"{name} has the shape {matrix.shape}",
+            where=f"System.{name}",
+            why="It must be a square (n, n) matrix",
         )
     if not np.all(np.isfinite(matrix)):
-        raise InputError(Problem(what=f"{name} holds NaN or infinity", where=f"System.{name}"))
+        raise InputError(f"{name} holds NaN or infinity", where=f"System.{name}")
     return matrix
 
 
@@ -142,11 +140,9 @@ class System:
         for name, matrix in matrices.items():
             if matrix.shape != (size, size):
                 raise InputError(
-                    Problem(
-                        what=f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
-                        where=f"System.{name}",
-                        why="All three matrices belong to the same coordinates",
-                    )
+                    f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
+                    where=f"System.{name}",
+                    why="All three matrices belong to the same coordinates",
                 )
             object.__setattr__(self, name, matrix)
         contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
@@ -155,9 +151,7 @@ class System:
         object.__setattr__(self, "frictions", (self.frictions,) if one else tuple(self.frictions))
         names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
         if len(names) != size:
-            raise InputError(
-                Problem(what=f"{len(names)} names for {size} coordinates", where="System.names")
-            )
+            raise InputError(f"{len(names)} names for {size} coordinates", where="System.names")
         object.__setattr__(self, "names", names)
         _refuse_singular(matrices["mass"], names)
         _refuse_missing_contacts(self)
@@ -165,10 +159,7 @@ class System:
             balance = np.asarray(self.balance, dtype=float)
             if balance.shape != (size,):
                 raise InputError(
-                    Problem(
-                        what=f"balance has the shape {balance.shape}, not ({size},)",
-                        where="System.balance",
-                    )
+                    f"balance has the shape {balance.shape}, not ({size},)", where="System.balance"
                 )
             object.__setattr__(self, "balance", balance)
 
@@ -193,24 +184,20 @@ def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:
         at = int(empty[0]) if empty.size else 0
         detail = f"coordinate {at} has no inertia ({names[at]})"
         raise InputError(
-            Problem(
-                what="the mass matrix cannot be inverted: "
-                + (detail if empty.size else f"it is singular{_without_inertia(mass, names)}"),
-                where="System.mass",
-                why="Every coordinate needs an inertia of its own",
-                remedy="Remove the coordinate, or give it a mass or moment of inertia",
-            )
+            "the mass matrix cannot be inverted: "
+            + (detail if empty.size else f"it is singular{_without_inertia(mass, names)}"),
+            where="System.mass",
+            why="Every coordinate needs an inertia of its own",
+            remedy="Remove the coordinate, or give it a mass or moment of inertia",
         )
     even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
     if not even or np.linalg.eigvalsh(mass / np.outer(scale, scale))[0] <= 0.0:
         raise InputError(
-            Problem(
-                what="the mass matrix is not symmetric and positive definite"
-                + ("" if not even else _without_inertia(mass, names)),
-                where="System.mass",
-                why="Every motion has a kinetic energy greater than zero",
-                remedy="Look for a wrong sign or place in the matrix",
-            )
+            "the mass matrix is not symmetric and positive definite"
+            + ("" if not even else _without_inertia(mass, names)),
+            where="System.mass",
+            why="Every motion has a kinetic energy greater than zero",
+            remedy="Look for a wrong sign or place in the matrix",
         )
 
 
@@ -228,10 +215,8 @@ def _refuse_missing_contacts(system: System) -> None:
         if max(friction.contacts) >= len(system.contacts):
             count = len(system.contacts)
             raise InputError(
-                Problem(
-                    what=f"friction {f} follows contact {max(friction.contacts)}, and there "
-                    + (f"are {count} contacts" if count != 1 else "is 1 contact"),
-                    where=f"System.frictions[{f}].contacts",
-                    why="Contacts are counted from 0 in the order of System.contacts",
-                )
+                f"friction {f} follows contact {max(friction.contacts)}, and there "
+                + (f"are {count} contacts" if count != 1 else "is 1 contact"),
+                where=f"System.frictions[{f}].contacts",
+                why="Contacts are counted from 0 in the order of System.contacts",
             )

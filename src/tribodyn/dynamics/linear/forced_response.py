@@ -11,7 +11,7 @@ from tribodyn.dynamics.linear.natural_modes_linear import (
     ModePhase,
     linear_system,
 )
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
 
@@ -150,11 +150,9 @@ def forced_response(
     count = linear.spring.size
     if not 0 <= contact < count:
         raise InputError(
-            Problem(
-                what=f"contact = {contact}",
-                where="argument contact",
-                why=f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0",
-            )
+            f"contact = {contact}",
+            where="argument contact",
+            why=f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0",
         )
     members = np.flatnonzero(linear.bundle == linear.bundle[contact])
     given = np.where(np.isin(np.arange(count), members), float(error), 0.0)
@@ -189,11 +187,9 @@ def _solve(linear: LinearSystem, omega: Array, given: Array, friction: bool) -> 
         solved = np.linalg.solve(scaled, (scale * force)[:, :, None])[:, :, 0]
     except np.linalg.LinAlgError as error:
         raise InputError(
-            Problem(
-                what="an undamped mode lies exactly at one of the frequencies",
-                where="argument frequency",
-                why="Its motion grows without end",
-                remedy="Give the structure or the contact some damping",
-            )
+            "an undamped mode lies exactly at one of the frequencies",
+            where="argument frequency",
+            why="Its motion grows without end",
+            remedy="Give the structure or the contact some damping",
         ) from error
     return np.asarray(scale * solved)

@@ -14,7 +14,7 @@ from tribodyn.dynamics.linear.natural_modes_linear import (
     ModePhase,
     linear_system,
 )
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array, ComplexArray
 
@@ -217,12 +217,10 @@ def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     rigid = np.abs(squares) <= _RIGID * np.abs(squares).max(initial=0.0)
     if np.any(squares[~rigid] < 0.0):
         raise InputError(
-            Problem(
-                what="the system falls over at rest: a stiffness is negative",
-                where="System.stiffness",
-                why="A motion runs away from the static load without any swing",
-                remedy="Look for a wrong sign in the stiffness matrix or of a contact",
-            )
+            "the system falls over at rest: a stiffness is negative",
+            where="System.stiffness",
+            why="A motion runs away from the static load without any swing",
+            remedy="Look for a wrong sign in the stiffness matrix or of a contact",
         )
     frequency = np.sqrt(np.where(rigid, 0.0, squares)) / (2.0 * np.pi)
     shape = (inverse.T @ columns).T
@@ -235,11 +233,9 @@ def _factor(mass: Array) -> Array:
     even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
     if not even or np.linalg.eigvalsh(mass)[0] <= 0.0:
         raise InputError(
-            Problem(
-                what="the mass matrix is not symmetric and positive definite",
-                where="System.mass",
-                why="Every motion has a kinetic energy greater than zero",
-            )
+            "the mass matrix is not symmetric and positive definite",
+            where="System.mass",
+            why="Every motion has a kinetic energy greater than zero",
         )
     return np.asarray(np.linalg.cholesky(mass), dtype=float)
 

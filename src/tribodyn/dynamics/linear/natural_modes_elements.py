@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 #: Entries below this share of the row's largest are rounding of the sums.
@@ -23,12 +23,10 @@ def structure_elements(
     size = float(np.abs(matrix).max(initial=0.0))
     if np.abs(matrix - matrix.T).max(initial=0.0) > 1e-9 * size:
         raise InputError(
-            Problem(
-                what="the stiffness matrix is not symmetric",
-                where="System.stiffness",
-                why="Only a symmetric matrix stores energy",
-                remedy="Give friction as the friction of a contact",
-            )
+            "the stiffness matrix is not symmetric",
+            where="System.stiffness",
+            why="Only a symmetric matrix stores energy",
+            remedy="Give friction as the friction of a contact",
         )
     if elements is None:
         return _springs(matrix, tuple(system.names))
@@ -37,11 +35,9 @@ def structure_elements(
     if wrong or np.abs(sum(given.values()) - matrix).max() > 1e-9 * size:
         what = f'"{wrong[0]}" is no {matrix.shape} matrix' if wrong else "they do not add up"
         raise InputError(
-            Problem(
-                what=what,
-                where="argument elements",
-                why="The springs together are the stiffness matrix of the structure",
-            )
+            what,
+            where="argument elements",
+            why="The springs together are the stiffness matrix of the structure",
         )
     return given
 

@@ -21,7 +21,7 @@ from tribodyn.dynamics.structure.load_friction import (
     friction_tangent,
     push_with_friction,
 )
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, require_between
 from tribodyn.types import Array, Index, Mask
 
 ModePhase = Literal["mean"] | float
@@ -85,11 +85,7 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
         return nodes, nodes.weight
     if isinstance(phase, str):
         raise InputError(
-            Problem(
-                what=f'phase = "{phase}"',
-                where="argument phase",
-                why='"mean" or a mesh phase in [0, 1)',
-            )
+            f'phase = "{phase}"', where="argument phase", why='"mean" or a mesh phase in [0, 1)'
         )
     at = float(phase)
     require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,14 +15,11 @@ from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, Follower, Spee
 from tribodyn.dynamics.running_up.run_up import read_outputs
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray, Index, Mask
-
-if TYPE_CHECKING:
-    pass
 
 #: Mesh cycles of the figures of a motion that does not repeat.
 _IRREGULAR = 64
@@ -109,15 +106,13 @@ def speed_sweep(
     require_positive("mesh_frequency", frequency, "Hz")
     if frequency.ndim != 1 or np.any(np.diff(frequency) <= 0.0):
         raise InputError(
-            Problem(
-                what="the mesh frequencies do not rise",
-                where="argument mesh_frequency",
-                remedy="Sort them; the direction is the matter of directions",
-            )
+            "the mesh frequencies do not rise",
+            where="argument mesh_frequency",
+            remedy="Sort them; the direction is the matter of directions",
         )
     if not directions or any(each not in ("up", "down") for each in directions):
         raise InputError(
-            Problem(f"directions = {directions}", "argument directions", '"up", "down" or both')
+            f"directions = {directions}", where="argument directions", why='"up", "down" or both'
         )
     require_positive("teeth", teeth)
     require_positive("patience", patience)
@@ -379,11 +374,9 @@ class SpeedSweep(Record):
         """
         if signal not in self.signals:
             raise InputError(
-                Problem(
-                    what=f'no signal "{signal}"',
-                    where="argument signal",
-                    why=f"There are {', '.join(self.signals)}",
-                )
+                f'no signal "{signal}"',
+                where="argument signal",
+                why=f"There are {', '.join(self.signals)}",
             )
         return self.signals.index(signal)
 

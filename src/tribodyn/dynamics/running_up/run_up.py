@@ -22,7 +22,6 @@ from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import (
     ComputationError,
     InputError,
-    Problem,
     quiet,
     require_positive,
 )
@@ -117,7 +116,7 @@ def run_up(
     path = read_profile(profile, duration)
     require_positive("teeth", teeth)
     if int(samples) != samples or samples < 2:
-        raise InputError(Problem(f"samples = {samples}", "argument samples", "Whole number >= 2"))
+        raise InputError(f"samples = {samples}", where="argument samples", why="Whole number >= 2")
     frequency, systems = systems_by_frequency(system)
     first = systems[0]
     tables = Tables(systems, int(samples), path.lowest, steps)
@@ -189,11 +188,9 @@ def read_outputs(outputs: Mapping[str, ArrayLike] | None, system: System) -> Arr
     for name, row in zip(outputs or {}, rows, strict=True):
         if row.shape != (2 * system.size,):
             raise InputError(
-                Problem(
-                    what=f"the output {name} has the shape {row.shape}",
-                    where="argument outputs",
-                    why=f"It is a row over positions and velocities, ({2 * system.size},)",
-                )
+                f"the output {name} has the shape {row.shape}",
+                where="argument outputs",
+                why=f"It is a row over positions and velocities, ({2 * system.size},)",
             )
     return np.array(rows) if rows else np.zeros((0, 2 * system.size))
 
@@ -205,10 +202,8 @@ def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
     turning = np.asarray(rotation, dtype=float)
     if turning.shape != (system.size,):
         raise InputError(
-            Problem(
-                what=f"rotation has the shape {turning.shape}, not ({system.size},)",
-                where="argument rotation",
-            )
+            f"rotation has the shape {turning.shape}, not ({system.size},)",
+            where="argument rotation",
         )
     return np.asarray(-np.asarray(system.mass) @ turning * (2.0 * np.pi / teeth))
 

@@ -15,7 +15,7 @@ from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
 from tribodyn.dynamics.time.ensemble import fresh_moments
-from tribodyn.errors import ComputationError, Problem
+from tribodyn.errors import ComputationError
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array
 
@@ -157,14 +157,11 @@ class CycleMarcher:
                 speed = np.nan_to_num(np.abs(record[last, self.size :, 0]) * weight, nan=np.inf)
             name = self.systems[0].names[int(np.argmax(speed))]
             raise ComputationError(
-                Problem(
-                    what=f"the motion grew beyond all bounds after {self.time:.5g} s, at "
-                    f"{1.0 / period:.5g} Hz, first of all {name}",
-                    why="The step is within the stability limit of the integrator, so the system "
-                    "itself is unstable there",
-                    remedy="Look for negative stiffness or damping, or friction that feeds energy "
-                    "in",
-                )
+                f"the motion grew beyond all bounds after {self.time:.5g} s, at "
+                f"{1.0 / period:.5g} Hz, first of all {name}",
+                why="The step is within the stability limit of the integrator, so the system "
+                "itself is unstable there",
+                remedy="Look for negative stiffness or damping, or friction that feeds energy in",
             )
         new = lane[0]
         if self.balance is not None:

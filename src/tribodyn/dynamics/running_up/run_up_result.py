@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.drawing import draw
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
 from tribodyn.dynamics.time.ensemble import LaneStatistics
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
@@ -133,11 +133,7 @@ class RunUp(Record):
             return self.output[:, self.output_names.index(name)], self.output_unit
         known = ("deflection", "contact_force", *self.names, *self.output_names)
         raise InputError(
-            Problem(
-                what=f'no signal "{name}"',
-                where="argument signal",
-                why=f"There are {', '.join(known)}",
-            )
+            f'no signal "{name}"', where="argument signal", why=f"There are {', '.join(known)}"
         )
 
     def __repr__(self) -> str:

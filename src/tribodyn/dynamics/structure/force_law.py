@@ -17,7 +17,7 @@ import numpy as np
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact
 from tribodyn.dynamics.structure.gear_pair import gear_contact
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -46,23 +46,19 @@ def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ..
     if mesh_force == "force-law":
         return law_contacts(one, _needed(getattr(mesh, "force_law", None), "force law"))
     raise InputError(
-        Problem(
-            what=f'mesh_force = "{mesh_force}"',
-            where="argument mesh_force",
-            why='"stiffness", "tangent" or "force-law"',
-        )
+        f'mesh_force = "{mesh_force}"',
+        where="argument mesh_force",
+        why='"stiffness", "tangent" or "force-law"',
     )
 
 
 def _needed(value: T | None, name: str) -> T:
     if value is None:
         raise InputError(
-            Problem(
-                what=f"this mesh has no {name}",
-                where="argument mesh_force",
-                why="It comes from a loaded tooth contact",
-                remedy='Take such a stiffness model, or mesh_force = "stiffness"',
-            )
+            f"this mesh has no {name}",
+            where="argument mesh_force",
+            why="It comes from a loaded tooth contact",
+            remedy='Take such a stiffness model, or mesh_force = "stiffness"',
         )
     return value
 
@@ -111,24 +107,20 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     """
     if callable(contact.gap) or np.ndim(contact.gap):
         raise InputError(
-            Problem(
-                what="gap is no constant",
-                where="argument contact",
-                why="It is half of the play; the law says where each ramp begins",
-                remedy="Put what varies into the law",
-            )
+            "gap is no constant",
+            where="argument contact",
+            why="It is half of the play; the law says where each ramp begins",
+            remedy="Put what varies into the law",
         )
     half = float(np.asarray(contact.gap))
     first = float(law.knot_first_touch.min())
     if half + first < 0.0:
         raise InputError(
-            Problem(
-                what=f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
-                f"of the play is {1e6 * half:.4g} um",
-                where="argument backlash",
-                why="The teeth would be clamped between both flanks",
-                remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
-            )
+            f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
+            f"of the play is {1e6 * half:.4g} um",
+            where="argument backlash",
+            why="The teeth would be clamped between both flanks",
+            remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
         )
     lowest = law.lowest
     ramps = [

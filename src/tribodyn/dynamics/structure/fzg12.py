@@ -22,7 +22,7 @@ from tribodyn.dynamics.structure.gear_pair import (
     with_error_of,
 )
 from tribodyn.dynamics.structure.shafts import Body, GearMesh, assemble, row_of, shaft_chain
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, require_between
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -214,10 +214,8 @@ def _refuse_directions(mesh: Any) -> None:
     """Refuse a mesh whose contacts have directions of their own."""
     if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
         raise InputError(
-            Problem(
-                what="the mesh has contact directions of its own",
-                where="argument mesh",
-                why="The shafts of this structure move in one plane, with levers of base circles",
-                remedy="Take spur6, or a mesh with base radii",
-            )
+            "the mesh has contact directions of its own",
+            where="argument mesh",
+            why="The shafts of this structure move in one plane, with levers of base circles",
+            remedy="Take spur6, or a mesh with base radii",
         )

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -26,11 +26,9 @@ def pair_of(name: str, value: ArrayLike, unit: str, *, positive: bool = True) ->
     array = np.asarray(value, dtype=float)
     if array.shape not in ((), (2,)):
         raise InputError(
-            Problem(
-                what=f"{name} has the shape {array.shape}",
-                where=f"argument {name}",
-                why="Give one value for both gears or two in the order (pinion, wheel)",
-            )
+            f"{name} has the shape {array.shape}",
+            where=f"argument {name}",
+            why="Give one value for both gears or two in the order (pinion, wheel)",
         )
     if positive:
         require_positive(name, array, unit)
@@ -41,9 +39,7 @@ def pair_of(name: str, value: ArrayLike, unit: str, *, positive: bool = True) ->
 
 def _sign(driver: Driver) -> float:
     if driver not in ("pinion", "wheel"):
-        raise InputError(
-            Problem(what=f'driver = "{driver}"', where="argument driver", why='"pinion" or "wheel"')
-        )
+        raise InputError(f'driver = "{driver}"', where="argument driver", why='"pinion" or "wheel"')
     return 1.0 if driver == "pinion" else -1.0
 
 
@@ -127,9 +123,7 @@ def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | 
     if torque_balance == "load":
         return drives
     raise InputError(
-        Problem(
-            what=f'torque_balance = "{torque_balance}"',
-            where="argument torque_balance",
-            why='"drive" holds the driving torque, "load" the load torque, "both" both',
-        )
+        f'torque_balance = "{torque_balance}"',
+        where="argument torque_balance",
+        why='"drive" holds the driving torque, "load" the load torque, "both" both',
     )

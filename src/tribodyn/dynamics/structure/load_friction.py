@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry, read_events
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -79,12 +79,10 @@ class LoadFriction:
         numbers = tuple(int(contact) for contact in contacts)
         if not numbers or min(numbers) < 0:
             raise InputError(
-                Problem(
-                    what=f"contacts = {numbers}",
-                    where="LoadFriction.contacts",
-                    why="The friction follows the force of one contact or of several",
-                    remedy="Name them by their place in System.contacts, counted from 0",
-                )
+                f"contacts = {numbers}",
+                where="LoadFriction.contacts",
+                why="The friction follows the force of one contact or of several",
+                remedy="Name them by their place in System.contacts, counted from 0",
             )
         object.__setattr__(self, "contacts", numbers)
 
@@ -103,11 +101,9 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
         shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())
     if len(shape) > 1 or 0 in shape:
         raise InputError(
-            Problem(
-                what=f"{where} gives the shape {values.shape}",
-                where=where,
-                why=f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases",
-            )
+            f"{where} gives the shape {values.shape}",
+            where=where,
+            why=f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases",
         )
     return int(shape[0]) if shape else 1
 

@@ -12,7 +12,7 @@ from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, adaptive_en
 from tribodyn.dynamics._engine.tolerance import Tolerance
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start, require_cycles
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -102,11 +102,9 @@ class AdaptiveSolution:
         outside = ~((given >= -1e-12 * self.time[-1]) & (given <= (1.0 + 1e-12) * self.time[-1]))
         if np.any(outside):
             raise InputError(
-                Problem(
-                    what=f"time = {given[outside].flat[0]:.6g} s",
-                    where="argument time",
-                    why=f"The motion goes from 0 to {self.time[-1]:.6g} s",
-                )
+                f"time = {given[outside].flat[0]:.6g} s",
+                where="argument time",
+                why=f"The motion goes from 0 to {self.time[-1]:.6g} s",
             )
         phase = given.reshape(-1) * self.mesh_frequency
         step = np.clip(np.searchsorted(self.phase, phase, side="right") - 1, 0, self.steps - 1)

@@ -23,7 +23,7 @@ from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.newmark import compile_newmark, newmark_law, newmark_method
 from tribodyn.dynamics.time.recorded import RecordedLanes, add_moments
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.interrupt import in_threads
 from tribodyn.types import Array, Index
 
@@ -218,23 +218,19 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
     engine = next((each for name, each in ENGINES.items() if method in (name, each.method)), None)
     if engine is None:
         raise InputError(
-            Problem(
-                what=f'method = "{method}"',
-                where="argument method",
-                why="It is one of " + ", ".join(f'"{each.method}"' for each in ENGINES.values()),
-            )
+            f'method = "{method}"',
+            where="argument method",
+            why="It is one of " + ", ".join(f'"{each.method}"' for each in ENGINES.values()),
         )
     given = {name: value for name, value in options.items() if value is not None}
     for name in given:
         owner = next(each.method for each in ENGINES.values() if name in each.options)
         if owner != engine.method:
             raise InputError(
-                Problem(
-                    what=f'{name} = {given[name]} with method = "{method}"',
-                    where=f"argument {name}",
-                    why=f'It belongs to "{owner}"',
-                    remedy=f'Leave it out, or give method = "{owner}"',
-                )
+                f'{name} = {given[name]} with method = "{method}"',
+                where=f"argument {name}",
+                why=f'It belongs to "{owner}"',
+                remedy=f'Leave it out, or give method = "{owner}"',
             )
     return engine.prepare(setting, **given)
 

@@ -15,7 +15,7 @@ from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, ComplexArray
 
@@ -177,11 +177,9 @@ def simulate_ensemble(
     frequency = _frequencies(system, mesh_frequency, parameters)
     if not 0 <= averaged <= cycles:
         raise InputError(
-            Problem(
-                what=f"averaged = {averaged} with cycles = {cycles}",
-                where="argument averaged",
-                why="Statistics cover some of the last mesh cycles",
-            )
+            f"averaged = {averaged} with cycles = {cycles}",
+            where="argument averaged",
+            why="Statistics cover some of the last mesh cycles",
         )
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size
@@ -224,11 +222,9 @@ def _frequencies(
     if frequency.ndim != 1 or odd:
         name = odd[0] if odd else "mesh_frequency"
         raise InputError(
-            Problem(
-                what=f"{name} is for {counts[name]} lanes, others are for {lanes}",
-                where=f"argument {name}",
-                why="One for each lane, or one for all",
-            )
+            f"{name} is for {counts[name]} lanes, others are for {lanes}",
+            where=f"argument {name}",
+            why="One for each lane, or one for all",
         )
     return np.array(np.broadcast_to(frequency, (lanes,)))
 
@@ -239,14 +235,12 @@ def _states(start: tuple[ArrayLike, ArrayLike], lanes: int, size: int) -> Array:
         state = np.ascontiguousarray(np.concatenate(parts, axis=1))
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what="start is not a pair (position, velocity)",
-                where="argument start",
-                why=f"Each of the two has the shape ({size},) or ({lanes}, {size})",
-            )
+            "start is not a pair (position, velocity)",
+            where="argument start",
+            why=f"Each of the two has the shape ({size},) or ({lanes}, {size})",
         ) from error
     if state.shape != (lanes, 2 * size) or not np.all(np.isfinite(state)):
-        raise InputError(Problem(what="start holds NaN or infinity", where="argument start"))
+        raise InputError("start holds NaN or infinity", where="argument start")
     return state
 
 

@@ -26,7 +26,7 @@ from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import largest_rate
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array
 
 #: Named pairs (gamma, beta). "seed" is what a source prints as "lambda = beta = 0.5" if that is
@@ -54,12 +54,10 @@ def newmark_law(
     if preset not in NEWMARK_PRESETS or gamma is not None or beta is not None:
         beside = "" if gamma is None and beta is None else " with gamma or beta"
         raise InputError(
-            Problem(
-                what=f'preset = "{preset}"{beside}',
-                where="argument preset",
-                why="It names both parameters and is one of "
-                + ", ".join(f'"{name}"' for name in NEWMARK_PRESETS),
-            )
+            f'preset = "{preset}"{beside}',
+            where="argument preset",
+            why="It names both parameters and is one of "
+            + ", ".join(f'"{name}"' for name in NEWMARK_PRESETS),
         )
     return NEWMARK_PRESETS[preset]
 
@@ -130,13 +128,10 @@ def refuse_newmark(
     """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
     if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
         raise InputError(
-            Problem(
-                what=f"gamma = {gamma:g}, beta = {beta:g}",
-                where="arguments gamma, beta",
-                why="With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no "
-                "meaning",
-                remedy="Average acceleration is gamma = 0.5, beta = 0.25",
-            )
+            f"gamma = {gamma:g}, beta = {beta:g}",
+            where="arguments gamma, beta",
+            why="With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no meaning",
+            remedy="Average acceleration is gamma = 0.5, beta = 0.25",
         )
     if 2.0 * beta >= gamma:
         return
@@ -182,13 +177,11 @@ def _refuse_step(
     if number > limit:
         needed = int(np.ceil(grid.steps * number / limit / 64.0)) * 64
         raise InputError(
-            Problem(
-                what=f"omega*dt = {number:.4g} with {grid.steps} steps per mesh cycle at "
-                f"{1.0 / period:g} Hz and a highest natural frequency of {rate:.4g} rad/s{who}",
-                where="argument steps",
-                why=f"With gamma = {gamma:g} and beta = {beta:g} the limit is "
-                f"1/sqrt(gamma/2 - beta) = {limit:.4g}; any step is stable only with 2 beta >= "
-                "gamma",
-                remedy=f"Use at least {needed} steps per mesh cycle, or gamma = 0.5, beta = 0.25",
-            )
+            f"omega*dt = {number:.4g} with {grid.steps} steps per mesh cycle at "
+            f"{1.0 / period:g} Hz and a highest natural frequency of {rate:.4g} rad/s{who}",
+            where="argument steps",
+            why=f"With gamma = {gamma:g} and beta = {beta:g} the limit is "
+            f"1/sqrt(gamma/2 - beta) = {limit:.4g}; any step is stable only with 2 beta >= "
+            "gamma",
+            remedy=f"Use at least {needed} steps per mesh cycle, or gamma = 0.5, beta = 0.25",
         )
