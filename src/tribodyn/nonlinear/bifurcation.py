@@ -19,12 +19,13 @@ from tribodyn.nonlinear.survey import (
     Outcomes,
     Points,
     Survey,
+    Surveyed,
     march_points,
     signal_name,
     step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Parts, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
 
 Sweep = Literal["up", "down", "both", "independent"]
@@ -318,7 +319,7 @@ def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: 
 
 
 @record
-class Bifurcation(Record):
+class Bifurcation(Surveyed):
     """Motions over a parameter; the first axis of every result is the branch.
 
     Parameters
@@ -364,7 +365,7 @@ class Bifurcation(Record):
     parameter_name: str = fact()
     parameter_unit: str
     mesh_frequency: Array = quantity("value", unit="Hz")
-    branches: tuple[str, ...]
+    branches: tuple[str, ...] = quantity("branch", axis=True, name="branch")
     signal: str = fact()
     section: Array = quantity("branch", "value", "mesh_cycle", unit="m or rad")
     period: Index = quantity("branch", "value", unit="1")
@@ -379,41 +380,15 @@ class Bifurcation(Record):
     largest_exponent: Array = quantity("branch", "value", unit="1/s")
     finished: Mask = quantity("branch", "value")
 
-    @property
-    def complete(self) -> bool:
-        """Whether every motion is there."""
-        return bool(self.finished.all())
-
-    @property
-    def ran_away(self) -> Mask:
-        """Which motions grew beyond all bounds without the step's doing, (branches, points)."""
-        lost = self.finished & ~np.isfinite(self.rms)
-        return np.asarray(lost & (self.verdict != "step-limited"))
-
     def __repr__(self) -> str:
         """One line."""
         low, high = self.parameter.min(), self.parameter.max()
-        words = [f"{count} {word}" for word, count in self.verdicts().items()]
-        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
         return (
             f"Bifurcation({self.parameter.size} values of {self.parameter_name} from {low:.6g} to "
-            f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}"
-            f"{': ' if words else ''}{', '.join(words)}{'' if self.complete else ', interrupted'})"
+            f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}{self._told()})"
         )
-
-    def verdicts(self) -> dict[str, int]:
-        """Count the verdicts.
-
-        Returns
-        -------
-        dict of str to int
-            Only those that occur.
-        """
-        words, counts = np.unique(self.verdict, return_counts=True)
-        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
 
     def _parts(self) -> Parts:
         parts = super()._parts()
-        parts.coordinates["branch"] = list(self.branches)
         parts.variables["parameter"] = ("value", self.parameter, {"units": self.parameter_unit})
         return parts

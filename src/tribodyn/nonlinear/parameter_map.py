@@ -18,13 +18,14 @@ from tribodyn.nonlinear.survey import (
     Outcomes,
     Points,
     Survey,
+    Surveyed,
     comes_back,
     march_points,
     signal_name,
     step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Parts, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
 
 #: Factors of the system that a lane can have of its own.
@@ -281,7 +282,7 @@ def _unit(name: str) -> str:
 
 
 @record
-class ParameterMap(Record):
+class ParameterMap(Surveyed):
     """Motions over two parameters; every array is (nx, ny) unless said otherwise.
 
     Parameters
@@ -321,36 +322,11 @@ class ParameterMap(Record):
     signal: str = fact()
     finished: Mask = quantity("first", "second")
 
-    @property
-    def complete(self) -> bool:
-        """Whether every motion is there."""
-        return bool(self.finished.all())
-
-    @property
-    def ran_away(self) -> Mask:
-        """Which motions grew beyond all bounds without the step's doing, (nx, ny)."""
-        lost = self.finished & ~np.isfinite(self.rms)
-        return np.asarray(lost & (self.verdict != "step-limited"))
-
-    def verdicts(self) -> dict[str, int]:
-        """Count the verdicts.
-
-        Returns
-        -------
-        dict of str to int
-            Only those that occur.
-        """
-        words, counts = np.unique(self.verdict, return_counts=True)
-        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
-
     def __repr__(self) -> str:
         """One line."""
-        words = [f"{count} {word}" for word, count in self.verdicts().items()]
-        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
         return (
             f"ParameterMap({self.first.size} values of {self.names[0]} x {self.second.size} of "
-            f"{self.names[1]}{': ' if words else ''}{', '.join(words)}"
-            f"{'' if self.complete else ', interrupted'})"
+            f"{self.names[1]}{self._told()})"
         )
 
     def _parts(self) -> Parts:

@@ -14,12 +14,16 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.load_friction import coefficient_count
 from tribodyn.dynamics.equations.motion import has_gap
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
-from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes, refuse_unstable_step
+from tribodyn.dynamics.equations.step_limit import (
+    largest_rate,
+    refuse_unstable_lanes,
+    refuse_unstable_step,
+)
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import coefficient_count
 from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Index, Mask
 
@@ -107,7 +111,7 @@ def compile_lanes(
     *,
     any_step: bool = False,
 ) -> Compiled:
-    """Compile the systems of all lanes on one grid with the events of all."""
+    """Compile the systems of all lanes on one grid; ``any_step``: however long the steps are."""
     given = [systems] if isinstance(systems, System) else list(systems)
     distinct = list({id(one): one for one in given}.values())
     if len(distinct) == 1 and not any_step:
@@ -116,8 +120,10 @@ def compile_lanes(
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     require_steps(steps)
     if len(distinct) == 1:
-        parts = compile_system(distinct[0], int(steps))
-        return Compiled(distinct[0], *parts, step_number=float("nan"), parameters=parameters)
+        system, (grid, nodes, program) = distinct[0], compile_system(distinct[0], int(steps))
+        rate = largest_rate(system, nodes) if parameters is None else float("nan")
+        number = rate * float(grid.width.max() / np.min(mesh_frequency))
+        return Compiled(system, grid, nodes, program, number, parameters=parameters)
     beat = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (len(given),))
     events = system_events(*distinct)
     places = {id(one): number for number, one in enumerate(distinct)}

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, system_events
+from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import friction_tangent, push_with_friction
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array
 

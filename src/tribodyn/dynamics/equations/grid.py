@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.equations.system import Entry, System
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index, Mask
 

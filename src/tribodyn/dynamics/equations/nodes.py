@@ -11,13 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
+from tribodyn.dynamics.equations.load_friction import friction_coefficients, friction_directions
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import (
-    friction_coefficients,
-    friction_directions,
-)
 from tribodyn.errors import InputError
-from tribodyn.types import Array
+from tribodyn.types import Array, Index, Mask
 
 #: Sums of stiffnesses below zero by less than this part of the largest are rounding.
 _ROUNDING = 1e-9
@@ -117,3 +114,26 @@ def refuse_falling_force(
                 remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
                 "to any other, is not negative",
             )
+
+
+def force_laws(nodes: Nodes) -> Index:
+    """Number of the force law of each contact: one direction and error belong to one law."""
+    numbers = np.arange(nodes.stiffness.shape[2])
+    for j in numbers:
+        for i in range(j):
+            pairs = (nodes.direction[:, :, [i, j]], nodes.error[:, :, [i, j]])
+            if all(np.array_equal(both[:, :, 0], both[:, :, 1]) for both in pairs):
+                numbers[j] = numbers[i]
+                break
+    return numbers
+
+
+def lowest_of_each_law(nodes: Nodes) -> Mask:
+    """Tell which contacts do not share their compression with a spring that begins lower."""
+    laws, places = force_laws(nodes), np.einsum("rs,rsj->j", nodes.weight, nodes.gap)
+    stiff = nodes.stiffness.any(axis=(0, 1))
+    kept = np.ones(places.size, dtype=bool)
+    for j in range(places.size):
+        for i in np.flatnonzero(stiff & (laws == laws[j])):
+            kept[j] &= (places[i], i) >= (places[j], j)
+    return kept

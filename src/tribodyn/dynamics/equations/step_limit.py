@@ -13,10 +13,10 @@ import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import friction_tangent, push_with_friction
 from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 

@@ -12,7 +12,7 @@ from tribodyn.dynamics.linear.natural_modes_linear import (
     linear_system,
 )
 from tribodyn.errors import InputError, require_positive
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
 
 
@@ -52,7 +52,7 @@ class ForcedResponse(Record):
     ForcedResponse(2 frequencies, largest mesh force 99804.6 N at 1591.5 Hz)
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
     frequency: Array = quantity("frequency", unit="Hz", axis=True)
     error: float = fact()
     contact: tuple[int, ...]
@@ -87,11 +87,6 @@ class ForcedResponse(Record):
             f"ForcedResponse({self.frequency.size} frequencies, largest mesh force "
             f"{size[top]:.6g} N at {self.frequency[top]:.6g} Hz)"
         )
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        parts.coordinates["coordinate"] = list(self.names)
-        return parts
 
 
 def forced_response(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.equations.nodes import lowest_of_each_law
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.continuation_path import (
     BranchPoint,
@@ -30,7 +31,7 @@ from tribodyn.dynamics.orbits.continuation_path import (
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
-from tribodyn.dynamics.orbits.start import _lowest_of_each_law, static_start
+from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
@@ -386,7 +387,7 @@ def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures
     beyond = fine.deflection - gap.reshape(fine.deflection.shape)
     dead = np.any(nodes.gap > 0.0, axis=(0, 1))
     clearance = _extremes(beyond)[0] if count else np.zeros(0)
-    able = dead & _lowest_of_each_law(nodes) if count else dead
+    able = dead & lowest_of_each_law(nodes) if count else dead
     return OrbitFigures(
         mesh_frequency=frequency,
         position=states[0, : response.position.shape[1]].copy(),

@@ -323,9 +323,9 @@ class SpeedSweep(Record):
 
     mesh_frequency: Array = quantity("mesh_frequency", unit="Hz", axis=True)
     teeth: int = fact()
-    directions: tuple[str, ...]
-    signals: tuple[str, ...]
-    units: tuple[str, ...]
+    directions: tuple[str, ...] = quantity("direction", axis=True, name="direction")
+    signals: tuple[str, ...] = quantity("signal", axis=True, name="signal")
+    units: tuple[str, ...] = quantity("signal", axis=True, name="unit")
     mean: Array = quantity("direction", "mesh_frequency", "signal")
     rms: Array = quantity("direction", "mesh_frequency", "signal")
     peak_to_peak: Array = quantity("direction", "mesh_frequency", "signal")
@@ -339,7 +339,7 @@ class SpeedSweep(Record):
     velocity: Array = quantity("direction", "mesh_frequency", "coordinate", unit="m/s or rad/s")
     extra_force: Array = quantity("direction", "mesh_frequency", "coordinate", unit="N or N*m")
     jumps: tuple[Jump, ...]
-    names: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
     step_number: float
 
     @property
@@ -401,8 +401,5 @@ class SpeedSweep(Record):
         both = ("direction", "mesh_frequency", "multiplier")
         variables["multiplier_real"] = (both, self.floquet_multipliers.real, {"units": "1"})
         variables["multiplier_imaginary"] = (both, self.floquet_multipliers.imag, {"units": "1"})
-        coordinates["direction"] = list(self.directions)
         coordinates["speed"] = ("mesh_frequency", self.speed, {"units": "rad/s"})
-        coordinates["signal"], coordinates["coordinate"] = list(self.signals), list(self.names)
-        coordinates["unit"] = ("signal", list(self.units))
         return parts

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
-from tribodyn.dynamics.running_up.run_up_march import CycleMarcher, Pace
+from tribodyn.dynamics.running_up.run_up_march import CycleMarcher, Pace, Samples
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, read_profile
 from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
-from tribodyn.dynamics.running_up.run_up_samples import Samples
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
-from tribodyn.dynamics.time.ensemble import LaneStatistics
+from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import (
     ComputationError,
@@ -30,8 +30,6 @@ from tribodyn.types import Array
 
 #: Mesh cycles whose pace is found at a time.
 _CHUNK = 64
-#: Mean, mean square, minimum, maximum, share off the driving flank.
-_PLAIN = 5
 
 
 def run_up(
@@ -261,22 +259,17 @@ def _statistics(
 ) -> CycleStatistics:
     time = path.time_at(np.arange(count + 1))
     period = np.diff(time)
-    rows = moments.reshape(-1, _PLAIN, count)
+    rows = moments.reshape(-1, PLAIN_MOMENTS, count)
     contacts, size = len(system.contacts), system.size
-
-    def figures(part: Array) -> LaneStatistics:
-        none = np.zeros((count, part.shape[0], 0), dtype=complex)
-        mean, square, low, high = (part[:, k].T for k in range(4))
-        return LaneStatistics(mean, np.sqrt(np.maximum(square, 0.0)), low, high, none)
 
     return CycleStatistics(
         time=0.5 * (time[1:] + time[:-1]),
         mesh_frequency=1.0 / period,
         rate=np.diff(path.frequency_at(time)) / period,
-        deflection=figures(rows[:contacts]),
-        contact_force=figures(rows[contacts : 2 * contacts]),
-        acceleration=figures(rows[2 * contacts : 2 * contacts + size]),
-        output=figures(rows[2 * contacts + size :]),
+        deflection=lane_statistics(rows[:contacts]),
+        contact_force=lane_statistics(rows[contacts : 2 * contacts]),
+        acceleration=lane_statistics(rows[2 * contacts : 2 * contacts + size]),
+        output=lane_statistics(rows[2 * contacts + size :]),
         contact_loss_share=rows[contacts : 2 * contacts, 4].T,
         extra_force=extras,
         steps=np.array(steps, dtype=np.int64),

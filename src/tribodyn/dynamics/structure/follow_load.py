@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import LoadFriction
+from tribodyn.dynamics.equations.system import LoadFriction, System
 from tribodyn.errors import InputError
 from tribodyn.types import Array
 

@@ -14,25 +14,16 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import Contact
-from tribodyn.dynamics.structure.gear_pair import gear_contact
+from tribodyn.dynamics.equations.system import Contact, Entry
 from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import MeshForceLaw, MeshFunctions
+    from tribodyn.mesh import MeshForceLaw
 
 
 T = TypeVar("T")
 MeshForce = Literal["stiffness", "tangent", "force-law"]
-
-
-def gear_contacts(
-    mesh: MeshFunctions, *, mesh_force: MeshForce = "stiffness", **options: Any
-) -> tuple[Contact, ...]:
-    """Build the contacts of one gear pair; all have the same compression."""
-    return carried(gear_contact(mesh, **options), mesh, mesh_force)
 
 
 def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ...]:
@@ -41,7 +32,7 @@ def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ..
         return (one,)
     if mesh_force == "tangent":
         tangent = _needed(getattr(mesh, "tangent_stiffness", None), "tangent stiffness")
-        spring = replace(one, stiffness=tangent, error=_sum_of(one.error, mesh.tangent_error))
+        spring = replace(one, stiffness=tangent, error=sum_of(one.error, mesh.tangent_error))
         return (replace(one, stiffness=0.0), replace(spring, damping=0.0))
     if mesh_force == "force-law":
         return law_contacts(one, _needed(getattr(mesh, "force_law", None), "force law"))
@@ -63,7 +54,9 @@ def _needed(value: T | None, name: str) -> T:
     return value
 
 
-def _sum_of(first: Entry, second: Callable[[Array], Array]) -> Callable[[Array], Array]:
+def sum_of(first: Entry, second: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    """Sum of an entry and a function of the mesh phase."""
+
     def both(phase: Array) -> Array:
         given = first(phase) if callable(first) else first
         return np.asarray(np.asarray(given, dtype=float) + second(phase))

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.structure.gear_pair import Driver
+from tribodyn.dynamics.equations.system import Contact, Entry, System
+from tribodyn.dynamics.structure.gear_pair import Driver, row_of
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
@@ -193,22 +192,6 @@ def shaft_chain(
         whole(losses, turn_damping),
         whole(support, turn_stiffness),
     )
-
-
-def row_of(name: str, value: ArrayLike, count: int, unit: str, *, positive: bool = True) -> Array:
-    """Read one value for all discs, or one for each."""
-    array = np.asarray(value, dtype=float)
-    if array.shape not in ((), (count,)):
-        raise InputError(
-            f"{name} has the shape {array.shape}",
-            where=f"argument {name}",
-            why=f"Give one value, or {count} of them",
-        )
-    if positive:
-        require_positive(name, array, unit)
-    else:
-        require_between(name, array, 0.0, np.inf, unit)
-    return np.broadcast_to(array, (count,)).astype(float)
 
 
 def _chain(springs: Array) -> Array:

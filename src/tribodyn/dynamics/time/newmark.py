@@ -16,14 +16,11 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics._engine.method import Newmark
-from tribodyn.dynamics.equations.compiled import Compiled, Member, require_steps
+from tribodyn.dynamics.equations.compiled import Compiled, Member
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import largest_rate
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
@@ -60,48 +57,6 @@ def newmark_law(
             + ", ".join(f'"{name}"' for name in NEWMARK_PRESETS),
         )
     return NEWMARK_PRESETS[preset]
-
-
-def compile_newmark(
-    system: System,
-    mesh_frequency: ArrayLike,
-    steps: int,
-    *,
-    gamma: float = 0.5,
-    beta: float = 0.25,
-) -> Compiled:
-    """Compile a system for :func:`march_newmark`: no step is too long for a stable scheme."""
-    require_positive("mesh_frequency", mesh_frequency, "Hz")
-    require_steps(steps)
-    grid, nodes, program = compile_system(system, int(steps))
-    slowest = float(np.min(np.asarray(mesh_frequency, dtype=float)))
-    number = largest_rate(system, nodes) * float(grid.width.max()) / slowest
-    compiled = Compiled(system, grid, nodes, program, number)
-    refuse_newmark(compiled, np.array([1.0 / slowest]), gamma, beta)
-    return compiled
-
-
-def march_newmark(
-    compiled: Compiled,
-    period: Array,
-    state: Array,
-    cycles: int,
-    *,
-    gamma: float = 0.5,
-    beta: float = 0.25,
-    tolerance: float = 1e-12,
-    extra_force: Array | None = None,
-    parameters: LaneParameters | None = None,
-    record: Array | None = None,
-    threads: int | None = None,
-) -> Array:
-    """March lanes by whole mesh cycles; returns their new state."""
-    period = np.asarray(period, dtype=float)
-    method = newmark_method(compiled, period, gamma, beta, tolerance, parameters)
-    return march(
-        compiled, period, state, cycles, method=method, extra_force=extra_force,
-        parameters=parameters, record=record, threads=threads,
-    )  # fmt: skip
 
 
 def newmark_method(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.tolerance import Tolerance
+from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.dynamics.time.response import Response, build_response
