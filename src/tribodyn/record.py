@@ -116,7 +116,9 @@ class Record:
                 parts.attributes[name] = value
             elif value is not None:
                 place = parts.coordinates if labels.axis else parts.variables
-                place[name] = (labels.dims, value, self._units(labels.unit))
+                # xarray takes a tuple for one value.
+                given = list(value) if isinstance(value, tuple) else value
+                place[name] = (labels.dims, given, self._units(labels.unit))
         return parts
 
     def _units(self, unit: str | None) -> dict[str, str]:

@@ -121,8 +121,8 @@ def force_laws(nodes: Nodes) -> Index:
     numbers = np.arange(nodes.stiffness.shape[2])
     for j in numbers:
         for i in range(j):
-            pairs = (nodes.direction[:, :, [i, j]], nodes.error[:, :, [i, j]])
-            if all(np.array_equal(both[:, :, 0], both[:, :, 1]) for both in pairs):
+            rows = (nodes.direction, nodes.error)
+            if all(np.array_equal(part[:, :, i], part[:, :, j]) for part in rows):
                 numbers[j] = numbers[i]
                 break
     return numbers
