@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, OutputExistsError, Problem, quiet
+from tribodyn.errors import InputError, OutputExistsError, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.cycle import NoGears
 from tribodyn.mesh.grid import PhaseGrid
@@ -82,12 +82,10 @@ def save(table: MeshTable, path: str | PathLike[str]) -> None:
     """Write a mesh table to a netCDF file."""
     if Path(path).exists():
         raise OutputExistsError(
-            Problem(
-                what=f"{path} exists already",
-                where="argument path",
-                why="An existing file is never overwritten",
-                remedy="Choose another name or remove the file",
-            )
+            f"{path} exists already",
+            where="argument path",
+            why="An existing file is never overwritten",
+            remedy="Choose another name or remove the file",
         )
     to_xarray(table).to_netcdf(Path(path), engine="h5netcdf")
 
@@ -159,12 +157,10 @@ def _plain(value: Any) -> Any:
 
 def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
     return InputError(
-        Problem(
-            what=f"{path} is no mesh table",
-            where="argument path",
-            why=reason,
-            remedy="Give a file that MeshTable.save wrote",
-        )
+        f"{path} is no mesh table",
+        where="argument path",
+        why=reason,
+        remedy="Give a file that MeshTable.save wrote",
     )
 
 
