@@ -165,8 +165,10 @@ def fzg12(
         Damping along the line of action [N*s/m].
     friction_coefficient : float
         Constant coefficient of friction; unused with a mesh [1].
-    backlash, error, driver, torque_balance, damping_in_gap, mesh_force
+    backlash, error, driver, torque_balance, damping_in_gap
         As :func:`spur6` takes them [m]; shaft 1 with the wheel carries the motor.
+    mesh_force : "stiffness", "tangent" or "force-law"
+        How the teeth of a mesh carry.
 
     Returns
     -------

@@ -263,8 +263,10 @@ def torsional(
     ----------
     mesh, moment_of_inertia, base_radius, torque
         As :func:`spur6` takes them [kg*m^2], [m], [N*m].
-    mesh_damping, driver, backlash, error, damping_in_gap, torque_balance, mesh_force
+    mesh_damping, driver, backlash, error, damping_in_gap, torque_balance
         Likewise [N*s/m], [m].
+    mesh_force : "stiffness", "tangent" or "force-law"
+        How the teeth carry.
 
     Returns
     -------
