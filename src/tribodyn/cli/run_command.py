@@ -25,6 +25,8 @@ def run(
     out: Path | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+    open_: Annotated[bool, Parameter(name="--open", negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Compute a case; write its report and its data into a new directory.
@@ -39,6 +41,10 @@ def run(
         Values to change, for example "operation.torque=120 N*m".
     force : bool
         Replace an earlier result in that directory.
+    quiet : bool
+        Leave the table of values out; warnings and the place of the report are still told.
+    open_ : bool
+        Show the report in the web browser.
     json : bool
         Write the summary as one flat JSON object in SI to stdout.
     """
@@ -60,10 +66,15 @@ def run(
         progress.finish()
     if json:
         say_json(result.summary())
-    else:
+    elif not quiet:
         _show(result)
     show_warnings((warning.code, warning.message) for warning in result.warnings)
-    tell(f"Report: {target / 'report.html'}")
+    report = target / "report.html"
+    tell(f"Report: {report}")
+    if open_:
+        import webbrowser
+
+        webbrowser.open(report.absolute().as_uri())
 
 
 def _show(result: Result) -> None:
