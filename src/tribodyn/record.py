@@ -120,7 +120,7 @@ class Record:
         return [(each, labels[each.name]) for each in fields(self) if each.name in labels]  # type: ignore[arg-type]
 
     def _parts(self) -> Parts:
-        """Known variables, coordinates, attributes; a class extends them where fields are not all."""
+        """Known variables, coordinates, attributes; classes extend them where fields are not all."""
         parts = Parts({}, {}, {})
         for name, labels in {**labels_of(type(self)), **self.DERIVED}.items():
             value, exported = getattr(self, name), labels.name or name
