@@ -30,7 +30,9 @@ import numpy as np
 
 from tribodyn.drawing import draw
 from tribodyn.errors import Argument, OutputExistsError
+from tribodyn.files import whole
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.stored import write_dataset
 
 T = TypeVar("T")
 _KEY = "tribodyn"
@@ -120,7 +122,7 @@ class Record:
         return [(each, labels[each.name]) for each in fields(self) if each.name in labels]  # type: ignore[arg-type]
 
     def _parts(self) -> Parts:
-        """Known variables, coordinates, attributes; classes extend them where fields are not all."""
+        """Known variables, coordinates, attributes; a class adds what its fields are not."""
         parts = Parts({}, {}, {})
         for name, labels in {**labels_of(type(self)), **self.DERIVED}.items():
             value, exported = getattr(self, name), labels.name or name
@@ -199,12 +201,8 @@ class Record:
             what, where = f"{target} exists already", Argument("path")
             why, remedy = "An existing file is never overwritten", "Choose another name"
             raise OutputExistsError(what, where, why, remedy)
-        beside = target.with_name(f".{target.name}.{os.getpid()}")
-        try:
-            self.to_xarray().to_netcdf(beside, engine="h5netcdf")
-            os.replace(beside, target)
-        finally:
-            beside.unlink(missing_ok=True)
+        with whole(target) as partial:
+            write_dataset(self.to_xarray(), partial)
         return target
 
     def __eq__(self, other: object) -> bool:

@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import changed_case
+from tribodyn.cli.settings import changed_case, check_place
 
 if TYPE_CHECKING:
     from tribodyn.study.pipeline.result import Result
-
-
-_REPLACE = "Choose another directory with --out, or replace it with --force"
 
 
 def run(
@@ -50,11 +47,10 @@ def run(
     """
     from tribodyn.cli.bar import progress_bar
     from tribodyn.errors import ModelWarning
-    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(Path(case).stem)
     ready = changed_case(case, set_ or [])
-    check_target(target, force, remedy=_REPLACE)
+    check_place(target, force)
     with progress_bar() as progress, warnings.catch_warnings():
         # They are shown below, from the result.
         warnings.simplefilter("ignore", ModelWarning)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, OutputExistsError
+from tribodyn.files import whole
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.gears import COORDINATES, NoGears, read_pair
 from tribodyn.mesh.grid import PhaseGrid
@@ -153,4 +154,5 @@ def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
     lines = [f"# {name} = {value!r} {FACTS[name]}" for name, value in facts.items()]
     lines.append(",".join(columns))
     lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
-    place.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with whole(place) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
