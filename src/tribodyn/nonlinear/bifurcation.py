@@ -385,7 +385,7 @@ class Bifurcation(Surveyed):
         low, high = self.parameter.min(), self.parameter.max()
         return (
             f"Bifurcation({self.parameter.size} values of {self.parameter_name} from {low:.6g} to "
-            f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}{self._told()})"
+            f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}{self._ending()})"
         )
 
     def _parts(self) -> Parts:

@@ -326,7 +326,7 @@ class ParameterMap(Surveyed):
         """One line."""
         return (
             f"ParameterMap({self.first.size} values of {self.names[0]} x {self.second.size} of "
-            f"{self.names[1]}{self._told()})"
+            f"{self.names[1]}{self._ending()})"
         )
 
     def _parts(self) -> Parts:

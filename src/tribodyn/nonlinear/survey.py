@@ -75,7 +75,7 @@ class Surveyed(Record):
         words, counts = np.unique(self.verdict, return_counts=True)
         return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
 
-    def _told(self) -> str:
+    def _ending(self) -> str:
         """Verdicts in words, for the end of a line."""
         words = [f"{count} {word}" for word, count in self.verdicts().items()]
         words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
