@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.screen import figures, say, say_json, show_warnings, tell
 from tribodyn.cli.settings import changed_case
-
-if TYPE_CHECKING:
-    from tribodyn.study.pipeline.result import Result
-
 
 _REPLACE = "Choose another directory with --out, or replace it with --force"
 
@@ -61,13 +57,6 @@ def run(
     if json:
         say_json(result.summary())
     else:
-        _show(result)
+        say(f"{result.case.title}\n{figures(result.summary())}")
     show_warnings((warning.code, warning.message) for warning in result.warnings)
     tell(f"Report: {target / 'report.html'}")
-
-
-def _show(result: Result) -> None:
-    from tribodyn.study.pipeline.summary import SUMMARY
-
-    rows = [[n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in result.summary().items()]
-    say(f"{result.case.title}\n{table(rows)}")
