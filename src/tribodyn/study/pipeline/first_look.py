@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -81,7 +81,11 @@ def standard_figures(case: Case) -> dict[str, float]:
 
 def _alike(pair: SpurPair) -> SpurPair:
     """The pair without what makes its teeth differ from each other."""
-    even = {"run_out": 0.0, "single_pitch_deviation": (), "cumulative_pitch_deviation": ()}
+    even: dict[str, Any] = {
+        "run_out": 0.0,
+        "single_pitch_deviation": (),
+        "cumulative_pitch_deviation": (),
+    }
     pinion, wheel = (
         replace(gear, modification=replace(gear.modification, **even))
         for gear in (pair.pinion, pair.wheel)
