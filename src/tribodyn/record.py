@@ -30,6 +30,8 @@ import numpy as np
 
 from tribodyn.drawing import draw
 from tribodyn.errors import OutputExistsError, Problem
+from tribodyn.files import whole
+from tribodyn.stored import write_dataset
 
 T = TypeVar("T")
 _KEY = "tribodyn"
@@ -178,12 +180,8 @@ class Record:
             raise OutputExistsError(
                 Problem(f"{target} exists", "argument path", "", "Choose another name")
             )
-        beside = target.with_name(f".{target.name}.{os.getpid()}")
-        try:
-            self.to_xarray().to_netcdf(beside, engine="h5netcdf")
-            os.replace(beside, target)
-        finally:
-            beside.unlink(missing_ok=True)
+        with whole(target) as partial:
+            write_dataset(self.to_xarray(), partial)
         return target
 
     def __eq__(self, other: object) -> bool:

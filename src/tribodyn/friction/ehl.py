@@ -14,7 +14,7 @@ from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
 from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
 from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
 from tribodyn.ehl.traction.traction import FilmShear
-from tribodyn.errors import InputError, Problem, require_positive, warn
+from tribodyn.errors import InputError, require_positive, warn
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.model import choice, flag, number
 from tribodyn.types import Array
@@ -103,12 +103,10 @@ def _film_of(contact: TribologicalContact) -> FilmState:
     if contact.film is not None:
         return contact.film
     raise InputError(
-        Problem(
-            what="the oil film is not known",
-            where='friction law "ehl"',
-            why="it integrates the shear stress of the solved film",
-            remedy='Set [film] model = "newton" (or "multigrid"), or choose another friction law',
-        )
+        "the oil film is not known",
+        where='friction law "ehl"',
+        why="it integrates the shear stress of the solved film",
+        remedy='Set [film] model = "newton" (or "multigrid"), or choose another friction law',
     )
 
 

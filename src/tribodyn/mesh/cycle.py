@@ -17,7 +17,7 @@ from tribodyn.contact import (
 )
 from tribodyn.ehl import FILM_MODELS, moes_central
 from tribodyn.ehl.steady.solved_films import Films
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, require_between
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
@@ -37,12 +37,10 @@ class NoGears:
         if name.startswith("__"):
             raise AttributeError(name)
         raise InputError(
-            Problem(
-                what="this mesh table has no gear pair",
-                where="MeshTable.gear_pair",
-                why="Another program made it, and such a table knows contacts, not gears",
-                remedy="Ask for what is a column of the table",
-            )
+            "this mesh table has no gear pair",
+            where="MeshTable.gear_pair",
+            why="Another program made it, and such a table knows contacts, not gears",
+            remedy="Ask for what is a column of the table",
         )
 
     def __repr__(self) -> str:

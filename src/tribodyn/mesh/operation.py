@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line, path_of_contact
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import PathPositions, path_positions
@@ -218,12 +218,10 @@ def _check(speed: Array, torque: Array, composite_roughness: float) -> None:
     for name, values in (("pinion_speed", speed), ("pinion_torque", torque)):
         if values.ndim != 1 or values.size == 0:
             raise InputError(
-                Problem(
-                    what=f"{name} has the shape {values.shape}",
-                    where=f"argument {name}",
-                    why="It is one value or a list of values",
-                    remedy="Every torque is combined with every speed: give each value once",
-                )
+                f"{name} has the shape {values.shape}",
+                where=f"argument {name}",
+                why="It is one value or a list of values",
+                remedy="Every torque is combined with every speed: give each value once",
             )
 
 

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, OutputExistsError, Problem, quiet
+from tribodyn.errors import InputError, OutputExistsError, quiet
+from tribodyn.files import whole
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.cycle import NoGears
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.stored import write_dataset
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -82,14 +84,13 @@ def save(table: MeshTable, path: str | PathLike[str]) -> None:
     """Write a mesh table to a netCDF file."""
     if Path(path).exists():
         raise OutputExistsError(
-            Problem(
-                what=f"{path} exists already",
-                where="argument path",
-                why="An existing file is never overwritten",
-                remedy="Choose another name or remove the file",
-            )
+            f"{path} exists already",
+            where="argument path",
+            why="An existing file is never overwritten",
+            remedy="Choose another name or remove the file",
         )
-    to_xarray(table).to_netcdf(Path(path), engine="h5netcdf")
+    with whole(Path(path)) as partial:
+        write_dataset(to_xarray(table), partial)
 
 
 def is_mesh_table(path: Path) -> bool:
@@ -159,12 +160,10 @@ def _plain(value: Any) -> Any:
 
 def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
     return InputError(
-        Problem(
-            what=f"{path} is no mesh table",
-            where="argument path",
-            why=reason,
-            remedy="Give a file that MeshTable.save wrote",
-        )
+        f"{path} is no mesh table",
+        where="argument path",
+        why=reason,
+        remedy="Give a file that MeshTable.save wrote",
     )
 
 

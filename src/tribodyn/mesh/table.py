@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
@@ -94,12 +94,10 @@ class MeshTable(MeshColumns):
         values = getattr(self, column, None)
         if not isinstance(values, np.ndarray):
             raise InputError(
-                Problem(
-                    what=f'the mesh table has no column "{column}"',
-                    where="argument column",
-                    why=f"Its columns are: {', '.join(self._columns())}",
-                    remedy="Name one of them",
-                )
+                f'the mesh table has no column "{column}"',
+                where="argument column",
+                why=f"Its columns are: {', '.join(self._columns())}",
+                remedy="Name one of them",
             )
         if values.dtype == np.bool_:
             return np.asarray(PhaseFunction(self.grid, values.astype(float))(phase) > 0.5)

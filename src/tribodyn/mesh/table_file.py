@@ -13,7 +13,8 @@ from typing import Any, NoReturn, cast
 import numpy as np
 
 from tribodyn import units
-from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.errors import InputError, OutputExistsError
+from tribodyn.files import whole
 from tribodyn.mesh.cycle import COORDINATES, GearData, NoGears
 from tribodyn.mesh.force_law import at_rest
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
@@ -174,12 +175,10 @@ class TableFile:
         if stated is None or self.has_force_law or abs(torque - stated) <= _SAME_TORQUE * stated:
             return
         raise InputError(
-            Problem(
-                f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m",
-                "argument pinion_torque",
-                "Its stiffness holds for that load alone: it has no force law",
-                f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table",
-            )
+            f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m",
+            "argument pinion_torque",
+            "Its stiffness holds for that load alone: it has no force law",
+            f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table",
         )
 
     def _need_friction_columns(self) -> None:
@@ -218,7 +217,7 @@ def _own(place: Path) -> TableFile:
 
 
 def _refuse(path: Any, what: str, why: str, remedy: str, where: str = "") -> NoReturn:
-    raise InputError(Problem(what, f"{path}: {where}" if where else str(path), why, remedy))
+    raise InputError(what, f"{path}: {where}" if where else str(path), why, remedy)
 
 
 def _checked(
@@ -469,7 +468,7 @@ def write_csv(table: MeshTable, path: str | os.PathLike[str]) -> None:
     place = Path(path)
     if place.exists():
         why = "An existing file is never overwritten"
-        raise OutputExistsError(Problem(f"{path} exists already", "argument path", why))
+        raise OutputExistsError(f"{path} exists already", "argument path", why)
     facts = {name: float(getattr(table, name)) for name in _FACTS}
     columns: dict[str, Array] = {"phase": table.phase}
     for name, unit in _UNITS.items():
@@ -492,4 +491,5 @@ def write_csv(table: MeshTable, path: str | os.PathLike[str]) -> None:
     lines = [f"# {name} = {value!r} {_FACTS[name]}" for name, value in facts.items()]
     lines.append(",".join(columns))
     lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
-    place.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with whole(place) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")

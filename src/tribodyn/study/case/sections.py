@@ -129,7 +129,6 @@ class Friction(Section):
     law: str = model_choice(
         "none",
         _laws,
-        later=("exponential", "schlenk", "mixed-ehl", "measured"),
         meaning="friction law of the tooth contact",
     )
 
@@ -140,7 +139,6 @@ class Dynamics(Section):
     model: str = model_choice(
         "spur-6dof",
         _structures,
-        later=("hypoid-14dof",),
         meaning="structure that vibrates",
     )
     mesh_law: str | None = choice(
