@@ -64,7 +64,7 @@ def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
     >>> import tribodyn
     >>> modes = natural_modes(tribodyn.load_case("fzg-roughness"))
     >>> modes.frequency.round().tolist()
-    [0.0, 5045.0, 9044.0, 9390.0, 11452.0, 11992.0]
+    [0.0, 5045.0, 9044.0, 9390.0, 11452.0, 11991.0]
     """
     from tribodyn.dynamics import natural_modes as compute
 
