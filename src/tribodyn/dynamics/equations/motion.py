@@ -167,10 +167,12 @@ class WithinSteps:
         rows = rows_within(self.nodes, step, tau)
         return forces(self.system, rows, self.beat, q, v, side, extra=self.extra)
 
-    def contacts(self, step: Index, tau: Array, q: Array) -> tuple[Array, Array]:
-        """Compressions and gaps at fractions of steps."""
+    def contacts(
+        self, step: Index, tau: Array, q: Array, which: slice = slice(None)
+    ) -> tuple[Array, Array]:
+        """Compressions and gaps of some contacts at fractions of steps."""
         direction, error, gap = (
-            quadratic(rows, step, tau)
+            quadratic(rows[:, :, which], step, tau)
             for rows in (self.nodes.direction, self.nodes.error, self.nodes.gap)
         )
         return compression(self.nodes._replace(direction=direction, error=error), q), gap
