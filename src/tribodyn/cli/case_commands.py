@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.screen import figures, say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import changed_case
 from tribodyn.errors import InputError, OutputExistsError, Problem
 
@@ -49,18 +49,17 @@ def check(
     """
     from tribodyn.study.case.provenance import assumptions
     from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.first_look import operating_figures
     from tribodyn.study.pipeline.geometry import geometry
     from tribodyn.study.pipeline.run import rehearse
-    from tribodyn.study.pipeline.summary import SUMMARY
 
     checked = changed_case(case, set_ or [])
-    values = geometry(checked)
     rehearse(checked)
+    values = {n: float(v) for n, v in (geometry(checked) | operating_figures(checked)).items()}
     if json:
         say_json(values)
     else:
-        rows = [[n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in values.items()]
-        say(f"{checked.title}\n{table(rows)}")
+        say(f"{checked.title}\n{figures(values)}")
     show_warnings((warning.code, warning.message) for warning in case_cautions(checked))
     kinds = [assumption.kind for assumption in assumptions(checked)]
     tell(
@@ -73,7 +72,7 @@ def new(
     path: Path,
     /,
     *,
-    from_: Annotated[str, Parameter(name="--from")],
+    from_: Annotated[str | None, Parameter(name="--from")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -84,13 +83,15 @@ def new(
     path : Path
         File to write.
     from_ : str
-        Built-in case or case file to take the values from.
+        Built-in case or case file to take all values from; by default a short file of no
+        particular gears is written, to be filled in.
     force : bool
         Replace an existing file.
     json : bool
         Write one JSON object to stdout.
     """
     from tribodyn.cases.load import load_case
+    from tribodyn.study.case.reference import start_toml
     from tribodyn.study.pipeline.save import write_file
 
     if path.exists() and (path.is_dir() or not force):
@@ -98,7 +99,7 @@ def new(
         raise OutputExistsError(Problem("this exists already", str(path), "", remedy))
     if not path.parent.is_dir():
         raise InputError(Problem("there is no such directory", str(path.parent), "", "Create it"))
-    write_file(path, load_case(from_).to_toml())
+    write_file(path, load_case(from_).to_toml() if from_ else start_toml())
     if json:
         say_json({"path": str(path)})
     else:

@@ -17,7 +17,7 @@ from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program, build_program, compile_on
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
 
 #: Highest degree of a polynomial.
@@ -151,12 +151,10 @@ def build_table(system: System, *, scaled: bool = False, split: bool = False) ->
             rows.scale = np.abs(rows.program.rows.reshape(-1, columns)).max(axis=0)
             rows.noise = _noise(system, rows.nodes, rows.program)
     raise InputError(
-        Problem(
-            what="entries of the system are zero at most mesh phases and not at some",
-            where="argument system",
-            why="No sample of the mesh cycle shows which terms there are",
-            remedy="Declare the phases where an entry begins and ends as events",
-        )
+        "entries of the system are zero at most mesh phases and not at some",
+        where="argument system",
+        why="No sample of the mesh cycle shows which terms there are",
+        remedy="Declare the phases where an entry begins and ends as events",
     )
 
 

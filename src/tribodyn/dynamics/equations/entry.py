@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, real_numbers
+from tribodyn.errors import InputError, real_numbers
 from tribodyn.types import Array
 
 #: A constant, or a vectorized function of the mesh phase in [0, 1).
@@ -27,12 +27,10 @@ def read_events(given: Any, where: str) -> tuple[float, ...]:
     bad = [event for event in events if not 0.0 <= event < 1.0]
     if bad:
         raise InputError(
-            Problem(
-                what=f"events holds {bad[0]:g}",
-                where=where,
-                why="Events are mesh phases and lie in [0, 1)",
-                remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
-            )
+            f"events holds {bad[0]:g}",
+            where=where,
+            why="Events are mesh phases and lie in [0, 1)",
+            remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
         )
     return events
 
@@ -55,21 +53,17 @@ def entry_values(where: str, entry: Any, phases: Array, size: int) -> Array:
         value = real_numbers(where, entry, "a number, numbers or a function of the mesh phase")
         if value.ndim > 1 or (value.ndim == 1 and value.size != size):
             raise InputError(
-                Problem(
-                    what=f"{where} has the shape {value.shape}",
-                    where=where,
-                    why=f"It must be a number or have the shape ({size},)",
-                )
+                f"{where} has the shape {value.shape}",
+                where=where,
+                why=f"It must be a number or have the shape ({size},)",
             )
         values = np.broadcast_to(value, (phases.size, size)).astype(float)
     if not np.all(np.isfinite(values)):
         at = phases[np.flatnonzero(~np.isfinite(values).all(axis=1))[0]]
         raise InputError(
-            Problem(
-                what=f"{where} is NaN or infinite at the mesh phase {at:.6g}",
-                where=where,
-                remedy="Check the table or function there; declare jumps as events",
-            )
+            f"{where} is NaN or infinite at the mesh phase {at:.6g}",
+            where=where,
+            remedy="Check the table or function there; declare jumps as events",
         )
     return values
 
@@ -81,13 +75,11 @@ def refuse_chance(where: str, entry: Any, phases: Array, values: Array) -> None:
     if np.any(apart > _ROUNDING * np.abs(values).max(axis=0)):
         row = int(apart.max(axis=1).argmax())
         raise InputError(
-            Problem(
-                what=f"{where} gives other values when it is called again: "
-                f"{apart[row].max():.4g} apart at the mesh phase {phases[some][row]:.6g}",
-                where=where,
-                why="The motion repeats only if every value follows from the mesh phase alone",
-                remedy="Draw random numbers once, before, and look them up by the phase",
-            )
+            f"{where} gives other values when it is called again: "
+            f"{apart[row].max():.4g} apart at the mesh phase {phases[some][row]:.6g}",
+            where=where,
+            why="The motion repeats only if every value follows from the mesh phase alone",
+            remedy="Draw random numbers once, before, and look them up by the phase",
         )
 
 
@@ -118,24 +110,20 @@ def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
         row = int(kept.argmax())
         ends = entry_values(where, entry, np.array([low[row], high[row]]), size.size)
         raise InputError(
-            Problem(
-                what=f"{where} jumps by {np.ptp(ends, 0).max():.4g} at the mesh phase "
-                f"{0.5 * (low[row] + high[row]):.7g}, which is not an event",
-                where=where,
-                why="A step across a jump loses its order, and steps end at events only",
-                remedy="Give this phase to events of the contact or the friction",
-            )
+            f"{where} jumps by {np.ptp(ends, 0).max():.4g} at the mesh phase "
+            f"{0.5 * (low[row] + high[row]):.7g}, which is not an event",
+            where=where,
+            why="A step across a jump loses its order, and steps end at events only",
+            remedy="Give this phase to events of the contact or the friction",
         )
 
 
 def _shaped(where: str, values: Array, count: int, size: int) -> Array:
     if values.shape != (count, size):
         raise InputError(
-            Problem(
-                what=f"{where} gives the shape {values.shape}",
-                where=where,
-                why=f"It must be ({count}, {size}) for {count} mesh phases",
-            )
+            f"{where} gives the shape {values.shape}",
+            where=where,
+            why=f"It must be ({count}, {size}) for {count} mesh phases",
         )
     return values
 
@@ -148,12 +136,10 @@ def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size:
         given = function(probe)
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what=f"{where} is not a vectorized function of the mesh phase: {error}",
-                where=where,
-                why="It is called with an array of phases and returns an array",
-                remedy="Use numpy.where instead of if, and functions that take arrays",
-            )
+            f"{where} is not a vectorized function of the mesh phase: {error}",
+            where=where,
+            why="It is called with an array of phases and returns an array",
+            remedy="Use numpy.where instead of if, and functions that take arrays",
         ) from error
     values = real_numbers(where, given, "real numbers, whatever the mesh phase")
     if values.ndim == 0:

@@ -19,7 +19,7 @@ from tribodyn.dynamics.equations.entry import (
     varies,
 )
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array, Index, Mask
 
 #: Events nearer than this are one event.
@@ -63,13 +63,11 @@ def build_grid(events: tuple[float, ...], steps: int) -> Grid:
     edges = np.array([*events, 1.0])
     if steps < 2 * len(events):
         raise InputError(
-            Problem(
-                what=f"steps = {steps}",
-                where="argument steps",
-                why=f"The mesh cycle has {len(events)} segments between events and needs at "
-                "least two steps in each",
-                remedy=f"Use at least {max(64, 2 * len(events))} steps",
-            )
+            f"steps = {steps}",
+            where="argument steps",
+            why=f"The mesh cycle has {len(events)} segments between events and needs at "
+            "least two steps in each",
+            remedy=f"Use at least {max(64, 2 * len(events))} steps",
         )
     counts = _shares(np.diff(edges), steps)
     left = [

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import natural_modes
 from tribodyn.dynamics.linear.natural_modes_linear import ModePhase
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array
 
@@ -69,6 +69,8 @@ class Campbell(Record):
         Number of the first elastic mode, which is the number of rigid ones.
     resonances : tuple of Resonance
         All crossings, sorted by speed.
+    operating_speed : float, optional
+        Speed that the figure marks [rad/s].
 
     Examples
     --------
@@ -86,6 +88,7 @@ class Campbell(Record):
     damping_ratio: Array = quantity("speed", "mode", unit="1")
     first_mode: int
     resonances: tuple[Resonance, ...]
+    operating_speed: float | None = None
 
     def __repr__(self) -> str:
         """One line."""
@@ -153,7 +156,7 @@ def campbell(
     """
     lines = tuple(int(order) for order in orders)
     if not lines:
-        raise InputError(Problem(what="no order is asked for", where="argument orders"))
+        raise InputError("no order is asked for", where="argument orders")
     require_positive("teeth", teeth, "")
     require_positive("orders", np.asarray(lines), "")
     speeds = _rising(speed)
@@ -192,12 +195,10 @@ def _rising(speed: ArrayLike) -> Array:
     require_positive("speed", speeds, "rad/s")
     if speeds.size < 2 or np.any(np.diff(speeds) <= 0.0):
         raise InputError(
-            Problem(
-                what="the speeds do not rise" if speeds.size > 1 else "one speed only",
-                where="argument speed",
-                why="The diagram spans a range of speeds",
-                remedy="Give at least two rising speeds",
-            )
+            "the speeds do not rise" if speeds.size > 1 else "one speed only",
+            where="argument speed",
+            why="The diagram spans a range of speeds",
+            remedy="Give at least two rising speeds",
         )
     return speeds
 
