@@ -20,8 +20,8 @@ from tribodyn.study.pipeline import series
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
 _SOUND = read_case(SOUND, "pair.toml").replace({"solver.steps_per_mesh_cycle": 256})
-_LAW = {"stiffness.model": "analytic", "stiffness.reference": "rim", "stiffness.pair_stiffness": None,
-        "dynamics.backlash": "0.05 mm"}  # fmt: skip
+_LAW = {"stiffness.model": "analytic", "stiffness.reference": "rim",
+        "stiffness.pair_stiffness": None, "dynamics.backlash": "0.05 mm"}  # fmt: skip
 CASES = {
     "steady": {},
     "torsional": {"dynamics.model": "torsional", "dynamics.bearing_stiffness": None},
