@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.ehl.steady.contact_case import si_case
-from tribodyn.ehl.steady.line_contact import SolverOptions, solve_case
+from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.stiffness.film_stiffness import central_film_slope
 from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
@@ -47,8 +47,7 @@ class LineContactBatch:
     flux_error : array [-]
         Greatest relative deviation of the mass flux from its mean.
     central_film_error : array [m]
-        Estimate of the discretisation error of ``central_film``; empty where the grid has no
-        coarser one.
+        Estimate of the error of ``central_film`` by the grid.
     solutions : array of LineContactSolution
         The solutions; empty if not asked for.
     """
@@ -179,6 +178,7 @@ def solve_line_contacts(
         table[:, index], solutions[index] = row, solution
         progress.advance()
     progress.finish()
+    _warn_coarse(table[7] / table[0], options, shape)
     table[2] = -length * columns[0] / table[2]
     if stiffness:
         _warn_negative(table[2], shape)
@@ -197,7 +197,7 @@ def _gather(
         half_width=fields[4],
         outlet=fields[5],
         flux_error=fields[6],
-        central_film_error=empty if np.any(fields[7] < 0.0) else fields[7],
+        central_film_error=fields[7],
         solutions=solutions.reshape(shape) if solutions.size else solutions,
     )
 
@@ -216,7 +216,6 @@ def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
 
 
 def _row(solution: LineContactSolution, stiffness: bool) -> list[float]:
-    error = solution.central_film_error
     return [
         solution.central_film,
         solution.minimum_film,
@@ -225,8 +224,23 @@ def _row(solution: LineContactSolution, stiffness: bool) -> list[float]:
         solution.half_width,
         solution.outlet,
         solution.flux_error,
-        -1.0 if error is None else error,
+        solution.central_film_error,
     ]
+
+
+def _warn_coarse(error: Array, options: SolverOptions, shape: tuple[int, ...]) -> None:
+    """One warning for all contacts whose stated nodes are too few."""
+    if isinstance(options.nodes, str) or not np.any(error > STATED_LIMIT):
+        return
+    worst = int(np.argmax(error))
+    place = ", ".join(str(part) for part in np.unravel_index(worst, shape)) or "0"
+    warn(
+        "film-resolution",
+        f"With nodes = {options.nodes} the central film of {np.sum(error > STATED_LIMIT)} of "
+        f"{error.size} contacts has an estimated error above {STATED_LIMIT:g} of it; the worst is "
+        f'contact [{place}] with {error[worst]:.2g}. Take nodes = "auto" or more nodes',
+        stacklevel=4,
+    )
 
 
 def _warn_negative(stiffness: Array, shape: tuple[int, ...]) -> None:

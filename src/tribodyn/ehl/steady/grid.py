@@ -101,7 +101,8 @@ def choose_domain(domain: Any, inlet: str, film: float, scales: ContactScales) -
     else:
         # The first terms hold for gears; between rigid bodies all lengths go with the root.
         root = math.sqrt(2.0 * film)
-        start = -max(3.0, 4.0 + min(1.2 * film, 8.0 * root))
+        reach = 1.2 * film + 3.0 * max(0.0, film - 0.5)
+        start = -max(3.0, 4.0 + min(reach, 12.0 * root))
         end = 1.5 + min(0.4 * max(0.0, film - 0.5), 1.5 * root)
     _check_extent(start, end, inlet, film)
     tail, tail_load = inlet_tail(start, film, scales.lam) if inlet == "flooded" else (0.0, 0.0)

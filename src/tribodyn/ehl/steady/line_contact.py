@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, estimate_film
+from tribodyn.ehl.steady.grid_error import grid_error
 from tribodyn.ehl.steady.rescue import solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
 from tribodyn.errors import InputError, require_between, warn
@@ -21,6 +22,9 @@ from tribodyn.types import Array
 
 #: Heights that are added to the gap, at the nodes or over the position.
 Profile = Callable[[Array], ArrayLike]
+
+#: Error of a film on stated nodes, over the film, that is told.
+STATED_LIMIT = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +126,9 @@ def solve_line_contact(
     -----
     ModelWarning
         Code ``starved-inlet`` for ``inlet="zero"``; ``film-resolution`` where the finest grid
-        does not meet ``film_tolerance``; ``outlet-cut`` where the domain ends before the film.
+        does not meet ``film_tolerance``, where stated nodes leave an estimated error above 2 % of
+        the central or the least film, or were raised; ``outlet-cut`` where the domain ends before
+        the film.
 
     Valid for smooth bodies of a linear elastic material and a film that is thin against the
     radius. Source: Reynolds (1886); Dowson and Higginson (1966); Venner and Lubrecht (2000).
@@ -258,7 +264,8 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
         problem = replace(problem, profile=_heights(options.profile, case, problem))
     if options.start is not None:
         problem = replace(problem, start=_start(options.start))
-    return assemble(case, domain, solve_problem(problem, options.method))
+    solved = solve_problem(problem, options.method)
+    return assemble(case, domain, solved, grid_error(problem, solved.outcome))
 
 
 def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
@@ -305,16 +312,27 @@ def _warn_starved(solution: LineContactSolution) -> None:
 
 
 def _warn_accuracy(solution: LineContactSolution, options: SolverOptions) -> None:
-    error = solution.central_film_error
+    error = solution.central_film_error / solution.central_film
+    least = solution.minimum_film_error / solution.minimum_film
     automatic = isinstance(options.nodes, str)
-    if automatic and error is not None and error > options.film_tolerance * solution.central_film:
-        warn(
-            "film-resolution",
-            f"With {solution.nodes} nodes, the most there are, the central film has an estimated "
-            f"error of {error / solution.central_film:.2g} of it, more than film_tolerance = "
-            f"{options.film_tolerance:g}. Take the extrapolated value, or a greater tolerance",
-            stacklevel=3,
-        )
+    asked = solution.nodes if automatic else int(options.nodes)
+    raised = (
+        "" if solution.nodes == asked else f", where {asked} that were asked for have no solution,"
+    )
+    if automatic and error > options.film_tolerance:
+        limit, remedy = f"film_tolerance = {options.film_tolerance:g}", "a greater tolerance"
+    elif not automatic and (max(error, least) > STATED_LIMIT or raised):
+        limit, remedy = f"{STATED_LIMIT:g}" if error > STATED_LIMIT else "", 'nodes = "auto"'
+    else:
+        return
+    warn(
+        "film-resolution",
+        f"With {solution.nodes} nodes{raised} the central film has an estimated error of "
+        f"{error:.2g} of it, the least one of {least:.2g}; the limit is "
+        f"{limit or format(STATED_LIMIT, 'g')}. Take "
+        + (f"the extrapolated value, or {remedy}" if automatic else f"{remedy} or more nodes"),
+        stacklevel=3,
+    )
 
 
 def _warn_cut(solution: LineContactSolution) -> None:

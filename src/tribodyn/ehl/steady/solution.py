@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from tribodyn.ehl.steady.contact_case import ContactCase
 from tribodyn.ehl.steady.contact_problem import DiscreteContact
 from tribodyn.ehl.steady.grid import Domain, regime_name
+from tribodyn.ehl.steady.grid_error import GridError
 from tribodyn.ehl.steady.rescue import Verified
 from tribodyn.ehl.stiffness.film_stiffness import film_stiffness
 from tribodyn.ehl.stiffness.frequency import frequency_response
@@ -70,8 +71,8 @@ class LineContactSolution(Record):
         Engine that found the solution.
     regime : str
         One of the four regimes of Moes.
-    central_film_error : float, optional [m]
-        Estimate of the discretisation error of ``central_film``; ``None`` without a coarser grid.
+    central_film_error : float [m]
+        Estimate of the error of ``central_film`` by the grid.
     central_film_extrapolated : float, optional [m]
         Central film extrapolated to an infinitely fine grid; ``None`` without a coarser grid.
     attempts : tuple of str
@@ -92,6 +93,10 @@ class LineContactSolution(Record):
         ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
     compressible : bool
         Whether the density rises with pressure.
+    minimum_film_error : float [m]
+        Estimate of the error of ``minimum_film`` by the grid.
+    pressure_error : float [Pa]
+        Estimate of the error of the greatest pressure by the grid; great where that is the spike.
     """
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
@@ -118,7 +123,7 @@ class LineContactSolution(Record):
     inlet: str = fact()
     method: str = fact()
     regime: str = fact()
-    central_film_error: float | None = fact()
+    central_film_error: float = fact()
     central_film_extrapolated: float | None = fact()
     attempts: tuple[str, ...]
     moes_load: float = fact()
@@ -130,6 +135,8 @@ class LineContactSolution(Record):
     lubricant: Lubricant | None
     viscosity_law: str = fact()
     compressible: bool
+    minimum_film_error: float = fact()
+    pressure_error: float = fact()
     _grid: DiscreteContact
 
     @property
@@ -201,8 +208,7 @@ class LineContactSolution(Record):
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""
-        error = self.central_film_error
-        spread = "" if error is None else f" +- {error / self.central_film:.1g} of it"
+        spread = f" +- {self.central_film_error / self.central_film:.1g} of it"
         if self.lubricant is None:
             films = f"central film {self.central_film:.6g}, minimum {self.minimum_film:.6g}"
         else:
@@ -239,20 +245,23 @@ def pressure_spike(grid: DiscreteContact) -> tuple[float, float] | None:
     return float(P[last]), float(grid.X[last])
 
 
-def assemble(case: ContactCase, domain: Domain, solved: Verified) -> LineContactSolution:
+def assemble(
+    case: ContactCase, domain: Domain, solved: Verified, error: GridError
+) -> LineContactSolution:
     """Solution with its units and its errors."""
     grid, check, scales = solved.outcome.grid, solved.check, case.scales
     assert grid is not None  # a verified outcome has a grid
     films = solved.outcome.films
     thick = case.half_width**2 / case.equivalent_radius
     spike = pressure_spike(grid)
-    error = None if len(films) < 2 else (films[-1] - films[-2]) / 3.0
+    step = None if len(films) < 2 else (films[-1] - films[-2]) / 3.0
+    least = float(np.min(grid.H[: grid.free + 1]))
     return LineContactSolution(
         position=grid.X * case.half_width,
         pressure=grid.P * case.hertz_pressure,
         film=grid.H * thick,
         central_film=films[-1] * thick,
-        minimum_film=float(np.min(grid.H[: grid.free + 1])) * thick,
+        minimum_film=least * thick,
         hertz_pressure=case.hertz_pressure,
         half_width=case.half_width,
         outlet=outlet_position(grid) * case.half_width,
@@ -267,8 +276,8 @@ def assemble(case: ContactCase, domain: Domain, solved: Verified) -> LineContact
         inlet=domain.inlet,
         method=solved.method,
         regime=regime_name(scales.moes_load, scales.moes_viscosity),
-        central_film_error=None if error is None else abs(error) * thick,
-        central_film_extrapolated=None if error is None else (films[-1] + error) * thick,
+        central_film_error=error.central * films[-1] * thick,
+        central_film_extrapolated=None if step is None else (films[-1] + step) * thick,
         attempts=solved.attempts,
         moes_load=scales.moes_load,
         moes_viscosity=scales.moes_viscosity,
@@ -279,5 +288,7 @@ def assemble(case: ContactCase, domain: Domain, solved: Verified) -> LineContact
         lubricant=case.lubricant,
         viscosity_law=scales.viscosity_law,
         compressible=case.compressible,
+        minimum_film_error=error.minimum * least * thick,
+        pressure_error=error.pressure * float(np.max(grid.P)) * case.hertz_pressure,
         _grid=grid,
     )

@@ -1,0 +1,86 @@
+"""How far a contact is from an infinitely fine grid, by a grid half or twice as fine.
+
+The errors of both films and of the pressure go with the square of the interval once the inlet is
+resolved. Three films of the nested grids tell whether it is: the differences then fall fourfold. A
+contact that does so is compared with half of its nodes, any other one with twice as many.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.steady.grid import FEWEST, MOST
+from tribodyn.ehl.steady.newton_engine import newton_engine
+from tribodyn.types import Array
+
+#: Fall of the differences that shows that the inlet is resolved, and that of the theory.
+_RESOLVED, _FOURFOLD = 0.33, 0.25
+#: Slowest fall that is reckoned with, and margin of the estimate.
+_SLOWEST, _MARGIN = 0.75, 1.3
+#: Further margin of the least film.
+_BETWEEN = 1.15
+
+
+class GridError(NamedTuple):
+    """Errors by the grid over film or greatest pressure; 1 where no other grid has a solution."""
+
+    central: float
+    minimum: float
+    pressure: float
+
+
+def grid_error(problem: ContactProblem, outcome: Outcome) -> GridError:
+    """Estimate the errors of a solution by one more grid."""
+    grid, films = outcome.grid, outcome.films
+    assert grid is not None  # a verified outcome has a grid
+    steps = np.abs(np.diff(films))
+    fall = float(steps[-1] / steps[-2]) if steps.size > 1 and steps[-2] > 0.0 else 1.0
+    n = grid.n
+    first = (n // 2, 2 * n) if fall < _RESOLVED or 2 * n >= MOST else (2 * n, n // 2)
+    for intervals in first:
+        other = _on(problem, grid, intervals)
+        if other is not None:
+            here, there = _figures(grid), _figures(other)
+            apart = np.abs(there - here) / here
+            if intervals < n:
+                slow = min(max(fall, _FOURFOLD), _SLOWEST)
+                factor = slow / (1.0 - slow)
+            else:
+                fall = apart[0] / (steps[-1] / here[0]) if steps.size and steps[-1] > 0.0 else 1.0
+                factor = 1.0 / (1.0 - min(max(float(fall), _FOURFOLD), _SLOWEST))
+            # The least film lies between nodes, and is never better known than the central one.
+            apart[1] = _BETWEEN * max(apart[0], apart[1])
+            central, least, pressure = (_MARGIN * factor * apart).tolist()
+            if problem.film_tolerance > 0.0 and steps.size:
+                central = float(steps[-1]) / (3.0 * films[-1])
+            return GridError(central, least, pressure)
+    return GridError(1.0, 1.0, 1.0)
+
+
+def _figures(grid: DiscreteContact) -> Array:
+    """Central and least film, and the greatest pressure."""
+    central = float(np.interp(0.0, grid.X, grid.H))
+    return np.array([central, np.min(grid.H[: grid.free + 1]), np.max(grid.P)])
+
+
+def _on(problem: ContactProblem, grid: DiscreteContact, intervals: int) -> DiscreteContact | None:
+    """The same contact on another grid, from its solution; None where that fails."""
+    if not FEWEST - 1 <= intervals < MOST or (intervals < grid.n and grid.n % 2):
+        return None
+    profile = problem.profile
+    if profile is not None:
+        here, there = (np.linspace(0.0, 1.0, count + 1) for count in (grid.n, intervals))
+        profile = np.ascontiguousarray(
+            np.interp(there, here, profile[:: (profile.size - 1) // grid.n])
+        )
+    outcome = newton_engine(
+        replace(
+            problem, nodes=intervals + 1, profile=profile, start=grid, film_tolerance=0.0,
+            coarsest=min(intervals, grid.n),
+        )
+    )  # fmt: skip
+    return outcome.grid if outcome.converged else None
