@@ -29,8 +29,11 @@ __all__ = [
     "quiet",
     "real_numbers",
     "require_between",
+    "require_flag",
+    "require_number",
     "require_one_of",
     "require_positive",
+    "require_whole",
     "warn",
 ]
 
@@ -285,11 +288,17 @@ def _brief(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
+#: No quantity in SI is as large, and powers of this one still are numbers of the machine.
+_ENDLESS = 1e60
+
+
 def _check(
     name: str, value: Any, unit: str, holds: Callable[[Any], Any], limit: str, remedy: str
 ) -> None:
     array = real_numbers(Argument(name), value)
-    bad = ~(np.isfinite(array) & holds(array))
+    if not array.size:
+        raise InputError(Problem(f"{name} is empty", Argument(name), "Wanted: numbers", remedy))
+    bad = ~((np.abs(array) < _ENDLESS) & holds(array))
     if np.any(bad):
         worst = np.atleast_1d(array)[np.atleast_1d(bad)][0]
         raise InputError(
@@ -365,8 +374,104 @@ def require_between(
     )
 
 
-def require_one_of(name: str, value: Any, known: Iterable[str]) -> None:
-    """Raise :class:`InputError` unless a value is one of the known words.
+#: No count is as large.
+_MOST = 1e9
+
+
+def require_whole(name: str, value: Any, least: int = 1) -> int:
+    """Return a whole number, or raise :class:`InputError`.
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : int
+        What was given; 3.0 counts as 3.
+    least : int
+        The least that is allowed.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InputError
+        If the value is no whole number or less than that.
+
+    Examples
+    --------
+    >>> require_whole("steps", 512)
+    512
+    """
+    number = real_numbers(Argument(name), value, "a whole number")
+    if number.ndim or not (float(number).is_integer() and least <= number <= _MOST):
+        why = f"A whole number from {least} to {_MOST:g}"
+        raise InputError(Problem(f"{name} = {_brief(value)}", Argument(name), why))
+    return int(number)
+
+
+def require_number(name: str, value: Any) -> float:
+    """Return one finite number, or raise :class:`InputError`.
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : float
+        What was given.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        If it is not a single finite real number.
+
+    Examples
+    --------
+    >>> require_number("tolerance", 1e-8)
+    1e-08
+    """
+    number = real_numbers(Argument(name), value, "a number")
+    if number.ndim or not np.abs(number) < _ENDLESS:
+        raise InputError(Problem(f"{name} = {_brief(value)}", Argument(name), "A finite number"))
+    return float(number)
+
+
+def require_flag(name: str, value: Any) -> bool:
+    """Return True or False, or raise :class:`InputError` for anything else.
+
+    Parameters
+    ----------
+    name : str
+        Argument name used in the message.
+    value : bool
+        What was given; 0 and 1 count as well.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InputError
+        If the value is neither.
+
+    Examples
+    --------
+    >>> require_flag("compressible", True)
+    True
+    """
+    if not isinstance(value, bool | int | np.bool_) or value not in (0, 1):
+        raise InputError(Problem(f"{name} = {_brief(value)}", Argument(name), "True or False"))
+    return bool(value)
+
+
+def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
+    """Return a value that is one of the known words, or raise :class:`InputError`.
 
     Parameters
     ----------
@@ -377,6 +482,10 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> None:
     known : iterable of str
         The words.
 
+    Returns
+    -------
+    str
+
     Raises
     ------
     InputError
@@ -385,9 +494,10 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> None:
     Examples
     --------
     >>> require_one_of("inlet", "flooded", ("flooded", "zero"))
+    'flooded'
     """
     words = list(known)
-    if value not in words:
+    if not isinstance(value, str) or value not in words:
         raise InputError(
             Problem(
                 what=f'{name} = "{value}"',
@@ -395,3 +505,4 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> None:
                 why=f"Known: {', '.join(words)}",
             )
         )
+    return value

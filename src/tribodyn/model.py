@@ -362,9 +362,9 @@ class Registry(Generic[T]):
         """Return the thing called ``name`` or raise :class:`InputError` naming the nearest."""
         if not self._searched:
             self._search()
-        if name in self._items:
+        if isinstance(name, str) and name in self._items:
             return self._items[name]
-        near = difflib.get_close_matches(name, self._items, n=1)
+        near = difflib.get_close_matches(str(name), self._items, n=1)
         raise InputError(
             Problem(
                 what=f'no {self.kind} is called "{name}"',

@@ -18,7 +18,7 @@ from tribodyn.dynamics.equations.program import compile_system, lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate, state_roots
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.errors import InputError, require_between
+from tribodyn.errors import InputError, real_numbers, require_between
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
@@ -37,7 +37,7 @@ _SHARE, _SHARE_WITH_GAP, _BUDGET, _LEAST = 0.015, 0.001, 3.0, 1e-5
 
 def read_atol(atol: Tolerance, size: int) -> Array:
     """Absolute tolerance of each state."""
-    values = np.atleast_1d(np.asarray(atol, dtype=float))
+    values = np.atleast_1d(real_numbers("argument atol", atol))
     if values.shape == (2,):
         values = np.repeat(values, size)
     if values.shape not in ((1,), (2 * size,)) or not np.all(np.isfinite(values) & (values > 0.0)):

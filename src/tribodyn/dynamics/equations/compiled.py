@@ -24,7 +24,7 @@ from tribodyn.dynamics.equations.step_limit import (
     refuse_unstable_step,
 )
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import InputError, require_positive, require_whole
 from tribodyn.types import Index, Mask
 
 
@@ -81,8 +81,7 @@ class Compiled:
 
 def require_steps(steps: int) -> None:
     """Refuse steps that are no whole number of at least one."""
-    if int(steps) != steps or steps < 1:
-        raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
+    require_whole("steps", steps)
 
 
 def compile_for(

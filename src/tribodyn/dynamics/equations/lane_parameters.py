@@ -7,7 +7,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError
+from tribodyn.errors import (
+    InputError,
+    real_numbers,
+)
 from tribodyn.types import Array
 
 
@@ -54,7 +57,7 @@ class LaneParameters:
     def __post_init__(self) -> None:
         lengths: dict[int, str] = {}
         for name in _NAMES:
-            values = np.array(getattr(self, name), dtype=float)
+            values = real_numbers(f"LaneParameters.{name}", getattr(self, name)).copy()
             if values.ndim > 1 or not np.all(np.isfinite(values)):
                 raise InputError(
                     f"{name} has the shape {values.shape}"

@@ -17,7 +17,11 @@ from tribodyn.dynamics.equations.load_friction import friction_tangent, push_wit
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError
+from tribodyn.errors import (
+    InputError,
+    require_number,
+    require_positive,
+)
 from tribodyn.types import Array, ComplexArray, Index
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.
@@ -97,6 +101,8 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
     >>> recommended_steps(System([[1.0]], [[0.0]], [[4e8]], [0.0]), 50.0)
     2048
     """
+    require_number("mesh_frequency", mesh_frequency)
+    require_positive("mesh_frequency", mesh_frequency, "Hz")
     _, nodes, _ = compile_system(system, _FEWEST)
     needed = largest_rate(system, nodes) / (_ACCURATE * mesh_frequency)
     return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), _FEWEST), _MOST))

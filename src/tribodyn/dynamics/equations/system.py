@@ -16,7 +16,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
-from tribodyn.errors import InputError, real_numbers, require_positive
+from tribodyn.errors import (
+    InputError,
+    real_numbers,
+    require_flag,
+    require_number,
+    require_positive,
+    require_whole,
+)
 from tribodyn.types import Array
 
 
@@ -70,6 +77,7 @@ class Contact:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
+        require_flag("damping_in_gap", self.damping_in_gap)
         where = "Contact.direction"
         if not varies(self.direction) and not real_numbers(where, self.direction).any():
             raise no_direction(where)
@@ -127,11 +135,13 @@ class LoadFriction:
     events: tuple[float, ...] = (0.0,)
 
     def __post_init__(self) -> None:
-        require_positive("load", self.load, "N")
-        require_positive("limit", self.limit, "")
+        for name, unit in (("load", "N"), ("limit", "")):
+            require_number(name, getattr(self, name))
+            require_positive(name, getattr(self, name), unit)
         object.__setattr__(self, "events", read_events(self.events, "LoadFriction.events"))
         contacts = (self.contacts,) if isinstance(self.contacts, int) else self.contacts
-        numbers = tuple(int(contact) for contact in contacts)
+        listed = real_numbers("LoadFriction.contacts", contacts, "whole numbers").reshape(-1)
+        numbers = tuple(require_whole("contacts", contact, 0) for contact in listed)
         if not numbers or min(numbers) < 0:
             raise InputError(
                 f"contacts = {numbers}",
@@ -224,9 +234,20 @@ class System:
                 )
             object.__setattr__(self, name, matrix)
         contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
-        object.__setattr__(self, "contacts", tuple(contacts))
         one = isinstance(self.frictions, LoadFriction)
-        object.__setattr__(self, "frictions", (self.frictions,) if one else tuple(self.frictions))
+        frictions = (self.frictions,) if one else self.frictions
+        for name, parts, kind in (
+            ("contacts", contacts, Contact), ("frictions", frictions, LoadFriction),
+            ("names", self.names, str),
+        ):  # fmt: skip
+            if not isinstance(parts, list | tuple) or not all(isinstance(p, kind) for p in parts):
+                raise InputError(
+                    f"{name} is no sequence of {kind.__name__}",
+                    where=f"System.{name}",
+                    remedy="Give a list or a tuple",
+                )
+        object.__setattr__(self, "frictions", tuple(frictions))
+        object.__setattr__(self, "contacts", tuple(contacts))
         names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
         if len(names) != size:
             raise InputError(f"{len(names)} names for {size} coordinates", where="System.names")

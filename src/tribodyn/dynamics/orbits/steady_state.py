@@ -24,7 +24,11 @@ from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.orbits.step_error import step_error
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, warn
+from tribodyn.errors import (
+    require_number,
+    require_whole,
+    warn,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -95,6 +99,8 @@ def steady_state(
     True
     """
     count = _whole_periods(periods)
+    require_number("mesh_frequency", mesh_frequency)
+    require_number("tolerance", tolerance)
     compiled = compile_for(system, mesh_frequency, steps)
     mapping = OrbitMap(compiled, mesh_frequency, count or 1)
     state = static_start(compiled) if start is None else read_start(system, start)
@@ -112,13 +118,9 @@ def steady_state(
 
 def _whole_periods(periods: int | str) -> int | None:
     """Check the number of mesh cycles; None stands for "auto"."""
-    if periods == "auto":
+    if isinstance(periods, str) and periods == "auto":
         return None
-    if isinstance(periods, str) or int(periods) != periods or periods < 1:
-        raise InputError(
-            f"periods = {periods!r}", where="argument periods", why='A whole number >= 1, or "auto"'
-        )
-    return int(periods)
+    return require_whole("periods", periods)
 
 
 def _told_step(mapping: OrbitMap, cost: float) -> str:

@@ -9,8 +9,12 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.simulate import read_start, require_cycles
-from tribodyn.errors import InputError, require_positive
+from tribodyn.dynamics.time.simulate import read_force, read_start, require_cycles
+from tribodyn.errors import (
+    InputError,
+    require_number,
+    require_positive,
+)
 from tribodyn.interrupt import in_threads
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
@@ -197,11 +201,13 @@ def solve_adaptive(
     >>> bool(abs(motion(2.5)[0] - np.cos(5.0)) < 3e-8)
     True
     """
+    require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
+    require_number("rtol", rtol)
     require_cycles(cycles)
     engine = adaptive_engine(system, mesh_frequency, cycles, rtol=rtol, atol=atol)
     state = read_start(system, start)[None, :]
-    extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    extra = read_force(system, extra_force)
     n = system.size
     lane = AdaptiveLanes(engine, np.array([1.0 / mesh_frequency]), extra[None, :])
 

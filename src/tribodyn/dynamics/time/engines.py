@@ -195,8 +195,9 @@ _BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
 
 def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
     """Begin to march with a method, or an engine of a case file; options of another are refused."""
-    name = ENGINES[method].method if method in ENGINES else method
-    if name not in _BEGIN:
+    known = isinstance(method, str)
+    name = ENGINES[method].method if known and method in ENGINES else method
+    if not known or name not in _BEGIN:
         raise InputError(
             f'method = "{method}"',
             where="argument method",

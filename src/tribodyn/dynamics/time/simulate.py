@@ -9,7 +9,14 @@ from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.dynamics.time.response import Response, build_response, later
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    real_numbers,
+    require_number,
+    require_positive,
+    require_whole,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -37,10 +44,23 @@ def read_start(system: System, start: tuple[ArrayLike, ArrayLike]) -> Array:
     return state
 
 
+def read_force(system: System, extra_force: ArrayLike | None) -> Array:
+    """Check an extra force; zero where none is given."""
+    if extra_force is None:
+        return np.zeros(system.size)
+    force = real_numbers(Argument("extra_force"), extra_force)
+    if force.shape != (system.size,) or not np.all(np.isfinite(force)):
+        raise InputError(
+            f"extra_force has the shape {force.shape}, or holds NaN or infinity",
+            where=Argument("extra_force"),
+            why=f"One finite force for each coordinate: ({system.size},)",
+        )
+    return force
+
+
 def require_cycles(cycles: int) -> None:
     """Raise :class:`InputError` unless ``cycles`` is a whole number of at least one."""
-    if int(cycles) != cycles or cycles < 1:
-        raise InputError(f"cycles = {cycles}", where="argument cycles", why="A whole number >= 1")
+    require_whole("cycles", cycles)
 
 
 def simulate(
@@ -118,13 +138,15 @@ def simulate(
     True
     """
     require_cycles(cycles)
+    require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    extra = read_force(system, extra_force)
     state = read_start(system, start)[None, :]
     frequency = np.array([float(mesh_frequency)])
     setting = Setting(system, frequency, cycles, steps, extra[None, :])
     marcher = prepare(method, setting, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
-    skipped = cycles - min(kept or cycles, cycles)
+    kept = cycles if kept is None else require_whole("kept", kept)
+    skipped = cycles - min(kept, cycles)
     record = np.empty(((cycles - skipped) * steps + 1, 2 * system.size, 1))
     progress.start("Marching over time", cycles)
     elapsed = 0

@@ -16,7 +16,17 @@ from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.stiffness.film_stiffness import central_film_slope
-from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    Problem,
+    TribodynError,
+    real_numbers,
+    require_flag,
+    require_number,
+    require_positive,
+    warn,
+)
 from tribodyn.interrupt import Threads
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
@@ -154,6 +164,8 @@ def solve_line_contacts(
     array([1.14, 1.02])
     """
     options = SolverOptions.among(locals())
+    require_number("length", length)
+    require_flag("stiffness", stiffness)
     require_positive("length", length, "m")
     shape, columns = _broadcast(load_per_width, equivalent_radius, entrainment_speed)
 
@@ -204,8 +216,11 @@ def _gather(
 
 def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
     try:
-        arrays = np.broadcast_arrays(*(np.asarray(item, dtype=float) for item in arguments))
-    except (TypeError, ValueError) as error:
+        names = ("load_per_width", "equivalent_radius", "entrainment_speed")
+        arrays = np.broadcast_arrays(*map(real_numbers, map(Argument, names), arguments))
+    except InputError:
+        raise
+    except ValueError as error:
         shapes = ", ".join(str(np.shape(item)) for item in arguments)
         raise InputError(
             f"the shapes {shapes} of load, radius and speed do not fit",

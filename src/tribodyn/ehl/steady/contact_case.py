@@ -8,7 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, require_between, require_one_of, require_positive
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    real_numbers,
+    require_between,
+    require_flag,
+    require_one_of,
+    require_positive,
+)
 from tribodyn.lubricant import Lubricant
 from tribodyn.lubricant.roelands import ROELANDS_PRESSURE
 from tribodyn.types import Array
@@ -58,6 +66,7 @@ def contact_scales(
 ) -> ContactScales:
     """Numbers of the equations from those of Moes; oil of Roelands, Dowson and Higginson (1966)."""
     require_one_of("viscosity_law", viscosity_law, LAWS)
+    require_flag("compressible", compressible)
     if L == 0.0:
         viscosity_law = "isoviscous"
     oil = np.zeros(6)
@@ -109,14 +118,7 @@ class ContactCase:
 
 def _scalar(name: str, value: Any, unit: str) -> float:
     """One finite number, or a message that names the field."""
-    try:
-        number = np.asarray(value, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{name} = {value!r}",
-            where=f"argument {name}",
-            why=f"it must be a number {unit}".rstrip(),
-        ) from error
+    number = real_numbers(Argument(name), value, f"a number {unit}".rstrip())
     if number.ndim:
         raise InputError(
             f"{name} has the shape {number.shape}",
@@ -152,7 +154,7 @@ def si_case(
     require_between("effective_modulus", modulus, 1e5, 1e13, "Pa", remedy="220 GPa are 2.2e11 Pa")
     _check_lubricant(lubricant)
     M, L = moes_numbers(load, radius, speed, lubricant, modulus)
-    if viscosity_law == "isoviscous":
+    if require_one_of("viscosity_law", viscosity_law, LAWS) == "isoviscous":
         L = 0.0
     pressure = math.sqrt(load * modulus / (2.0 * math.pi * radius))
     half_width = math.sqrt(8.0 * load * radius / (math.pi * modulus))
@@ -181,6 +183,7 @@ def moes_case(
     compressible: bool,
 ) -> ContactCase:
     """Check a contact that is given by the numbers of Moes."""
+    require_one_of("viscosity_law", viscosity_law, LAWS)
     load, viscosity = _scalar("M", M, ""), _scalar("L", L, "")
     index = _scalar("pressure_viscosity_index", pressure_viscosity_index, "")
     alpha = _scalar("pressure_viscosity_coefficient", pressure_viscosity_coefficient, "[1/Pa]")

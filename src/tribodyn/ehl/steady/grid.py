@@ -80,7 +80,7 @@ def inlet_tail(start: float, film: float, lam: float) -> tuple[float, float]:
 
 def choose_domain(domain: Any, inlet: str, film: float, scales: ContactScales) -> Domain:
     """Extent of the grid: by the film, or as stated."""
-    if inlet not in INLETS:
+    if not isinstance(inlet, str) or inlet not in INLETS:
         raise InputError(
             f"inlet = {inlet!r}",
             where="argument inlet",
@@ -158,6 +158,8 @@ def _too_short(start: float, end: float, film: float) -> InputError:
 
 #: Nodes of a grid: fewest and most.
 FEWEST, MOST = 65, 16385
+#: Numbers beyond this are none of nodes.
+_ENDLESS = 1e9
 #: Intervals of the coarsest grid at most, so that halving leads to a grid that is quickly solved.
 _COARSEST = 255
 
@@ -166,7 +168,12 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
     """Nodes of the finest grid, and whether coarser ones may do."""
     if isinstance(nodes, str) and nodes == "auto":
         return MOST, True
-    if isinstance(nodes, bool) or not isinstance(nodes, Real) or not float(nodes).is_integer():
+    if (
+        isinstance(nodes, bool)
+        or not isinstance(nodes, Real)
+        or not -_ENDLESS < nodes < _ENDLESS
+        or not float(nodes).is_integer()
+    ):
         raise InputError(
             f"nodes = {nodes!r}",
             where="argument nodes",

@@ -16,7 +16,14 @@ from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, estimate_film
 from tribodyn.ehl.steady.grid_error import grid_error
 from tribodyn.ehl.steady.rescue import solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
-from tribodyn.errors import InputError, require_between, warn
+from tribodyn.errors import (
+    InputError,
+    real_numbers,
+    require_between,
+    require_number,
+    require_whole,
+    warn,
+)
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 
@@ -239,9 +246,13 @@ def solve_line_contact_moes(
 
 def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution:
     """Solve a checked contact without warnings."""
+    for name in ("tolerance", "flux_tolerance", "film_tolerance"):
+        require_number(name, getattr(options, name))
     require_between("tolerance", options.tolerance, 1e-13, 1e-2)
     require_between("flux_tolerance", options.flux_tolerance, 1e-11, 0.1)
     require_between("film_tolerance", options.film_tolerance, 1e-6, 0.1)
+    if options.levels is not None:
+        require_whole("levels", options.levels, 2)
     count, automatic = choose_nodes(options.nodes)
     scales = case.scales
     film = estimate_film(scales.moes_load, scales.moes_viscosity, scales.density_ratio)
@@ -279,7 +290,7 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
             why="it must give the heights over the position",
             remedy="Make it by tribodyn.ehl.RoughnessProfile, or give a function",
         )
-    heights = np.asarray(profile(position), dtype=float)
+    heights = real_numbers("argument profile", profile(position), "heights [m]")
     if heights.shape != position.shape or not np.all(np.isfinite(heights)):
         raise InputError(
             f"profile returns heights of shape {heights.shape} for {position.size} "
