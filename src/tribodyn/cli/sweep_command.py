@@ -66,7 +66,7 @@ def sweep(
     with progress_bar() as progress:
         from tribodyn.study.studies.sweep import sweep as compute
 
-        found = compute(ready, ranges, partial=True, by="sweep", progress=progress)
+        found = compute(ready, ranges, partial=True, by="sweep", progress=progress, members=members)
     if not found.complete:
         tell(
             f"interrupted: {len(found.points)} of {found.failed.size} values are done and being "
