@@ -208,9 +208,10 @@ def clear_leftovers(target: Path) -> None:
 def _clear_members(place: Path) -> None:
     """Remove members of a study that was saved after the last of them: it is complete."""
     folder = place.with_name(f".{place.name}.members")
-    if folder.is_dir() and place.is_dir() and not _is_held(folder):
-        if place.stat().st_mtime_ns > (folder / "members.jsonl").stat().st_mtime_ns:
-            shutil.rmtree(folder)
+    if not folder.is_dir() or not place.is_dir() or _is_held(folder):
+        return
+    if place.stat().st_mtime_ns > (folder / "members.jsonl").stat().st_mtime_ns:
+        shutil.rmtree(folder)
 
 
 def _is_unfinished(entry: Path) -> bool:

@@ -41,7 +41,8 @@ class Members:
         self.target, self.anew = target, anew
         self.folder: Path | None = None
         self._found: dict[str, Any] = {}
-        self._held, self._file = -1, None  # type: tuple[int, BinaryIO | None]
+        self._held = -1
+        self._file: BinaryIO | None = None
         self._writing = threading.Lock()
 
     def begin(self, identity: Mapping[str, Any]) -> Members:
@@ -119,17 +120,19 @@ class Members:
             self._held = -1
 
     def discard(self) -> None:
-        """Remove what is kept: the study is saved."""
+        """Remove what is kept."""
         if self.folder is not None:
             aside = self.folder.with_suffix(f".{secrets.token_hex(4)}.part")
             self.folder.rename(aside)
             shutil.rmtree(aside, ignore_errors=True)
         self.close()
 
-    def outlast(self) -> None:
-        """Keep what there is although an unfinished study is saved: it is newer than that."""
-        if self.folder is not None:
-            os.utime(self.folder / NAME)
+    def close_after(self, complete: bool) -> None:
+        """Discard what is kept of a study that is saved, unless it was interrupted."""
+        if complete:
+            self.discard()
+        elif self.folder is not None:
+            os.utime(self.folder / NAME)  # It is newer than what is saved, and stays.
 
     def __enter__(self) -> Members:
         """Use it in a block."""

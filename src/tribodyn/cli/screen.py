@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Problem
+
+if TYPE_CHECKING:
+    from tribodyn.members import Members
 
 
 def say(text: str) -> None:
@@ -57,6 +60,18 @@ def show_problems(problems: Sequence[Problem]) -> None:
         tell(f"{len(problems)} faults found.")
 
 
+def show_resumed(members: Members) -> None:
+    """Say on stderr how much of a study an earlier process has finished.
+
+    Parameters
+    ----------
+    members : Members
+        What was kept of it.
+    """
+    if len(members):
+        tell(f"{len(members)} finished parts of this study were kept and are not computed again.")
+
+
 def show_warnings(warnings: Iterable[tuple[str, str]]) -> None:
     """Write model warnings to stderr.
 
@@ -67,6 +82,26 @@ def show_warnings(warnings: Iterable[tuple[str, str]]) -> None:
     """
     for code, message in warnings:
         tell(f"warning [{code}]: {message}")
+
+
+def figures(values: Mapping[str, float]) -> str:
+    """Lay out summary figures by topic: name, value, meaning.
+
+    Parameters
+    ----------
+    values : mapping of str to float
+        Names and SI values.
+
+    Returns
+    -------
+    str
+    """
+    from tribodyn.study.pipeline.summary import SUMMARY, by_topic
+
+    rows = {n: [n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in values.items()}
+    lines = dict(zip(rows, table(list(rows.values())).splitlines(), strict=True))
+    topics = by_topic(values).items()
+    return "\n".join("\n".join([topic, *(lines[n] for n in names)]) for topic, names in topics)
 
 
 def table(rows: Sequence[Sequence[str]], *, indent: str = "  ") -> str:

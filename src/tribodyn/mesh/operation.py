@@ -18,9 +18,8 @@ from tribodyn.mesh.cycle import PathPositions, path_positions
 from tribodyn.mesh.film.film_columns import as_columns, film_places
 from tribodyn.mesh.sharing import LEAST_SHARE, teeth_of
 from tribodyn.mesh.tooth_contact import ToothContact
-from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, quantity, record
+from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, Mask
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
@@ -81,15 +80,6 @@ class FilmOverOperation(Record):
         film = self.minimum_film if self.minimum_film is not None else self.central_film
         least = "no film" if film is None else f"films from {np.nanmin(film) * 1e6:.4g} um"
         return "FilmOverOperation({} torques, {} speeds, {} positions, {})".format(*shape, least)
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        for place in (parts.variables, parts.coordinates):
-            for name, (dims, values, _) in place.items():
-                known = QUANTITIES[name]
-                told = {"units": known.unit or "1", "long_name": known.meaning}
-                place[name] = (dims, values, told)
-        return parts
 
 
 def film_over_operation(

@@ -1,106 +1,41 @@
-"""A mesh table as a labelled data set, and to and from a netCDF file."""
+"""Mesh tables in files: read from netCDF, and written as text for other programs."""
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
-from dataclasses import MISSING, Field, asdict, fields
+from dataclasses import MISSING, Field, fields
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, OutputExistsError, quiet
+from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import whole
-from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
-from tribodyn.mesh.cycle import COORDINATES, NoGears
+from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.gears import COORDINATES, NoGears, read_pair
 from tribodyn.mesh.grid import PhaseGrid
-from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.stored import read_dataset, write_dataset
+from tribodyn.record import labels_of
+from tribodyn.stored import read_dataset
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-
-_FORMAT = "tribodyn mesh table 3"
-#: A table without gears, which earlier versions cannot read.
-_FORMAT_WITHOUT_GEARS = "tribodyn mesh table 4"
+#: What the attribute ``format`` of a file says; earlier versions cannot read one without gears.
+FORMAT, FORMAT_WITHOUT_GEARS = "tribodyn mesh table 3", "tribodyn mesh table 4"
 #: Tables of independent pairs, as they were written before; the first without a film in series.
 _EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
-#: Columns whose quantity has another name in the nomenclature.
-_QUANTITY = {
-    "stiffness": "pair_stiffness",
-    "pinion_curvature_radius": "curvature_radius",
-    "wheel_curvature_radius": "curvature_radius",
-    "phase": "mesh_phase",
-}
-#: Second dimension of columns that are not over the pairs.
-_OVER = {"ramp_deflection": "ramp", "ramp_stiffness": "ramp", "corner_share": "end"}
-#: Dimensions of columns that are not over knots and pairs.
-_RANKS = {"static_transmission_error": (1,), "mesh_stiffness_tangent": (1,), "direction": (1, 2),
-          "friction_direction": (3,), "unloaded_transmission_error": (1,)}  # fmt: skip
-#: Films that are not known everywhere; and all that a table of another program has to know.
-_MAY_LACK = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
-_OF_THE_FORCE = (*_OVER, *_RANKS, "stiffness", "tooth_stiffness", "load_share", "normal_force",
-                 "friction_coefficient", "sliding_direction")  # fmt: skip
+#: Films that are not known everywhere, and all that a table of another program has to know.
+_FILMS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
+_OF_THE_FORCE = (
+    "stiffness", "tooth_stiffness", "corner_share", "static_transmission_error", "ramp_deflection",
+    "mesh_stiffness_tangent", "ramp_stiffness", "load_share", "normal_force", "sliding_direction",
+    "friction_coefficient", "friction_direction", "unloaded_transmission_error",
+)  # fmt: skip
 _MOST_KNOTS = 10**6
-_DERIVED = ("mesh_stiffness", "friction_sum", "friction_moment_pinion", "friction_moment_wheel")
-
-
-def to_xarray(table: MeshTable) -> xarray.Dataset:
-    """Convert a mesh table to a labelled data set."""
-    import xarray
-
-    variables: dict[str, Any] = {}
-    attributes: dict[str, Any] = {"format": _FORMAT, "mesh_order": table.mesh_order}
-    if table.gears is None:
-        attributes["format"] = _FORMAT_WITHOUT_GEARS
-    else:
-        attributes["gear_pair"] = _write_pair(table.gears.pair)
-    for field in fields(table):
-        value = getattr(table, field.name)
-        if field.name == "direction" and table.gears is not None:
-            continue  # It follows from the gears.
-        if isinstance(value, np.ndarray):
-            variables[field.name] = (_dimensions(field.name, value), value, _describe(field.name))
-        elif isinstance(value, float | str):
-            attributes[field.name] = value
-    for name in _DERIVED:
-        variables[name] = (("knot",), getattr(table, name), _describe(name))
-    coordinates = {
-        "phase": (("knot",), table.phase, _describe("phase")),
-        "event_phase": (("event",), np.array(table.event_phases), _describe("phase")),
-        "intervals": (("event",), np.array(table.grid.intervals)),
-    }
-    return xarray.Dataset(variables, coordinates, attributes)
-
-
-def _dimensions(name: str, values: Array) -> tuple[str, ...]:
-    if name == "direction":
-        return ("knot", "coordinate")[-values.ndim :]
-    return ("knot", _OVER.get(name, "pair"), "coordinate")[: values.ndim]
-
-
-def _describe(column: str) -> dict[str, str]:
-    quantity = QUANTITIES[_QUANTITY.get(column, column)]
-    return {"units": quantity.unit or "1", "long_name": quantity.meaning}
-
-
-def save(table: MeshTable, path: str | PathLike[str]) -> None:
-    """Write a mesh table to a netCDF file."""
-    if Path(path).exists():
-        raise OutputExistsError(
-            f"{path} exists already",
-            where="argument path",
-            why="An existing file is never overwritten",
-            remedy="Choose another name or remove the file",
-        )
-    with whole(Path(path)) as partial:
-        write_dataset(to_xarray(table), partial)
 
 
 def is_mesh_table(path: Path) -> bool:
@@ -111,73 +46,64 @@ def is_mesh_table(path: Path) -> bool:
         return False
 
 
-def load(path: str | PathLike[str]) -> MeshTable:
-    """Read a mesh table from a netCDF file."""
+def stored_values(path: str | PathLike[str]) -> dict[str, Any]:
+    """Fields of the mesh table in a netCDF file."""
     try:
         data = read_dataset(path)
     except InputError as error:
         raise _unreadable(path, f"{error.problems[0].why}. {error.problems[0].remedy}") from None
-    if data.attrs.get("format") not in (_FORMAT, _FORMAT_WITHOUT_GEARS, *_EARLIER):
+    if data.attrs.get("format") not in (FORMAT, FORMAT_WITHOUT_GEARS, *_EARLIER):
         raise _unreadable(path, f"its format is {data.attrs.get('format', 'not named')}")
     try:
         values = _values(data)
         if data.attrs["format"] in _EARLIER:
             values = _earlier(values)
         _check(values)
-        return MeshTable(**values)
     # What a damaged file holds makes its readers stumble in many ways.
     except Exception as error:
         told = error.args[0] if isinstance(error, KeyError) and error.args else error
         raise _unreadable(path, f"It is damaged: {told or type(error).__name__}") from None
+    return values
 
 
 def _values(data: xarray.Dataset) -> dict[str, Any]:
     """Fields of a table as a data set has them."""
-    for name in ("event_phase", "intervals"):
-        if name not in data.variables:
-            raise ValueError(f"{name} is missing")
+    if absent := [name for name in ("event_phase", "intervals") if name not in data.variables]:
+        raise ValueError(f"{absent[0]} is missing")
     grid = PhaseGrid(
         tuple(float(value) for value in data["event_phase"].values),
         tuple(int(value) for value in data["intervals"].values),
     )
     told = data.attrs.get("gear_pair")
-    if told is None and data.attrs["format"] != _FORMAT_WITHOUT_GEARS:
+    if told is None and data.attrs["format"] != FORMAT_WITHOUT_GEARS:
         raise ValueError("gear_pair is missing")
-    values: dict[str, Any] = {
-        "grid": grid,
-        "gear_pair": NoGears() if told is None else _read_pair(told),
-    }
-    for field in fields(MeshTable):
+    pair = read_pair(told) if told is not None else NoGears()
+    values: dict[str, Any] = {"grid": grid, "gear_pair": pair}
+    for field in fields(MeshColumns):
         if field.name in data.variables:
-            column = data[field.name]
-            if column.dims != _dimensions(field.name, column.values):
-                raise ValueError(f"{field.name} is over {', '.join(map(str, column.dims))}")
-            values[field.name] = column.values
+            values[field.name] = data[field.name].values
         elif field.name not in values and (told is None or _is_required(field)):
             values[field.name] = _plain(data.attrs.get(field.name))
     return values
 
 
 def _check(values: Mapping[str, Any]) -> None:
-    """Refuse a column that is missing, has another shape, or is not finite where it has to be."""
-    grid = values["grid"]
-    _check_grid(grid)
-    shape = values["stiffness"].shape
-    shapes = {"knot": grid.phase.size, "pair": shape[-1], "end": 2, "coordinate": len(COORDINATES)}
+    """Refuse what is missing, has another shape, or is not finite where it has to be."""
+    _check_grid(values["grid"])
+    sizes = {"knot": values["grid"].phase.size, "end": 2, "coordinate": len(COORDINATES)}
     foreign = isinstance(values["gear_pair"], NoGears)
-    for field in fields(MeshTable):
-        name, value = field.name, values.get(field.name)
-        kind = str(field.type)
-        if kind.startswith(("Array", "Mask")):
-            if value is None:
-                if "None" not in kind and _is_required(field):
-                    raise ValueError(f"{name} is missing")
-                continue
-            _check_column(name, value, shapes, foreign)
-        elif kind in ("float", "int", "str") and (name in values or _is_required(field)):
-            sound = isinstance(value, str) if kind == "str" else isinstance(value, int | float)
-            if not sound or (kind != "str" and not math.isfinite(float(value or 0))):
-                raise ValueError(f"{name} is {value!r}")
+    for field in fields(MeshColumns):
+        name, value, kind = field.name, values.get(field.name), str(field.type)
+        labels = _LABELS.get(name)
+        if value is None and ("None" in kind or not _is_required(field)):
+            continue
+        if labels is None or not labels.dims:
+            _check_fact(name, value, kind, sizes)
+        elif not isinstance(value, np.ndarray) or not value.size:
+            raise ValueError(f"{name} is missing")
+        else:
+            lacks = name in _FILMS or (foreign and name not in _OF_THE_FORCE)
+            _check_column(name, value, labels.dims, sizes, lacks)
 
 
 def _check_grid(grid: PhaseGrid) -> None:
@@ -188,15 +114,26 @@ def _check_grid(grid: PhaseGrid) -> None:
         raise ValueError(f"intervals are {counts.min()} to {counts.max()}")
 
 
-def _check_column(name: str, value: Any, sizes: dict[str, int], foreign: bool) -> None:
-    over = _dimensions(name, value)
-    shape = tuple(sizes.setdefault(*pair) for pair in zip(over, value.shape, strict=True))
-    wanted = _RANKS.get(name, (2,))
-    if value.shape != shape or value.ndim not in wanted or not value.size:
+def _check_fact(name: str, value: Any, kind: str, sizes: Mapping[str, int]) -> None:
+    if kind in ("float", "int"):
+        sound = isinstance(value, int | float) and math.isfinite(value)
+    elif name == "direction":
+        shapes = ((sizes["coordinate"],), (sizes["knot"], sizes["coordinate"]))
+        sound = np.shape(value) in shapes and bool(np.isfinite(value).all())
+    else:
+        sound = kind != "str" or isinstance(value, str)
+    if not sound:
+        raise ValueError(f"{name} is {value!r}")
+
+
+def _check_column(
+    name: str, value: Array, dims: tuple[str, ...], sizes: dict[str, int], lacks: bool
+) -> None:
+    shape = tuple(sizes.setdefault(*pair) for pair in zip(dims, value.shape, strict=False))
+    if value.shape != shape or len(dims) != value.ndim:
         raise ValueError(f"{name} has the shape {value.shape}")
     if value.dtype.kind != ("b" if name == "in_contact" else "f"):
         raise ValueError(f"{name} has values of the kind {value.dtype}")
-    lacks = name in _MAY_LACK or (foreign and name not in _OF_THE_FORCE)
     if value.dtype.kind == "f" and not lacks and not np.isfinite(value).all():
         raise ValueError(f"{name} is not finite")
 
@@ -236,22 +173,61 @@ def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
     )
 
 
-def _write_pair(pair: SpurPair) -> str:
-    return json.dumps(asdict(pair))
+#: Columns of a text file that stand once, for each ramp, for each contact, for each coordinate.
+OF_THE_MESH = (
+    "phase",
+    "static_transmission_error",
+    "unloaded_transmission_error",
+    "mesh_stiffness_tangent",
+)
+OF_RAMPS, DIRECTIONS = ("ramp_deflection", "ramp_stiffness"), ("direction", "friction_direction")
+_LABELS = labels_of(MeshColumns)
+OF_CONTACTS = tuple(
+    name
+    for name, labels in _LABELS.items()
+    if labels.dims in (("knot", "pair"), ("knot", "end")) and name != "normal_force"
+)
+UNITS = {"phase": ""} | {
+    name: QUANTITIES[_LABELS[name].of or name if name in _LABELS else name].unit
+    for name in (*OF_THE_MESH[1:], *OF_RAMPS, *OF_CONTACTS, *DIRECTIONS)
+}
+#: What holds for the whole file.
+_OF_THE_FILE = (
+    "base_radius_pinion",
+    "base_radius_wheel",
+    "pinion_torque",
+    "pinion_speed",
+    "maximum_single_pair_stiffness",
+)
+FACTS = {name: QUANTITIES[name].unit for name in _OF_THE_FILE}
 
 
-def _read_pair(text: str) -> SpurPair:
-    values = json.loads(text)
-    with quiet():
-        # Whoever made the table has seen what there was to say about these gears.
-        for name in ("pinion", "wheel"):
-            rack = BasicRack(**values[name].pop("rack"))
-            modification = _read_modification(values[name].pop("modification", {}))
-            values[name] = SpurGear(rack=rack, modification=modification, **values[name])
-        return SpurPair(**values)
-
-
-def _read_modification(values: dict[str, Any]) -> FlankModification:
-    """Modification of a gear; tables from before there were any have none."""
-    chart = values.pop("profile_map", None)
-    return FlankModification(profile_map=ProfileMap(**chart) if chart else None, **values)
+def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
+    """Write a mesh table as CSV, of which :mod:`tribodyn.mesh.table_file` makes an equal one."""
+    place = Path(path)
+    if place.exists():
+        why = "An existing file is never overwritten"
+        raise OutputExistsError(f"{path} exists already", "argument path", why)
+    facts = {name: float(getattr(table, name)) for name in FACTS}
+    columns: dict[str, Array] = {"phase": table.phase}
+    for name, unit in UNITS.items():
+        values = table.phase if name == "phase" else getattr(table, name)
+        if values is None or (name == "direction" and values.ndim == 1):
+            continue
+        flat = np.asarray(values, dtype=float).reshape(table.phase.size, -1)
+        if name in DIRECTIONS:
+            heads = [f"{name}_{c}" for c in COORDINATES]
+            if name != "direction":
+                heads = [f"{h}_{i + 1}" for i in range(flat.shape[1] // 6) for h in heads]
+        else:
+            several = name not in OF_THE_MESH
+            heads = [f"{name}_{i + 1}" if several else name for i in range(flat.shape[1])]
+        columns |= {
+            f"{head} [{unit or '-'}]" if name != "phase" else head: flat[:, number]
+            for number, head in enumerate(heads)
+        }
+    lines = [f"# {name} = {value!r} {FACTS[name]}" for name, value in facts.items()]
+    lines.append(",".join(columns))
+    lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
+    with whole(place) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -73,7 +73,7 @@ def identity(study: str, case: Case, over: Any, **options: Any) -> dict[str, Any
     """What tells a study from others: only members of the same one are taken for finished."""
     import tribodyn
 
-    text = json.dumps([case.to_toml(), over], default=str)
+    text = json.dumps(over, default=str)
     return {
         "study": study, "version": tribodyn.__version__, "options": options,
         "case": hashlib.sha256(case.to_toml().encode()).hexdigest(),
