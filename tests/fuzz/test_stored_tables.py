@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from pathlib import Path
@@ -12,6 +11,7 @@ import h5py
 import numpy as np
 import pytest
 
+from fuzz.limits import at_most
 from tribodyn import load_case
 from tribodyn.errors import InputError, quiet
 from tribodyn.mesh import MeshTable
@@ -60,7 +60,7 @@ def _without_checksum(file: h5py.File) -> None:
 
 def _rewrite(path: Path, rng: random.Random) -> None:
     """Damage one variable or attribute through the library that writes such files."""
-    with h5py.File(path, "r+") as file:
+    with h5py.File(path, "r+") as file, np.errstate(all="ignore"):
         if rng.random() < 0.6:
             _without_checksum(file)
         names = [name for name in file if file[name].shape]
@@ -109,14 +109,11 @@ def _rewrite(path: Path, rng: random.Random) -> None:
 
 
 def _read(loader: Callable[[Path], object], path: Path) -> object | None:
-    begin = time.process_time()
     try:
-        with quiet():
+        with quiet(), at_most(5.0):
             return loader(path)
     except InputError as error:
         told = str(error)
-    finally:
-        assert time.process_time() - begin < 5.0
     assert len(told) < 5000
     assert str(path) in told
     return None
@@ -179,4 +176,5 @@ def test_damaged_tables_as_text(draws: Draws, table: MeshTable, tmp_path: Path) 
             if rng.random() < 0.3
             else "\n".join(damaged).encode()
         )
-        _read(read_table_file, path)
+        found = _read(read_table_file, path)
+        assert found is None or np.isfinite(found.columns["stiffness"]).all()

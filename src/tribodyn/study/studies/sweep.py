@@ -78,7 +78,7 @@ def sweep(
     """
     axes = read_axes(case, _asked(over, between, points), by=by)
     grid = list(product(*(axis.values for axis in axes)))
-    kept = (members or Members()).begin(
+    kept = (Members() if members is None else members).begin(
         identity("sweep", case, [(axis.key, axis.values) for axis in axes])
     )
     done = {
