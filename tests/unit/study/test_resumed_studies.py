@@ -69,7 +69,7 @@ def test_a_bifurcation_goes_on(
     options: dict[str, Any] = {"sweep": direction, "transient": 40, "cycles": 8, "keep": 4}
     between = {"operation.speed": ("900 rpm", "3000 rpm"), "operation.torque": (60.0, 120.0)}[over]
     whole = bifurcation(case, over, between, 6, **options)
-    for after in (0, 3, 9):
+    for after in (0, 3, 5):
         with monkeypatch.context() as patch, Members(tmp_path / "b") as members:
             _dying(patch, after)
             with pytest.raises(_KilledError):
@@ -82,8 +82,10 @@ def test_a_bifurcation_goes_on(
     )
     with Members(tmp_path / "b") as members:
         found = bifurcation(case, over, between, 6, members=members, **options)
-        assert len(members) >= 12
-    assert sum(taken) <= (16 if over == "operation.torque" or direction == "independent" else 30)
+        assert len(members) >= 8
+    motions = 24 if direction == "both" else 12
+    if (over, direction) != ("operation.speed", "both"):  # There stretches are joined, too.
+        assert sum(taken) == motions - len(members)
     assert found.verdicts() == whole.verdicts()
     assert found.period.tolist() == whole.period.tolist()
     assert found.rms == pytest.approx(whole.rms, rel=1e-5)
