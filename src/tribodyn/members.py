@@ -41,7 +41,7 @@ class Members:
         self.target, self.anew = target, anew
         self.folder: Path | None = None
         self._found: dict[str, Any] = {}
-        self._held = -1
+        self._held, self._kept = -1, False
         self._file: BinaryIO | None = None
         self._writing = threading.Lock()
 
@@ -99,6 +99,7 @@ class Members:
         """Keep a finished member."""
         if self._file is not None:
             self._write({"name": name, "value": value})
+            self._kept = True
 
     def _write(self, line: Mapping[str, Any]) -> None:
         text = json.dumps(line, default=lambda array: array.tolist()).encode()
@@ -139,7 +140,9 @@ class Members:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close it; what is kept stays."""
+        """Close it; what is kept stays, if there is anything."""
+        if self._file is not None and not (self._kept or self._found):
+            self.discard()
         self.close()
 
 

@@ -16,8 +16,6 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
-from tribodyn.errors import shortened
-
 __all__ = [
     "SPELLINGS",
     "UnitProblemError",
@@ -136,7 +134,7 @@ def _plain(unit: str) -> str:
     """Rewrite the field's spellings plainly: ``mPa s`` -> ``mPa*s``, ``kg mm2`` -> ``kg*mm^2``."""
     text = unit.strip()
     if len(text) > _LONGEST:
-        raise UnitProblemError(f'"{shortened(text, 40)}" is longer than any unit')
+        raise UnitProblemError(f'"{text[:40]}..." is longer than any unit')
     for sign, plain in _SIGNS.items():
         text = text.replace(sign, plain)
     text = _WORD.sub(lambda word: f" {SPELLINGS[word.group()]} ", text)
@@ -264,7 +262,7 @@ def split(text: str) -> tuple[float, str]:
     if meant := readings(text):
         raise UnitProblemError(f'"{text}": {NUMBERS}; write {quoted(meant)}')
     if len(text) > _LONGEST:
-        told = f"{shortened(text, 40)!r} has {len(text)} characters"
+        told = f'"{text[:40]}..." has {len(text)} characters'
         raise UnitProblemError(f"{told}, and a quantity at most {_LONGEST}")
     if any(each.isdecimal() and not each.isascii() for each in text):
         raise UnitProblemError(f'"{text}": the digits of a number are 0 to 9')

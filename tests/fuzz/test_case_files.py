@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from fuzz.limits import at_most
+from fuzz.damage import at_most
 from tribodyn import load_case
 from tribodyn.cases.catalogue import case_files
 from tribodyn.errors import TribodynError, quiet

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pytest
 
-from fuzz.limits import at_most
+from fuzz.damage import at_most, cut, flip
 from tribodyn import load_case
 from tribodyn.errors import InputError, quiet
 from tribodyn.mesh import MeshTable
@@ -33,25 +33,6 @@ def stored(table: MeshTable, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("tables") / "mesh.nc"
     table.save(path)
     return path
-
-
-def _flip(content: bytes, rng: random.Random) -> bytes:
-    damaged = bytearray(content)
-    for _ in range(rng.choice((1, 1, 2, 30))):
-        damaged[rng.randrange(len(damaged))] ^= 1 << rng.randrange(8)
-    return bytes(damaged)
-
-
-def _cut(content: bytes, rng: random.Random) -> bytes:
-    start = rng.randrange(len(content))
-    kind = rng.randrange(4)
-    if kind == 0:
-        return content[:start]
-    if kind == 1:
-        return content[:start] + content[start + rng.randrange(1, 500) :]
-    if kind == 2:
-        return content[:start] + bytes(rng.randrange(1, 4000)) + content[start + 4000 :]
-    return content + bytes(rng.randrange(1, 4000))
 
 
 def _without_checksum(file: h5py.File) -> None:
@@ -133,7 +114,7 @@ def test_damaged_bytes_of_a_mesh_table(
 ) -> None:
     content, path = stored.read_bytes(), tmp_path / "mesh.nc"
     for rng in draws(200):
-        path.write_bytes(rng.choice((_flip, _flip, _cut))(content, rng))
+        path.write_bytes(rng.choice((flip, flip, cut))(content, rng))
         found = _read(MeshTable.load, path)
         assert found is None or _same(found, table)
         _read(read_table_file, path)
@@ -172,7 +153,7 @@ def test_damaged_tables_as_text(draws: Draws, table: MeshTable, tmp_path: Path) 
             )
             damaged[at] = rng.choice((",".join(cells), damaged[rng.randrange(len(damaged))], ""))
         path.write_bytes(
-            _flip("\n".join(damaged).encode(), rng)
+            flip("\n".join(damaged).encode(), rng)
             if rng.random() < 0.3
             else "\n".join(damaged).encode()
         )

@@ -92,7 +92,8 @@ def bifurcation(
         if not complete:
             tell(
                 f"interrupted: {int(found.finished.sum())} of {found.finished.size} motions are "
-                f"done, {judged} of them judged, and being written; Ctrl-C again stops at once"
+                f"done, {judged} of them judged, and being written; the same command with --force "
+                "goes on from there; Ctrl-C again stops at once"
             )
         findings = Findings(ready, found)
         with progress_bar() as progress:

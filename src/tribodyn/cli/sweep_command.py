@@ -75,7 +75,8 @@ def sweep(
         if not found.complete:
             tell(
                 f"interrupted: {len(found.points)} of {found.failed.size} values are done and "
-                "being written; Ctrl-C again stops at once"
+                "being written; the same command with --force goes on from there; "
+                "Ctrl-C again stops at once"
             )
         with progress_bar() as progress:
             progress.start("writing the report")
