@@ -195,7 +195,7 @@ def simulate_ensemble(
     contacts = len(compiled.system.contacts)
     moments = fresh_moments(contacts, size + len(linear), harmonics, lanes)
     statistics = Statistics(linear, _waves(compiled, harmonics), moments)
-    progress.start("Marching the ensemble", cycles)
+    progress.start("Mesh cycles", cycles)
     early = cycles - averaged
     for count, gathered, elapsed in ((early, None, 0), (averaged, statistics, early)):
         if count:

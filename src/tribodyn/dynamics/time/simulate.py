@@ -128,7 +128,7 @@ def simulate(
     setting = Setting(system, frequency, cycles, steps, extra[None, :])
     marcher = prepare(method, setting, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
     record = np.empty((cycles * steps + 1, 2 * system.size, 1))
-    progress.start("Marching over time", cycles)
+    progress.start("Mesh cycles", cycles)
     for first in range(0, cycles, _CHUNK):
         count = min(_CHUNK, cycles - first)
         part = record[first * steps : (first + count) * steps + 1]
