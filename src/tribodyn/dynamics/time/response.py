@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -198,6 +198,12 @@ def build_response(
         extra_force=extra_force,
         **facts,
     )
+
+
+def later(response: Response, begin: float) -> Response:
+    """A response whose record begins at a time."""
+    fine = replace(response.fine, time=response.fine.time + begin)
+    return replace(response, time=response.time + begin, fine=fine) if begin else response
 
 
 def _step_samples(
