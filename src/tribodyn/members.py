@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from tribodyn.errors import InputError
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.files import cannot_write, lock
 
 __all__ = ["Members"]
@@ -106,9 +106,12 @@ class Members:
         with self._writing:
             if self._file is None:  # A thread that outlives an interruption has nowhere to write.
                 return
-            self._file.write(b"%08x %s\n" % (zlib.crc32(text), text))
-            self._file.flush()
-            os.fsync(self._file.fileno())
+            try:
+                self._file.write(b"%08x %s\n" % (zlib.crc32(text), text))
+                self._file.flush()
+                os.fsync(self._file.fileno())
+            except OSError as error:
+                raise ComputationError(cannot_write(self.target, error)) from None
 
     def close(self) -> None:
         """Let another process go on with what is kept."""

@@ -79,7 +79,7 @@ def sweep(
                 "Ctrl-C again stops at once"
             )
         with progress_bar() as progress:
-            progress.start("writing the report")
+            progress.start("Report")
             found.save(target, force=force)
             progress.finish()
         members.close_after(found.complete)

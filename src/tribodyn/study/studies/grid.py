@@ -52,7 +52,6 @@ def varied(
     def member(index: int) -> Member:
         changed = case.replace(changes[index])
         path = folder / f"mesh-{index}.nc" if folder else None
-        mesh = None
         if path is not None and path.exists():
             with suppress(InputError):
                 mesh = MeshTable.load(path)
@@ -63,7 +62,7 @@ def varied(
             found.mesh.save(path)
         return found
 
-    progress.start("tooth contact", len(changes))
+    progress.start("Tooth contacts", len(changes))
     over_cases(member, range(len(changes)), members, progress)
     progress.finish()
     return [members[index] for index in range(len(changes))]

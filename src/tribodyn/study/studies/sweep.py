@@ -93,7 +93,7 @@ def sweep(
         kept.keep(str(index), (dict(found.figures), found.failed, found.warned))
         return found
 
-    progress.start("computing", len(grid))
+    progress.start("Values", len(grid))
     try:
         over_cases(point, range(len(grid)), done, progress)
     except KeyboardInterrupt:
