@@ -34,7 +34,7 @@ def test_damaged_results(
     with quiet():
         result.save(sound)
     place, refused = sound.with_name("damaged"), 0
-    for rng in draws(60):
+    for rng in draws(25):
         shutil.rmtree(place, ignore_errors=True)
         shutil.copytree(sound, place)
         damaged = place / rng.choice(_FILES)

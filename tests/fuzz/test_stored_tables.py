@@ -113,7 +113,7 @@ def test_damaged_bytes_of_a_mesh_table(
     draws: Draws, table: MeshTable, stored: Path, tmp_path: Path
 ) -> None:
     content, path = stored.read_bytes(), tmp_path / "mesh.nc"
-    for rng in draws(200):
+    for rng in draws(40):
         path.write_bytes(rng.choice((flip, flip, cut))(content, rng))
         found = _read(MeshTable.load, path)
         assert found is None or _same(found, table)
@@ -124,7 +124,7 @@ def test_damaged_variables_of_a_mesh_table(
     draws: Draws, table: MeshTable, stored: Path, tmp_path: Path
 ) -> None:
     content, path, refused = stored.read_bytes(), tmp_path / "mesh.nc", 0
-    for rng in draws(150):
+    for rng in draws(30):
         path.write_bytes(content)
         _rewrite(path, rng)
         found = _read(MeshTable.load, path)
@@ -143,7 +143,7 @@ def test_damaged_tables_as_text(draws: Draws, table: MeshTable, tmp_path: Path) 
     lines = sound.read_text(encoding="utf-8").splitlines()
     short = [*lines[:6], *lines[6:40], *lines[-40:]]
     entries = ["nan", "inf", "", "x", "1_0", "１", "1e999", '"', "\0", "9" * 5000, "-1", "1,2"]
-    for rng in draws(150):
+    for rng in draws(60):
         damaged = list(short)
         for _ in range(rng.choice((1, 3))):
             at = rng.randrange(len(damaged))
