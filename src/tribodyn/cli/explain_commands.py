@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +19,8 @@ def explain(symbol: str, /, *, json: Annotated[bool, Parameter(negative="")] = F
     Parameters
     ----------
     symbol : str
-        For example "epsilon_alpha", "backlash", "gears.center_distance" or "xu-2007".
+        For example "epsilon_alpha", "backlash", "gears.center_distance" or "xu-2007"; "friction"
+        compares all friction laws.
     json : bool
         Write one JSON array to stdout.
     """
@@ -26,6 +28,9 @@ def explain(symbol: str, /, *, json: Annotated[bool, Parameter(negative="")] = F
     if not symbol:
         remedy = "Give a name, for example: tribodyn explain backlash"
         raise InputError(Problem("there is nothing to explain", "", "", remedy))
+    if symbol == "friction":
+        _friction_laws(json)
+        return
     found = [*_choices(symbol), *_warnings(symbol)]
     found = found or [*_quantities(symbol), *_keys(symbol), *_figures(symbol)]
     if not found:
@@ -35,6 +40,27 @@ def explain(symbol: str, /, *, json: Annotated[bool, Parameter(negative="")] = F
         return
     for entry in found:
         say("\n".join(f"{label + ':':<10} {text}" for label, text in entry.items() if text) + "\n")
+
+
+def _friction_laws(json: bool) -> None:
+    """Compare all friction laws along the path of contact of FZG type A."""
+    from tribodyn.cases.load import load_case
+    from tribodyn.study.studies.friction_laws import PLACES, friction_laws
+
+    laws = friction_laws(load_case("fzg-roughness"))
+    if json:
+        say_json([{**law, "places": PLACES} for law in laws])
+        return
+    for law in laws:
+        options = f" Options: {law['options']}." if law["options"] else ""
+        say(f"{law['law']}: {law['meaning']}.{options} {law['source']}\n")
+    rows = [["FZG type A", *PLACES, ""]]
+    for law in laws:
+        values = [f"{value:.4f}" for value in law["coefficients"] or [math.nan] * len(PLACES)]
+        remark = "*" if law["in_range"] is False else law["missing"]
+        rows.append([law["law"], *(value.replace("nan", "-") for value in values), remark])
+    say("Friction coefficient at 90 N*m, 900 rpm, 82 mPa*s, 0.53 um; * outside of the law's range:")
+    say(table(rows))
 
 
 def _quantities(symbol: str) -> list[dict[str, Any]]:

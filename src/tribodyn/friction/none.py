@@ -31,6 +31,8 @@ def none(shape: tuple[int, ...] = ()) -> Array:
     return np.zeros(shape)[()]
 
 
-@LAWS.define("none", source="no friction", needs_oil=False)
+@LAWS.define(
+    "none", source="no paper", needs_oil=False, meaning="no friction: the frictionless limit"
+)
 def _law(contact: TribologicalContact) -> Array:
     return none(np.shape(contact.load_per_width))

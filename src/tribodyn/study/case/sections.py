@@ -126,12 +126,7 @@ class Stiffness(Section):
 class Friction(Section):
     """The ``[friction]`` table."""
 
-    law: str = model_choice(
-        "none",
-        _laws,
-        later=("exponential", "schlenk", "mixed-ehl", "measured"),
-        meaning="friction law of the tooth contact",
-    )
+    law: str = model_choice("none", _laws, meaning="friction law of the tooth contact")
 
 
 class Dynamics(Section):
