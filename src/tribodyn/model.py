@@ -47,10 +47,10 @@ class Option:
     low: float = -math.inf
     high: float = math.inf
     positive: bool = False  #: zero is refused although ``low`` is zero
+    pair: bool = False  #: a list of two is taken too, of pinion and wheel
     origin: str = ""  #: why the limits are what they are
     names: Names | None = None  #: names allowed, for a choice
     meanings: Mapping[str, str] = field(default_factory=dict)  #: what the names mean
-    later: tuple[str, ...] = ()  #: names that a later release will have
     example: str = ""  #: TOML value shown where the value is missing
     basis: str = ""  #: what the value is derived from where it is not given
     argument: str = ""  #: argument of the physics that it becomes, where that is called otherwise

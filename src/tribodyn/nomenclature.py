@@ -104,6 +104,7 @@ film_pressure | p_max | Pa | GPa | greatest pressure in the oil film
 film_stiffness | K_o | N/m | N/um | stiffness of the oil film of one tooth pair along the line of action
 composite_roughness | S | m | um | root of the sum of squares of the two rms roughnesses | "0.5 um"
 roughness_rms | S_q | m | um | rms roughness of one flank | "0.4 um"
+roughness_ra | Ra | m | um | arithmetic mean roughness of one flank; Rq = 1.25 Ra is taken, as of ground flanks | "0.4 um"
 friction_coefficient | mu | | | friction force over normal force | 0.05
 gear_loss_factor | H_V | | | mean sliding work over transmitted work at unit friction
 tooth_stiffness | k_t | N/m | N/um | stiffness of the teeth of one pair without their oil film
@@ -120,8 +121,8 @@ friction_force | F_f | N | N | dynamic friction force of all tooth pairs
 power | P | W | W | power
 mesh_damping | c_m | N*s/m | N*s/m | damping of the tooth contact along the line of action | "900 N*s/m"
 mesh_damping_ratio | zeta | | | mesh damping over its critical value
-bearing_stiffness | k_b | N/m | N/um | radial stiffness of each gear's support | "3.5e9 N/m"
-bearing_damping | c_b | N*s/m | N*s/m | radial damping of each gear's support | "4000 N*s/m"
+bearing_stiffness | k_b | N/m | N/um | radial stiffness of the supports of both gears, or a list of that of pinion and wheel | "500 N/um"
+bearing_damping | c_b | N*s/m | N*s/m | radial damping of the supports of both gears, or a list of that of pinion and wheel | "4000 N*s/m"
 shaft_stiffness | k_s | N*m/rad | N*m/rad | torsional stiffness of a shaft | "75400 N*m/rad"
 shaft_damping | c_s | N*m*s/rad | N*m*s/rad | torsional damping of a shaft | "1 N*m*s/rad"
 bearing_force | F_b | N | N | force of a gear on its support

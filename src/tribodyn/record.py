@@ -29,7 +29,10 @@ from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import OutputExistsError, Problem
+from tribodyn.errors import Argument, OutputExistsError
+from tribodyn.files import whole
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.stored import write_dataset
 
 T = TypeVar("T")
 _KEY = "tribodyn"
@@ -39,9 +42,11 @@ class Labels(NamedTuple):
     """How a field is exported."""
 
     dims: tuple[str, ...]  #: dimensions; empty for a fact
-    unit: str | None  #: unit, ``"@name"`` for the unit in the field ``name``, None for no unit
-    axis: bool  #: a coordinate rather than a variable
-    name: str  #: name in the data set, where it is another one
+    #: Unit; ``"@name"`` for the one in the field ``name``, None for that of the nomenclature.
+    unit: str | None = None
+    axis: bool = False  #: a coordinate rather than a variable
+    name: str = ""  #: name in the data set, where it is another one
+    of: str = ""  #: its quantity in the nomenclature, where that has another name
 
 
 def quantity(
@@ -49,16 +54,17 @@ def quantity(
     unit: str | None = None,
     axis: bool = False,
     name: str = "",
+    of: str = "",
     default: Any = MISSING,
     repr: bool = True,
 ) -> Any:
-    """Declare an array over named dimensions, a coordinate of the data set if it is an axis."""
-    return _field(Labels(dims, unit, axis, name), default, repr)
+    """Declare an array over the last of named dimensions, a coordinate if it is an axis."""
+    return _field(Labels(dims, unit, axis, name, of), default, repr)
 
 
 def fact(name: str = "", default: Any = MISSING, repr: bool = True) -> Any:
     """Declare a number or a text about the whole result, an attribute of the data set."""
-    return _field(Labels((), None, False, name), default, repr)
+    return _field(Labels((), name=name), default, repr)
 
 
 def _field(labels: Labels, default: Any, repr: bool) -> Any:
@@ -71,6 +77,11 @@ def _field(labels: Labels, default: Any, repr: bool) -> Any:
 def record(cls: type[T]) -> type[T]:
     """Turn a subclass of :class:`Record` into a frozen dataclass."""
     return dataclass(frozen=True, eq=False, repr=False)(cls)
+
+
+def labels_of(cls: type[Any]) -> dict[str, Labels]:
+    """How the fields of a record are exported, those that are not left out."""
+    return {each.name: each.metadata[_KEY] for each in fields(cls) if _KEY in each.metadata}
 
 
 class Parts(NamedTuple):
@@ -99,25 +110,37 @@ class Record:
 
     #: Variable that ``to_xarray`` returns as a DataArray with its coordinates; empty: a Dataset.
     ARRAY: ClassVar[str] = ""
+    #: Properties that are exported beside the fields.
+    DERIVED: ClassVar[Mapping[str, Labels]] = {}
 
     def _array_name(self) -> str:
         """Name of the DataArray."""
         return self.ARRAY
 
     def _labelled(self) -> list[tuple[Field[Any], Labels]]:
-        return [(each, each.metadata[_KEY]) for each in fields(self) if _KEY in each.metadata]  # type: ignore[arg-type]
+        labels = labels_of(type(self))
+        return [(each, labels[each.name]) for each in fields(self) if each.name in labels]  # type: ignore[arg-type]
 
     def _parts(self) -> Parts:
-        """Variables, coordinates and attributes; a class extends them where fields are not all."""
+        """Known variables, coordinates, attributes; a class adds what its fields are not."""
         parts = Parts({}, {}, {})
-        for each, labels in self._labelled():
-            value, name = getattr(self, each.name), labels.name or each.name
+        for name, labels in {**labels_of(type(self)), **self.DERIVED}.items():
+            value, exported = getattr(self, name), labels.name or name
+            if value is None:
+                continue
             if not labels.dims:
-                parts.attributes[name] = value
-            elif value is not None:
+                parts.attributes[exported] = value
+            else:
                 place = parts.coordinates if labels.axis else parts.variables
-                place[name] = (labels.dims, value, self._units(labels.unit))
+                dims = labels.dims[len(labels.dims) - np.ndim(value) :]
+                place[exported] = (dims, value, self._told(name, labels))
         return parts
+
+    def _told(self, name: str, labels: Labels) -> dict[str, str]:
+        known = QUANTITIES.get(labels.of or name) if labels.unit is None else None
+        if known is None:
+            return self._units(labels.unit)
+        return {"units": known.unit or "1", "long_name": known.meaning}
 
     def _units(self, unit: str | None) -> dict[str, str]:
         if unit is None:
@@ -175,15 +198,11 @@ class Record:
         """
         target = Path(path)
         if target.exists():
-            raise OutputExistsError(
-                Problem(f"{target} exists", "argument path", "", "Choose another name")
-            )
-        beside = target.with_name(f".{target.name}.{os.getpid()}")
-        try:
-            self.to_xarray().to_netcdf(beside, engine="h5netcdf")
-            os.replace(beside, target)
-        finally:
-            beside.unlink(missing_ok=True)
+            what, where = f"{target} exists already", Argument("path")
+            why, remedy = "An existing file is never overwritten", "Choose another name"
+            raise OutputExistsError(what, where, why, remedy)
+        with whole(target) as partial:
+            write_dataset(self.to_xarray(), partial)
         return target
 
     def __eq__(self, other: object) -> bool:
@@ -218,7 +237,7 @@ class Record:
         rows = []
         for each, labels in self._labelled():
             value = getattr(self, each.name)
-            unit = self._units(labels.unit).get("units", "")
+            unit = self._told(each.name, labels).get("units", "")
             cells = (each.name, " x ".join(labels.dims), _short(value), unit)
             rows.append("".join(f"<td>{escape(str(cell))}</td>" for cell in cells))
         head = "".join(f"<th>{name}</th>" for name in ("field", "over", "value", "unit"))

@@ -12,12 +12,26 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
-__all__ = ["SPELLINGS", "UnitProblemError", "convert", "format_quantity", "parse", "split"]
+__all__ = [
+    "SPELLINGS",
+    "UnitProblemError",
+    "convert",
+    "format_quantity",
+    "parse",
+    "readings",
+    "split",
+]
 
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+
+#: A number with a comma, or with thousands set apart, and what follows it.
+_GROUPED = re.compile(
+    r"\s*([+-]?\d+(?:[.,'’\s]\d+)*(?:[eE][+-]?\d+)?)(?![\d/])\s*(.*?)\s*", re.DOTALL
+)
 
 #: Field spelling -> the plain spelling used in the table below and understood by pint.
 SPELLINGS: dict[str, str] = {
@@ -89,6 +103,15 @@ class UnitProblemError(ValueError):
     """Text that is no quantity of the wanted dimension; the message says why and what to write."""
 
 
+#: How numbers are written.
+NUMBERS = "the decimal sign is a point, not a comma, and thousands are not set apart"
+
+
+def quoted(texts: Iterable[str]) -> str:
+    """List texts in quotes, one or the other."""
+    return " or ".join(f'"{text}"' for text in texts)
+
+
 @lru_cache(maxsize=1)
 def _registry() -> Any:
     import pint
@@ -155,6 +178,44 @@ def _angle_power(quantity: Any) -> float:
     return float(dict(quantity.to_root_units().unit_items()).get("radian", 0))
 
 
+def readings(text: str) -> list[str]:
+    """What text whose number has a comma, or thousands set apart, may mean; empty for plain text.
+
+    Parameters
+    ----------
+    text : str
+        Number, perhaps followed by a unit.
+
+    Returns
+    -------
+    list of str
+        The same text with a decimal point and no separators: one reading, two, or none.
+
+    Examples
+    --------
+    >>> readings("2,500 rpm"), readings("1.234,5 N"), readings("3,0 mm"), readings("4.5 mm")
+    (['2500 rpm', '2.5 rpm'], ['1234.5 N'], ['3.0 mm'], [])
+    """
+    match = _GROUPED.fullmatch(text)
+    if match is None:
+        return []
+    number, unit = match.groups()
+    whole, power, exponent = re.fullmatch(r"([^eE]*)([eE]?)(.*)", number).groups()  # type: ignore[union-attr]
+    head, *rest = re.split(r"[.,'’\s]", whole)
+    signs = re.sub(r"[\d+-]", "", whole)
+    in_threes = all(len(group) == 3 for group in rest)
+    apart = 0 < len(head.lstrip("+-")) <= 3 and head.lstrip("+-") != "0"
+    found = []
+    if signs and signs != "." and apart and in_threes and len(set(signs)) == 1:
+        found.append(head + "".join(rest))
+    if signs == ",":
+        found.append(f"{head}.{rest[0].rstrip('0') or '0' if found else rest[0]}")
+    elif len(signs) > 1 and signs[-1] in ".," and len(set(signs[:-1])) == 1 != len(set(signs)):
+        grouped = apart and all(len(group) == 3 for group in rest[:-1])
+        found += [f"{head}{''.join(rest[:-1])}.{rest[-1]}"] if grouped else []
+    return [f"{reading}{power}{exponent} {unit}".strip() for reading in found]
+
+
 def split(text: str) -> tuple[float, str]:
     """Split ``"4.5 mm"`` into its number and its unit.
 
@@ -178,6 +239,8 @@ def split(text: str) -> tuple[float, str]:
     >>> split("4.5 mm")
     (4.5, 'mm')
     """
+    if meant := readings(text):
+        raise UnitProblemError(f'"{text}": {NUMBERS}; write {quoted(meant)}')
     match = _NUMBER.match(text)
     if match is None:
         raise UnitProblemError(f'"{text}" does not begin with a number')

@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,32 @@ def test_bare_command_shows_three_next_steps(capsys: pytest.CaptureFixture[str])
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["--version"]) == 0
     assert capsys.readouterr().out.strip() == tribodyn.__version__
+
+
+def test_the_package_itself_is_the_command_line() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "tribodyn", "--version"], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == tribodyn.__version__
+
+
+def test_the_shell_completes_commands(in_new_folder: Path) -> None:
+    script = in_new_folder / "completion"
+    words = ["--install-completion", "--shell", "bash", "--output", str(script)]
+    assert call(words) == 0
+    text = script.read_text(encoding="utf-8")
+    assert "bifurcation" in text
+    assert "--install-completion" in text
+
+
+def test_every_extra_is_used() -> None:
+    root = Path(__file__).parents[2]
+    extras = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"][
+        "optional-dependencies"
+    ]
+    assert set(extras) == {"images", "test", "dev"}
+    page = (root / "docs" / "install.md").read_text("utf-8")
+    assert set(re.findall(r"^\| `(\w+)` \|", page, re.M)) == set(extras)
 
 
 @pytest.mark.parametrize(

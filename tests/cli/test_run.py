@@ -37,6 +37,18 @@ def test_run_writes_a_result_named_after_the_case(
     assert set(os.listdir(folder / "fzg-roughness")) == set(RESULT_FILES)
 
 
+def test_a_quiet_run_tells_warnings_and_the_report_and_opens_it(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    assert call(["run", "fzg-roughness", *_FAST, "--quiet", "--open"]) == 0
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert "warning [thin-tip]" in told.err
+    assert opened == [(folder / "fzg-roughness" / "report.html").as_uri()]
+
+
 def test_json_is_the_summary_that_is_saved(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

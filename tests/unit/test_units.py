@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tribodyn import units
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.units import UnitProblemError, convert, format_quantity, parse, split
+from tribodyn.units import UnitProblemError, convert, format_quantity, parse, readings, split
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_decimal_multiples_are_the_nearest_floats() -> None:
         ("four mm", "m", "does not begin with a number"),
         ("nan mm", "m", "does not begin with a number"),
         ("1e999 mm", "m", "not a finite number"),
-        ("1,5 mm", "m", "not a unit that tribodyn knows"),
+        ("1,5 mm", "m", 'write "1.5 mm"'),
         ("3 parsnips", "m", "not a unit that tribodyn knows"),
         ("3 (", "m", "not a unit that tribodyn knows"),
         ("3 __import__('os')", "m", "not a unit that tribodyn knows"),
@@ -155,3 +155,32 @@ def test_usual_units_do_not_load_pint() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("2,500 rpm", ["2500 rpm", "2.5 rpm"]),
+        ("-1,500 um", ["-1500 um", "-1.5 um"]),
+        ("0,250 mm", ["0.250 mm"]),
+        ("3,0 mm", ["3.0 mm"]),
+        ("2,5e3 N", ["2.5e3 N"]),
+        ("1.234,5 N", ["1234.5 N"]),
+        ("1,234.5 N", ["1234.5 N"]),
+        ("2 500 rpm", ["2500 rpm"]),
+        ("2\N{NARROW NO-BREAK SPACE}500 rpm", ["2500 rpm"]),
+        ("2'500 rpm", ["2500 rpm"]),
+        ("1.234.567 N", ["1234567 N"]),
+        ("2.500 rpm", []),
+        ("21.9 1/GPa", []),
+        ("5 1/min", []),
+        ("1,2,3", []),
+        ("12,34,5 N", []),
+    ],
+)
+def test_what_a_number_with_separators_may_mean(text: str, meant: list[str]) -> None:
+    assert readings(text) == meant
+    if meant:
+        with pytest.raises(UnitProblemError) as told:
+            split(text)
+        assert all(f'"{reading}"' in str(told.value) for reading in meant)

@@ -11,9 +11,9 @@ import tribodyn
 WELCOME = """\
 tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
 
-  tribodyn run fzg-roughness                  compute a built-in case and write its report
-  tribodyn new my.toml --from fzg-roughness   write a commented case file to start from
-  tribodyn check my.toml                      look at the geometry before running
+  tribodyn new my.toml      write a case file to start from, and fill in your gears
+  tribodyn check my.toml    see the geometry, and every fault at once
+  tribodyn run my.toml      compute it, and write the report
 
 tribodyn --help shows all commands."""
 
@@ -73,6 +73,9 @@ def make_app() -> App:
         help_format="plaintext",
     )
     app.default(_welcome)
+    app.register_install_completion_command(
+        help="Let the shell complete commands and options: bash, zsh or fish."
+    )
     for name, place, help_text in COMMANDS:
         app.command(place, name=name, help=help_text)
     return app

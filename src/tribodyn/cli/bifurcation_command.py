@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, tell
-from tribodyn.cli.settings import RANGE, changed_case, read_ranges
+from tribodyn.cli.settings import RANGE, changed_case, check_place, read_ranges
 
 if TYPE_CHECKING:
     from tribodyn.nonlinear.bifurcation import Bifurcation
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from tribodyn.study.studies.bifurcation import Findings
 
 
-_REPLACE = "Choose another directory with --out, or replace it with --force"
 #: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.
 _INTERRUPTED = 130
 
@@ -66,13 +65,12 @@ def bifurcation(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
     key, (first, last, points) = _one(over)
     _check_lengths(cycles, transient)
     ready = changed_case(case, set_ or [])
-    check_target(target, force, remedy=_REPLACE)
+    check_place(target, force)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with progress_bar() as progress:
         from tribodyn.study.studies.axes import read_axes
@@ -129,12 +127,13 @@ def _check_lengths(cycles: int, transient: int) -> None:
 
 def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, force: bool) -> None:
     from tribodyn.report import write_bifurcation_report
+    from tribodyn.stored import write_dataset
     from tribodyn.study.pipeline.save import new_directory
 
     head, rows = findings.rows()
     with new_directory(target, force=force) as place:
         (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
-        found.to_xarray().to_netcdf(place / "bifurcation.nc", engine="h5netcdf")
+        write_dataset(found.to_xarray(), place / "bifurcation.nc")
         write_bifurcation_report(
             found, case, place / "bifurcation.html", lead=findings.lead(),
             told=findings.sentences(), head=head, rows=rows,

@@ -6,7 +6,6 @@ Nothing heavy is imported up here, so that even an interruption of the first mom
 from __future__ import annotations
 
 import _thread
-import errno
 import os
 import re
 import signal
@@ -33,12 +32,13 @@ def interruptible() -> Iterator[None]:
     None
     """
     previous = sys.unraisablehook
+    timers: list[threading.Timer] = []
 
     def again(dropped: sys.UnraisableHookArgs) -> None:
         if issubclass(dropped.exc_type, KeyboardInterrupt):
-            timer = threading.Timer(_MOMENT, _interrupt)
-            timer.daemon = True
-            timer.start()
+            timers.append(threading.Timer(_MOMENT, _interrupt))
+            timers[-1].daemon = True
+            timers[-1].start()
         else:
             previous(dropped)
 
@@ -47,6 +47,20 @@ def interruptible() -> Iterator[None]:
         yield
     finally:
         sys.unraisablehook = previous
+        for timer in timers:
+            timer.cancel()
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Let no interruption cut off the message of the first one."""
+    here = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN) if here else None
+    try:
+        yield
+    finally:
+        if here:
+            signal.signal(signal.SIGINT, before)
 
 
 def _interrupt() -> None:
@@ -61,9 +75,6 @@ def _interrupt() -> None:
 
 #: Exit code of a command that was stopped by Ctrl-C.
 INTERRUPTED = 130
-
-#: Faults of the place that is written to, not of the program.
-_PLACE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM)
 
 #: What to write after a command, for those that need something.
 _EXAMPLES = {
@@ -87,7 +98,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments : sequence of str, optional
         Words after the program's name; those of the process by default.
     """
-    sys.exit(call(sys.argv[1:] if arguments is None else arguments))
+    code = call(sys.argv[1:] if arguments is None else arguments)
+    # All is said: a repeated Ctrl-C no longer meets Python while it ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.exit(code)
 
 
 def call(arguments: Sequence[str]) -> int:
@@ -111,13 +125,9 @@ def call(arguments: Sequence[str]) -> int:
     except BrokenPipeError:
         _close_stdout()
         return 0
-    except OSError as error:
-        if error.errno == errno.ENOSPC and error.filename is None:
-            # What is left in the buffer has nowhere to go.
-            _close_stdout()
-        return _failed(error, "--json" in arguments)
     except (Exception, KeyboardInterrupt) as error:
-        return _failed(error, "--json" in arguments)
+        with _deaf():
+            return _failed(error, "--json" in arguments)
 
 
 def _close_stdout() -> None:
@@ -166,13 +176,14 @@ def _failed(error: BaseException, as_json: bool) -> int:
     """Tell a failure on stderr and, if asked for, as one JSON object on stdout."""
     from tribodyn.cli.screen import say_json, show_problems
     from tribodyn.errors import Problem, TribodynError
+    from tribodyn.files import FAULTS_OF_THE_PLACE, cannot_write
 
     if isinstance(error, TribodynError):
         code, problems = error.exit_code, list(error.problems)
     elif isinstance(error, KeyboardInterrupt):
         code, problems = INTERRUPTED, [Problem("interrupted", remedy="No unfinished file is left")]
-    elif isinstance(error, OSError) and error.errno in _PLACE:
-        code, problems = 1, [_no_place(error)]
+    elif isinstance(error, OSError) and error.errno in FAULTS_OF_THE_PLACE:
+        code, problems = 1, [cannot_write(error.filename or "standard output", error)]
     else:
         code, problems = 1, [_unexpected(error)]
     show_problems(problems)
@@ -182,15 +193,11 @@ def _failed(error: BaseException, as_json: bool) -> int:
             for p in problems
         ]
         say_json({"error": {"exit_code": code, "problems": told}})
+    try:
+        sys.stdout.flush()
+    except OSError:  # What is left in the buffer has nowhere to go.
+        _close_stdout()
     return code
-
-
-def _no_place(error: OSError) -> Problem:
-    from tribodyn.errors import Problem
-
-    place = str(error.filename or "output")
-    what = f"cannot write: {(error.strerror or str(error)).lower()}"
-    return Problem(what, place, "", "Make room, or write to another place")
 
 
 def _unexpected(error: BaseException) -> Problem:

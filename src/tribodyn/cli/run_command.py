@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import changed_case
+from tribodyn.cli.settings import changed_case, check_place
 
 if TYPE_CHECKING:
     from tribodyn.study.pipeline.result import Result
-
-
-_REPLACE = "Choose another directory with --out, or replace it with --force"
 
 
 def run(
@@ -25,6 +22,8 @@ def run(
     out: Path | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+    open_: Annotated[bool, Parameter(name="--open", negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Compute a case; write its report and its data into a new directory.
@@ -39,16 +38,19 @@ def run(
         Values to change, for example "operation.torque=120 N*m".
     force : bool
         Replace an earlier result in that directory.
+    quiet : bool
+        Leave the table of values out; warnings and the place of the report are still told.
+    open_ : bool
+        Show the report in the web browser.
     json : bool
         Write the summary as one flat JSON object in SI to stdout.
     """
     from tribodyn.cli.bar import progress_bar
     from tribodyn.errors import ModelWarning
-    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(Path(case).stem)
     ready = changed_case(case, set_ or [])
-    check_target(target, force, remedy=_REPLACE)
+    check_place(target, force)
     with progress_bar() as progress, warnings.catch_warnings():
         # They are shown below, from the result.
         warnings.simplefilter("ignore", ModelWarning)
@@ -60,10 +62,15 @@ def run(
         progress.finish()
     if json:
         say_json(result.summary())
-    else:
+    elif not quiet:
         _show(result)
     show_warnings((warning.code, warning.message) for warning in result.warnings)
-    tell(f"Report: {target / 'report.html'}")
+    report = target / "report.html"
+    tell(f"Report: {report}")
+    if open_:
+        import webbrowser
+
+        webbrowser.open(report.absolute().as_uri())
 
 
 def _show(result: Result) -> None:

@@ -5,12 +5,26 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.cli.screen import show_warnings
+from tribodyn.errors import InputError, Problem, collected
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+
+
+def check_place(target: Path, force: bool) -> None:
+    """Clear what killed runs left beside a result, and refuse a place before any work is done."""
+    from tribodyn.files import clear_leftovers
+    from tribodyn.study.pipeline.save import check_target
+
+    with collected() as told:
+        clear_leftovers(target)
+    show_warnings((warning.code, warning.message) for warning in told)
+    remedy = "Choose another directory with --out, or replace it with --force"
+    check_target(target, force, remedy=remedy)
 
 
 def read_changes(settings: Sequence[str]) -> dict[str, Any]:

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table, tell
-from tribodyn.cli.settings import changed_case, read_ranges
+from tribodyn.cli.settings import changed_case, check_place, read_ranges
 
 if TYPE_CHECKING:
     from tribodyn.study.studies.sweep_result import Sweep
 
 
-_REPLACE = "Choose another directory with --out, or replace it with --force"
 #: Exit code of a sweep that was stopped by Ctrl-C; what was done is kept.
 _INTERRUPTED = 130
 #: Figures on the screen; all of them are in the files.
@@ -59,12 +58,11 @@ def sweep(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.pipeline.save import check_target
 
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
     ready = changed_case(case, set_ or [])
-    check_target(target, force, remedy=_REPLACE)
+    check_place(target, force)
     with progress_bar() as progress:
         from tribodyn.study.studies.sweep import sweep as compute
 

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_one_of, require_positive, warn
+from tribodyn.errors import InputError, require_one_of, require_positive, warn
 from tribodyn.types import Array
 
 #: What lies beyond the ends of a profile.
@@ -61,33 +61,27 @@ class RoughnessProfile:
         require_one_of("beyond", self.beyond, BEYOND)
         if height.size < 8 or position.size != height.size:
             raise InputError(
-                Problem(
-                    what=f"{height.size} heights and {position.size} positions",
-                    where="argument height",
-                    why="a profile needs at least 8 heights, each with its position",
-                )
+                f"{height.size} heights and {position.size} positions",
+                where="argument height",
+                why="a profile needs at least 8 heights, each with its position",
             )
         bad = np.flatnonzero(~np.isfinite(height))
         if bad.size:
             raise InputError(
-                Problem(
-                    what=f"height[{bad[0]}] = {height[bad[0]]}",
-                    where="argument height",
-                    why="every height must be a finite number of metres",
-                    remedy="Cut out the points that the instrument could not measure",
-                )
+                f"height[{bad[0]}] = {height[bad[0]]}",
+                where="argument height",
+                why="every height must be a finite number of metres",
+                remedy="Cut out the points that the instrument could not measure",
             )
         steps = np.diff(position)
         spacing = (position[-1] - position[0]) / (position.size - 1)
         if not spacing > 0.0 or np.max(np.abs(steps - spacing)) > 1e-3 * spacing:
             raise InputError(
-                Problem(
-                    what=f"steps of {steps.min():.6g} to {steps.max():.6g} m between positions",
-                    where="argument position",
-                    why="positions must rise in equal steps",
-                    remedy="Interpolate the profile, or give heights and their spacing to "
-                    "RoughnessProfile.from_heights",
-                )
+                f"steps of {steps.min():.6g} to {steps.max():.6g} m between positions",
+                where="argument position",
+                why="positions must rise in equal steps",
+                remedy="Interpolate the profile, or give heights and their spacing to "
+                "RoughnessProfile.from_heights",
             )
 
     @classmethod
@@ -264,14 +258,12 @@ class RoughnessProfile:
         covered = first >= self.position[0] - tolerance and last <= self.position[-1] + tolerance
         if self.beyond == "refuse" and not covered:
             raise InputError(
-                Problem(
-                    what=f"heights are needed from {first * 1e3:.6g} to {last * 1e3:.6g} mm",
-                    where="roughness profile",
-                    why=f"it was measured from {self.position[0] * 1e3:.6g} to "
-                    f"{self.position[-1] * 1e3:.6g} mm",
-                    remedy="Measure a longer profile, shift it by its start, or choose beyond = "
-                    '"periodic" or "level"',
-                )
+                f"heights are needed from {first * 1e3:.6g} to {last * 1e3:.6g} mm",
+                where="roughness profile",
+                why=f"it was measured from {self.position[0] * 1e3:.6g} to "
+                f"{self.position[-1] * 1e3:.6g} mm",
+                remedy="Measure a longer profile, shift it by its start, or choose beyond = "
+                '"periodic" or "level"',
             )
 
 

@@ -96,16 +96,14 @@ class TribologicalContact:
         if len(set(shapes.values())) > 1:
             listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
             raise InputError(
-                Problem(
-                    what=f"shapes differ: {listed}",
-                    where="TribologicalContact",
-                    why="element i of every array belongs to contact i",
-                    remedy="Broadcast the arrays first",
-                )
+                f"shapes differ: {listed}",
+                where="TribologicalContact",
+                why="element i of every array belongs to contact i",
+                remedy="Broadcast the arrays first",
             )
         if self.size == 0:
             raise InputError(
-                Problem("no contact", "TribologicalContact", "All arrays are empty", "Give one")
+                "no contact", "TribologicalContact", "All arrays are empty", "Give one"
             )
         for name, unit in _POSITIVE:
             require_positive(name, getattr(self, name), unit, remedy="Leave unloaded pairs out")
@@ -118,12 +116,10 @@ class TribologicalContact:
         self._require_consistent_sliding()
         if self.film is not None and self.film.size != self.size:
             raise InputError(
-                Problem(
-                    what=f"{self.film.size} films for {self.size} contacts",
-                    where="TribologicalContact",
-                    why="film i belongs to contact i, in flat order",
-                    remedy="Give the index of the film of each contact",
-                )
+                f"{self.film.size} films for {self.size} contacts",
+                where="TribologicalContact",
+                why="film i belongs to contact i, in flat order",
+                remedy="Give the index of the film of each contact",
             )
 
     def _require_consistent_sliding(self) -> None:
@@ -133,13 +129,11 @@ class TribologicalContact:
         wrong = ~(np.abs(given - expected) <= 1e-4 * np.abs(expected) + 1e-9)
         if np.any(wrong):
             raise InputError(
-                Problem(
-                    what=f"slide_to_roll_ratio = {given[wrong][0]:.6g}, but sliding_speed over "
-                    f"entrainment_speed = {expected[wrong][0]:.6g}",
-                    where="TribologicalContact",
-                    why="the ratio is (u1 - u2) / ((u1 + u2)/2)",
-                    remedy="Give entrainment_speed as half the sum of the surface speeds",
-                )
+                f"slide_to_roll_ratio = {given[wrong][0]:.6g}, but sliding_speed over "
+                f"entrainment_speed = {expected[wrong][0]:.6g}",
+                where="TribologicalContact",
+                why="the ratio is (u1 - u2) / ((u1 + u2)/2)",
+                remedy="Give entrainment_speed as half the sum of the surface speeds",
             )
 
     @property
@@ -187,12 +181,10 @@ class TribologicalContact:
         if value is not None:
             return value
         raise InputError(
-            Problem(
-                what=f"{name} is not known",
-                where="TribologicalContact",
-                why="The friction law needs it",
-                remedy=_REMEDIES[name],
-            )
+            f"{name} is not known",
+            where="TribologicalContact",
+            why="The friction law needs it",
+            remedy=_REMEDIES[name],
         )
 
 

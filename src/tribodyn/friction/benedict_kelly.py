@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
+from tribodyn.errors import InputError, require_between, require_positive, warn
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.model import Registry, choice, number
 from tribodyn.types import Array
@@ -117,12 +117,10 @@ def _roughness_factor(roughness: ArrayLike) -> Array:
     roughest = float(np.max(micrometres))
     if roughest >= _LIMIT:
         raise InputError(
-            Problem(
-                what=f"roughness = {roughest:.4g} um",
-                where="argument roughness",
-                why=f"the Benedict-Kelly formula diverges at {_LIMIT:g} um",
-                remedy="Check the unit (m), or choose another friction law",
-            )
+            f"roughness = {roughest:.4g} um",
+            where="argument roughness",
+            why=f"the Benedict-Kelly formula diverges at {_LIMIT:g} um",
+            remedy="Check the unit (m), or choose another friction law",
         )
     factor = np.asarray(_LIMIT / (_LIMIT - micrometres))
     if roughest > _TRUSTED:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.types import Array
@@ -74,12 +74,10 @@ def drozdov(
     least = float(np.min(denominator))
     if least < 1.0:
         raise InputError(
-            Problem(
-                what=f"drozdov gives a friction coefficient of 1/{least:.3g}",
-                where="drozdov",
-                why="pressure and viscosity are far beyond the discs that it was fitted to",
-                remedy="Check the units (Pa, m^2/s), or choose another friction law",
-            )
+            f"drozdov gives a friction coefficient of 1/{least:.3g}",
+            where="drozdov",
+            why="pressure and viscosity are far beyond the discs that it was fitted to",
+            remedy="Check the units (Pa, m^2/s), or choose another friction law",
         )
     warn_outside(
         "drozdov",

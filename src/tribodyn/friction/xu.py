@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.types import Array
@@ -130,15 +130,13 @@ def _require_plausible(coefficient: Array, roughness: float) -> None:
     if np.all(coefficient <= 1.0):  # false for NaN as well
         return
     raise InputError(
-        Problem(
-            what=f"xu-2007 gives a friction coefficient of {np.max(coefficient):.3g} "
-            f"with a roughness of up to {roughness:.4g} um",
-            where="xu_2007",
-            why="the regression grows with exp(exp(S)) and means nothing far beyond the 0.6 um "
-            "and the other limits of its fit",
-            remedy="Check the units (roughness in m, viscosity in Pa*s, pressure in Pa), "
-            "or choose another friction law",
-        )
+        f"xu-2007 gives a friction coefficient of {np.max(coefficient):.3g} "
+        f"with a roughness of up to {roughness:.4g} um",
+        where="xu_2007",
+        why="the regression grows with exp(exp(S)) and means nothing far beyond the 0.6 um "
+        "and the other limits of its fit",
+        remedy="Check the units (roughness in m, viscosity in Pa*s, pressure in Pa), "
+        "or choose another friction law",
     )
 
 

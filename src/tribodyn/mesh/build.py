@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.contact import Kinematics
+from tribodyn.contact import Kinematics, path_of_contact
 from tribodyn.errors import require_positive
 from tribodyn.friction import pitch_point
 from tribodyn.gear import Material, SpurPair
@@ -153,7 +153,7 @@ def mesh_table(
     """Compute the tooth contact with these settings at one speed and torque, as :func:`build`."""
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
-    cycle = mesh_cycle(pair, steps or _steps(pair, settings.stiffness_model))
+    cycle = mesh_cycle(path_of_contact(pair), steps or _steps(pair, settings.stiffness_model))
     normal_force = pinion_torque / pair.pinion.base_radius
     places = (cycle.grid.phase, cycle.path, cycle.in_contact)
     teeth = teeth_of(cycle.contact, places, settings, normal_force)

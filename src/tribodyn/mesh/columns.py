@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
 from tribodyn.gear import SpurPair
-from tribodyn.mesh.cycle import COORDINATES, GearData, NoGears
+from tribodyn.mesh.gears import COORDINATES, GearData, NoGears
 from tribodyn.mesh.grid import PhaseGrid
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 
-@dataclass(frozen=True, eq=False)
-class MeshColumns:
+@record
+class MeshColumns(Record):
     """Arrays over mesh phase and the figures that they were made with.
 
     Columns have the shape (n, pairs), where n counts the knots: pair ``i`` entered contact ``i``
@@ -103,45 +104,45 @@ class MeshColumns:
     """
 
     grid: PhaseGrid
-    path: Array
-    in_contact: Mask
-    sliding_speed: Array
-    entrainment_speed: Array
-    slide_to_roll_ratio: Array
-    sliding_direction: Array
-    equivalent_radius: Array
-    pinion_curvature_radius: Array
-    wheel_curvature_radius: Array
-    stiffness: Array
-    tooth_stiffness: Array
-    corner_share: Array
-    static_transmission_error: Array
-    mesh_stiffness_tangent: Array
-    ramp_deflection: Array
-    ramp_stiffness: Array
-    load_share: Array
-    normal_force: Array
-    load_per_width: Array
-    hertz_pressure: Array
-    friction_coefficient: Array
-    central_film: Array | None
-    minimum_film: Array | None
-    film_ratio: Array | None
-    film_pressure: Array | None
-    film_stiffness: Array | None
-    maximum_single_pair_stiffness: float
+    path: Array = quantity("knot", "pair")
+    in_contact: Mask = quantity("knot", "pair")
+    sliding_speed: Array = quantity("knot", "pair")
+    entrainment_speed: Array = quantity("knot", "pair")
+    slide_to_roll_ratio: Array = quantity("knot", "pair")
+    sliding_direction: Array = quantity("knot", "pair")
+    equivalent_radius: Array = quantity("knot", "pair")
+    pinion_curvature_radius: Array = quantity("knot", "pair", of="curvature_radius")
+    wheel_curvature_radius: Array = quantity("knot", "pair", of="curvature_radius")
+    stiffness: Array = quantity("knot", "pair", of="pair_stiffness")
+    tooth_stiffness: Array = quantity("knot", "pair")
+    corner_share: Array = quantity("knot", "end")
+    static_transmission_error: Array = quantity("knot")
+    mesh_stiffness_tangent: Array = quantity("knot")
+    ramp_deflection: Array = quantity("knot", "ramp")
+    ramp_stiffness: Array = quantity("knot", "ramp")
+    load_share: Array = quantity("knot", "pair")
+    normal_force: Array = quantity("knot", "pair")
+    load_per_width: Array = quantity("knot", "pair")
+    hertz_pressure: Array = quantity("knot", "pair")
+    friction_coefficient: Array = quantity("knot", "pair")
+    central_film: Array | None = quantity("knot", "pair")
+    minimum_film: Array | None = quantity("knot", "pair")
+    film_ratio: Array | None = quantity("knot", "pair")
+    film_pressure: Array | None = quantity("knot", "pair")
+    film_stiffness: Array | None = quantity("knot", "pair")
+    maximum_single_pair_stiffness: float = fact()
     gear_pair: SpurPair  # a NoGears, which says so when asked, where a table has none
-    pinion_speed: float
-    pinion_torque: float
-    composite_roughness: float
-    stiffness_model: str
-    friction_law: str
-    film_model: str
-    film_stiffness_kind: str
-    mesh_order: int = 0
+    pinion_speed: float = fact()
+    pinion_torque: float = fact()
+    composite_roughness: float = fact()
+    stiffness_model: str = fact()
+    friction_law: str = fact()
+    film_model: str = fact()
+    film_stiffness_kind: str = fact()
+    mesh_order: int = fact(default=0)
     direction: Array = field(default_factory=lambda: np.zeros(0))
-    friction_direction: Array | None = None
-    unloaded_transmission_error: Array | None = None
+    friction_direction: Array | None = quantity("knot", "pair", "coordinate", default=None)
+    unloaded_transmission_error: Array | None = quantity("knot", default=None)
 
     def __post_init__(self) -> None:
         if self.gears is not None:

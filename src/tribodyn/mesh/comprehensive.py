@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.build import build
@@ -266,12 +266,10 @@ def _listed(name: str, values: ArrayLike) -> Array:
     require_positive(name, listed, unit)
     if listed.ndim != 1 or listed.size == 0:
         raise InputError(
-            Problem(
-                what=f"{name} has the shape {listed.shape}",
-                where=f"argument {name}",
-                why="It is one value or a list of values",
-                remedy="Every torque is combined with every speed: give each value once",
-            )
+            f"{name} has the shape {listed.shape}",
+            where=f"argument {name}",
+            why="It is one value or a list of values",
+            remedy="Every torque is combined with every speed: give each value once",
         )
     return listed
 
@@ -279,10 +277,8 @@ def _listed(name: str, values: ArrayLike) -> Array:
 def _check_kind(film_model: str, kind: str) -> None:
     if film_model == "none" or kind == "none":
         raise InputError(
-            Problem(
-                what="no oil film" if film_model == "none" else 'kind = "none"',
-                where="argument film_model" if film_model == "none" else "argument kind",
-                why="The comprehensive stiffness is that of teeth and film",
-                remedy='Take film_model = "newton" and kind = "tangent"',
-            )
+            "no oil film" if film_model == "none" else 'kind = "none"',
+            where="argument film_model" if film_model == "none" else "argument kind",
+            why="The comprehensive stiffness is that of teeth and film",
+            remedy='Take film_model = "newton" and kind = "tangent"',
         )

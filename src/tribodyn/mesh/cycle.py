@@ -4,71 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 
-from tribodyn.contact import (
-    Kinematics,
-    PathOfContact,
-    effective_modulus,
-    hertz_line,
-    path_of_contact,
-)
+from tribodyn.contact import Kinematics, PathOfContact, effective_modulus, hertz_line
 from tribodyn.ehl import FILM_MODELS, moes_central
 from tribodyn.ehl.steady.solved_films import Films
-from tribodyn.errors import InputError, Problem, require_between
-from tribodyn.gear import Material, SpurPair
+from tribodyn.errors import require_between
+from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.types import Array, Index, Mask
-
-#: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
-COORDINATES = (
-    "pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta",
-)  # fmt: skip
-
-
-class NoGears:
-    """What stands for the gear pair in a table of another program: it says that there is none."""
-
-    def __getattr__(self, name: str) -> NoReturn:
-        """Answer every question about the gears with one sentence."""
-        if name.startswith("__"):
-            raise AttributeError(name)
-        raise InputError(
-            Problem(
-                what="this mesh table has no gear pair",
-                where="MeshTable.gear_pair",
-                why="Another program made it, and such a table knows contacts, not gears",
-                remedy="Ask for what is a column of the table",
-            )
-        )
-
-    def __repr__(self) -> str:
-        """One line."""
-        return "no gear pair"
-
-
-@dataclass(frozen=True)
-class GearData:
-    """The spur gears behind a mesh table; tables of other programs have none."""
-
-    pair: SpurPair  #: both gears in their working position
-
-    @property
-    def direction(self) -> Array:
-        """Change of the compression with each of the :data:`COORDINATES` [1 or m]."""
-        sign = 1.0 if self.pair.driver == "pinion" else -1.0
-        radii = (self.pair.pinion.base_radius, self.pair.wheel.base_radius)
-        return np.asarray(sign * np.array([0.0, 1.0, radii[0], 0.0, -1.0, -radii[1]]))
-
-    @property
-    def pitch_point_age(self) -> float | None:
-        """Mesh cycles from entry to pitch point; None where that is outside of the contact."""
-        contact = path_of_contact(self.pair)
-        age = contact.direction * (contact.C - contact.A) / self.pair.base_pitch
-        return float(age) if 0.0 <= age < contact.contact_ratio else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,13 +57,14 @@ class MeshCycle:
         return self.contact.kinematics(self.path[self.in_contact], pinion_speed)
 
 
-def mesh_cycle(pair: SpurPair, steps: int) -> MeshCycle:
+def mesh_cycle(contact: PathOfContact, steps: int) -> MeshCycle:
     """Place all tooth pairs over one mesh cycle."""
-    contact = path_of_contact(pair)
     grid = phase_grid(contact.event_phases(), steps)
     middle, in_contact = contact.pair_paths(grid.middle)
     # Advance from the middle of the segment, so that both of its ends keep its pairs.
-    path = middle + contact.direction * pair.base_pitch * (grid.phase - grid.middle)[:, None]
+    path = (
+        middle + contact.direction * contact.pair.base_pitch * (grid.phase - grid.middle)[:, None]
+    )
     return MeshCycle(contact, grid, path, in_contact)
 
 

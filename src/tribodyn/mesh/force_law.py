@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, require_between
 from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction, PhaseGrid
 from tribodyn.types import Array
 
@@ -312,4 +312,4 @@ def at_rest(place: Array, stiffness: Array, force: float) -> tuple[Array, Array]
 
 
 def _refuse(what: str, why: str) -> None:
-    raise InputError(Problem(what=what, where="MeshForceLaw", why=why))
+    raise InputError(what, where="MeshForceLaw", why=why)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.errors import InputError, require_between
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.types import Array
@@ -85,13 +85,11 @@ class MeshFunctions:
         tangent, static = self.tangent_stiffness, self.static_transmission_error
         if tangent is None or static is None or self.total_normal_force is None:
             raise InputError(
-                Problem(
-                    what="this mesh has no tangent stiffness",
-                    where="argument mesh_force",
-                    why="Tangent stiffness and static transmission error come from a loaded tooth "
-                    "contact",
-                    remedy='Take such a stiffness model, or mesh_force = "stiffness"',
-                )
+                "this mesh has no tangent stiffness",
+                where="argument mesh_force",
+                why="Tangent stiffness and static transmission error come from a loaded tooth "
+                "contact",
+                remedy='Take such a stiffness model, or mesh_force = "stiffness"',
             )
         return np.asarray(static(phase) - self.total_normal_force / np.asarray(tangent(phase)))
 
@@ -236,22 +234,18 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
 def _check(tables: Sequence[MeshColumns], nominal: MeshColumns, ratio: Array) -> None:
     if np.unique(ratio).size <= _TERMS:
         raise InputError(
-            Problem(
-                what=f"{np.unique(ratio).size} different loads",
-                where="argument tables",
-                why=f"A polynomial with {_TERMS} terms goes through more than {_TERMS} loads",
-                remedy="Build the mesh at the loads in tribodyn.mesh.LOADS",
-            )
+            f"{np.unique(ratio).size} different loads",
+            where="argument tables",
+            why=f"A polynomial with {_TERMS} terms goes through more than {_TERMS} loads",
+            remedy="Build the mesh at the loads in tribodyn.mesh.LOADS",
         )
     require_between("load over the nominal load", ratio, 0.0, np.inf, "")
     for number, table in enumerate(tables):
         same = np.array_equal(table.phase, nominal.phase)
         if not (same and np.isclose(table.pinion_speed, nominal.pinion_speed)):
             raise InputError(
-                Problem(
-                    what=f"table {number} is of another mesh or another speed",
-                    where="argument tables",
-                    why="Friction is joined over the load alone",
-                    remedy="Change nothing but pinion_torque between the tables",
-                )
+                f"table {number} is of another mesh or another speed",
+                where="argument tables",
+                why="Friction is joined over the load alone",
+                remedy="Change nothing but pinion_torque between the tables",
             )

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
@@ -171,21 +171,17 @@ def phase_grid(event_phases: tuple[float, ...], steps: int = 512) -> PhaseGrid:
     edges = np.array((*event_phases, 1.0))
     if edges[0] != 0.0 or np.any(np.diff(edges) <= 0.0):
         raise InputError(
-            Problem(
-                what=f"event phases {', '.join(f'{edge:g}' for edge in event_phases)}",
-                where="argument event_phases",
-                why="They start with 0, increase and stay below 1",
-                remedy="Sort the phases and remove repeated ones",
-            )
+            f"event phases {', '.join(f'{edge:g}' for edge in event_phases)}",
+            where="argument event_phases",
+            why="They start with 0, increase and stay below 1",
+            remedy="Sort the phases and remove repeated ones",
         )
     if steps < 16:
         raise InputError(
-            Problem(
-                what=f"steps = {steps}",
-                where="argument steps",
-                why="A mesh cycle needs at least 16 intervals",
-                remedy="Give for example steps = 512",
-            )
+            f"steps = {steps}",
+            where="argument steps",
+            why="A mesh cycle needs at least 16 intervals",
+            remedy="Give for example steps = 512",
         )
     halves = np.rint(0.5 * steps * np.diff(edges)).astype(int)
     intervals = tuple(max(_LEAST_INTERVALS, 2 * int(half)) for half in halves)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl.steady.solved_films import Films
-from tribodyn.errors import ComputationError, Problem, quiet, warn
+from tribodyn.errors import ComputationError, quiet, warn
 from tribodyn.friction import PitchPoint, TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
@@ -247,10 +247,8 @@ def _extrapolated(earlier: list[Array], in_contact: Mask) -> Array:
 
 def _unsettled(what: str) -> ComputationError:
     return ComputationError(
-        Problem(
-            what=what,
-            where="film stiffness in series with the teeth",
-            why="The film of a lightly loaded pair is softer than its teeth",
-            remedy='Give more torque, or set film.stiffness = "none"',
-        )
+        what,
+        where="film stiffness in series with the teeth",
+        why="The film of a lightly loaded pair is softer than its teeth",
+        remedy='Give more torque, or set film.stiffness = "none"',
     )

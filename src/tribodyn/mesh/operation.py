@@ -11,16 +11,15 @@ from numpy.typing import ArrayLike
 
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line, path_of_contact
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import PathPositions, path_positions
 from tribodyn.mesh.film.film_columns import as_columns, film_places
 from tribodyn.mesh.sharing import LEAST_SHARE, teeth_of
 from tribodyn.mesh.tooth_contact import ToothContact
-from tribodyn.nomenclature import QUANTITIES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, quantity, record
+from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, Mask
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
@@ -81,15 +80,6 @@ class FilmOverOperation(Record):
         film = self.minimum_film if self.minimum_film is not None else self.central_film
         least = "no film" if film is None else f"films from {np.nanmin(film) * 1e6:.4g} um"
         return "FilmOverOperation({} torques, {} speeds, {} positions, {})".format(*shape, least)
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        for place in (parts.variables, parts.coordinates):
-            for name, (dims, values, _) in place.items():
-                known = QUANTITIES[name]
-                told = {"units": known.unit or "1", "long_name": known.meaning}
-                place[name] = (dims, values, told)
-        return parts
 
 
 def film_over_operation(
@@ -218,12 +208,10 @@ def _check(speed: Array, torque: Array, composite_roughness: float) -> None:
     for name, values in (("pinion_speed", speed), ("pinion_torque", torque)):
         if values.ndim != 1 or values.size == 0:
             raise InputError(
-                Problem(
-                    what=f"{name} has the shape {values.shape}",
-                    where=f"argument {name}",
-                    why="It is one value or a list of values",
-                    remedy="Every torque is combined with every speed: give each value once",
-                )
+                f"{name} has the shape {values.shape}",
+                where=f"argument {name}",
+                why="It is one value or a list of values",
+                remedy="Every torque is combined with every speed: give each value once",
             )
 
 

@@ -1,95 +1,27 @@
-"""A mesh table as a labelled data set, and to and from a netCDF file."""
+"""Mesh tables in files: read from netCDF, and written as text for other programs."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import MISSING, Field, asdict, fields
+from dataclasses import MISSING, Field, fields
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, OutputExistsError, Problem, quiet
-from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
-from tribodyn.mesh.cycle import NoGears
+from tribodyn.errors import InputError, OutputExistsError
+from tribodyn.files import whole
+from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.gears import COORDINATES, NoGears, read_pair
 from tribodyn.mesh.grid import PhaseGrid
-from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.record import labels_of
 from tribodyn.types import Array
 
-if TYPE_CHECKING:
-    import xarray
-
-
-_FORMAT = "tribodyn mesh table 3"
-#: A table without gears, which earlier versions cannot read.
-_FORMAT_WITHOUT_GEARS = "tribodyn mesh table 4"
+#: What the attribute ``format`` of a file says; earlier versions cannot read one without gears.
+FORMAT, FORMAT_WITHOUT_GEARS = "tribodyn mesh table 3", "tribodyn mesh table 4"
 #: Tables of independent pairs, as they were written before; the first without a film in series.
 _EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
-#: Columns whose quantity has another name in the nomenclature.
-_QUANTITY = {
-    "stiffness": "pair_stiffness",
-    "pinion_curvature_radius": "curvature_radius",
-    "wheel_curvature_radius": "curvature_radius",
-    "phase": "mesh_phase",
-}
-#: Second dimension of columns that are not over the pairs.
-_OVER = {"ramp_deflection": "ramp", "ramp_stiffness": "ramp", "corner_share": "end"}
-_DERIVED = ("mesh_stiffness", "friction_sum", "friction_moment_pinion", "friction_moment_wheel")
-
-
-def to_xarray(table: MeshTable) -> xarray.Dataset:
-    """Convert a mesh table to a labelled data set."""
-    import xarray
-
-    variables: dict[str, Any] = {}
-    attributes: dict[str, Any] = {"format": _FORMAT, "mesh_order": table.mesh_order}
-    if table.gears is None:
-        attributes["format"] = _FORMAT_WITHOUT_GEARS
-    else:
-        attributes["gear_pair"] = _write_pair(table.gears.pair)
-    for field in fields(table):
-        value = getattr(table, field.name)
-        if field.name == "direction" and table.gears is not None:
-            continue  # It follows from the gears.
-        if isinstance(value, np.ndarray):
-            variables[field.name] = (_dimensions(field.name, value), value, _describe(field.name))
-        elif isinstance(value, float | str):
-            attributes[field.name] = value
-    for name in _DERIVED:
-        variables[name] = (("knot",), getattr(table, name), _describe(name))
-    coordinates = {
-        "phase": (("knot",), table.phase, _describe("phase")),
-        "event_phase": (("event",), np.array(table.event_phases), _describe("phase")),
-        "intervals": (("event",), np.array(table.grid.intervals)),
-    }
-    return xarray.Dataset(variables, coordinates, attributes)
-
-
-def _dimensions(name: str, values: Array) -> tuple[str, ...]:
-    if name == "direction":
-        return ("knot", "coordinate")[-values.ndim :]
-    return ("knot", _OVER.get(name, "pair"), "coordinate")[: values.ndim]
-
-
-def _describe(column: str) -> dict[str, str]:
-    quantity = QUANTITIES[_QUANTITY.get(column, column)]
-    return {"units": quantity.unit or "1", "long_name": quantity.meaning}
-
-
-def save(table: MeshTable, path: str | PathLike[str]) -> None:
-    """Write a mesh table to a netCDF file."""
-    if Path(path).exists():
-        raise OutputExistsError(
-            Problem(
-                what=f"{path} exists already",
-                where="argument path",
-                why="An existing file is never overwritten",
-                remedy="Choose another name or remove the file",
-            )
-        )
-    to_xarray(table).to_netcdf(Path(path), engine="h5netcdf")
 
 
 def is_mesh_table(path: Path) -> bool:
@@ -103,8 +35,8 @@ def is_mesh_table(path: Path) -> bool:
         return False
 
 
-def load(path: str | PathLike[str]) -> MeshTable:
-    """Read a mesh table from a netCDF file."""
+def stored_values(path: str | PathLike[str]) -> dict[str, Any]:
+    """Fields of the mesh table in a netCDF file."""
     import xarray
 
     try:
@@ -112,23 +44,23 @@ def load(path: str | PathLike[str]) -> MeshTable:
             data = opened.load()
     except (OSError, ValueError) as error:
         raise _unreadable(path, str(error)) from error
-    if data.attrs.get("format") not in (_FORMAT, _FORMAT_WITHOUT_GEARS, *_EARLIER):
+    if data.attrs.get("format") not in (FORMAT, FORMAT_WITHOUT_GEARS, *_EARLIER):
         raise _unreadable(path, f"its format is {data.attrs.get('format', 'not named')}")
     grid = PhaseGrid(
         tuple(float(value) for value in data["event_phase"].values),
         tuple(int(value) for value in data["intervals"].values),
     )
     told = data.attrs.get("gear_pair")
-    pair = _read_pair(told) if told is not None else NoGears()
+    pair = read_pair(told) if told is not None else NoGears()
     values: dict[str, Any] = {"grid": grid, "gear_pair": pair}
-    for field in fields(MeshTable):
+    for field in fields(MeshColumns):
         if field.name in data:
             values[field.name] = data[field.name].values
         elif field.name not in values and (told is None or _is_required(field)):
             values[field.name] = _plain(data.attrs.get(field.name))
     if data.attrs["format"] in _EARLIER:
         values = _earlier(values)
-    return MeshTable(**values)
+    return values
 
 
 def _is_required(field: Field[Any]) -> bool:
@@ -159,31 +91,68 @@ def _plain(value: Any) -> Any:
 
 def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
     return InputError(
-        Problem(
-            what=f"{path} is no mesh table",
-            where="argument path",
-            why=reason,
-            remedy="Give a file that MeshTable.save wrote",
-        )
+        f"{path} is no mesh table",
+        where="argument path",
+        why=reason,
+        remedy="Give a file that MeshTable.save wrote",
     )
 
 
-def _write_pair(pair: SpurPair) -> str:
-    return json.dumps(asdict(pair))
+#: Columns of a text file that stand once, for each ramp, for each contact, for each coordinate.
+OF_THE_MESH = (
+    "phase",
+    "static_transmission_error",
+    "unloaded_transmission_error",
+    "mesh_stiffness_tangent",
+)
+OF_RAMPS, DIRECTIONS = ("ramp_deflection", "ramp_stiffness"), ("direction", "friction_direction")
+_LABELS = labels_of(MeshColumns)
+OF_CONTACTS = tuple(
+    name
+    for name, labels in _LABELS.items()
+    if labels.dims in (("knot", "pair"), ("knot", "end")) and name != "normal_force"
+)
+UNITS = {"phase": ""} | {
+    name: QUANTITIES[_LABELS[name].of or name if name in _LABELS else name].unit
+    for name in (*OF_THE_MESH[1:], *OF_RAMPS, *OF_CONTACTS, *DIRECTIONS)
+}
+#: What holds for the whole file.
+_OF_THE_FILE = (
+    "base_radius_pinion",
+    "base_radius_wheel",
+    "pinion_torque",
+    "pinion_speed",
+    "maximum_single_pair_stiffness",
+)
+FACTS = {name: QUANTITIES[name].unit for name in _OF_THE_FILE}
 
 
-def _read_pair(text: str) -> SpurPair:
-    values = json.loads(text)
-    with quiet():
-        # Whoever made the table has seen what there was to say about these gears.
-        for name in ("pinion", "wheel"):
-            rack = BasicRack(**values[name].pop("rack"))
-            modification = _read_modification(values[name].pop("modification", {}))
-            values[name] = SpurGear(rack=rack, modification=modification, **values[name])
-        return SpurPair(**values)
-
-
-def _read_modification(values: dict[str, Any]) -> FlankModification:
-    """Modification of a gear; tables from before there were any have none."""
-    chart = values.pop("profile_map", None)
-    return FlankModification(profile_map=ProfileMap(**chart) if chart else None, **values)
+def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
+    """Write a mesh table as CSV, of which :mod:`tribodyn.mesh.table_file` makes an equal one."""
+    place = Path(path)
+    if place.exists():
+        why = "An existing file is never overwritten"
+        raise OutputExistsError(f"{path} exists already", "argument path", why)
+    facts = {name: float(getattr(table, name)) for name in FACTS}
+    columns: dict[str, Array] = {"phase": table.phase}
+    for name, unit in UNITS.items():
+        values = table.phase if name == "phase" else getattr(table, name)
+        if values is None or (name == "direction" and values.ndim == 1):
+            continue
+        flat = np.asarray(values, dtype=float).reshape(table.phase.size, -1)
+        if name in DIRECTIONS:
+            heads = [f"{name}_{c}" for c in COORDINATES]
+            if name != "direction":
+                heads = [f"{h}_{i + 1}" for i in range(flat.shape[1] // 6) for h in heads]
+        else:
+            several = name not in OF_THE_MESH
+            heads = [f"{name}_{i + 1}" if several else name for i in range(flat.shape[1])]
+        columns |= {
+            f"{head} [{unit or '-'}]" if name != "phase" else head: flat[:, number]
+            for number, head in enumerate(heads)
+        }
+    lines = [f"# {name} = {value!r} {FACTS[name]}" for name, value in facts.items()]
+    lines.append(",".join(columns))
+    lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
+    with whole(place) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -2,30 +2,37 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction
+from tribodyn.mesh.storage import FORMAT, FORMAT_WITHOUT_GEARS, stored_values, write_csv
+from tribodyn.record import Labels, Parts, record
 from tribodyn.types import Array
 
-if TYPE_CHECKING:
-    import xarray
 
-
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class MeshTable(MeshColumns):
     """One mesh cycle of the tooth contact, made by :func:`tribodyn.mesh.build`.
 
     Parameters and columns are those of :class:`tribodyn.mesh.MeshColumns`.
     """
+
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "mesh_stiffness": Labels(("knot",)),
+        "friction_sum": Labels(("knot",)),
+        "friction_moment_pinion": Labels(("knot",)),
+        "friction_moment_wheel": Labels(("knot",)),
+        "phase": Labels(("knot",), axis=True, of="mesh_phase"),
+    }
 
     @property
     def mean_mesh_stiffness(self) -> float:
@@ -94,12 +101,10 @@ class MeshTable(MeshColumns):
         values = getattr(self, column, None)
         if not isinstance(values, np.ndarray):
             raise InputError(
-                Problem(
-                    what=f'the mesh table has no column "{column}"',
-                    where="argument column",
-                    why=f"Its columns are: {', '.join(self._columns())}",
-                    remedy="Name one of them",
-                )
+                f'the mesh table has no column "{column}"',
+                where="argument column",
+                why=f"Its columns are: {', '.join(self._columns())}",
+                remedy="Name one of them",
             )
         if values.dtype == np.bool_:
             return np.asarray(PhaseFunction(self.grid, values.astype(float))(phase) > 0.5)
@@ -133,9 +138,8 @@ class MeshTable(MeshColumns):
         return float(self.at(column, phase)[number]) if touches else None
 
     def _columns(self) -> list[str]:
-        derived = ["mesh_stiffness", "friction_sum", "friction_moment_pinion"]
         stored = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]
-        return [*stored, *derived, "friction_moment_wheel"]
+        return [*stored, *(name for name in self.DERIVED if name != "phase")]
 
     def functions(self) -> MeshFunctions:
         """Hand over what a dynamic model reads, as functions of mesh phase.
@@ -171,34 +175,21 @@ class MeshTable(MeshColumns):
         """Force over deflection at every mesh phase."""
         return MeshForceLaw(self.grid, self.ramp_deflection, self.ramp_stiffness)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Convert to a labelled data set with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``knot``, ``pair`` and ``event``.
-        """
-        from tribodyn.mesh.storage import to_xarray
-
-        return to_xarray(self)
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the table to a netCDF file.
-
-        Parameters
-        ----------
-        path : str or path
-            File to write; an existing one is an error.
-
-        Raises
-        ------
-        OutputExistsError
-            If the file exists.
-        """
-        from tribodyn.mesh.storage import save
-
-        save(self, path)
+    def _parts(self) -> Parts:
+        """Columns with those that follow from them, and what tells the file from others."""
+        parts = super()._parts()
+        attributes = {"format": FORMAT, **parts.attributes}
+        if self.gears is None:
+            attributes["format"] = FORMAT_WITHOUT_GEARS
+            dims = ("knot", "coordinate")[-self.direction.ndim :]
+            told = self._told("direction", Labels(dims))
+            parts.variables["direction"] = (dims, self.direction, told)
+        else:
+            attributes["gear_pair"] = self.gears.written()
+        told = self._told("mesh_phase", Labels(("event",)))
+        parts.coordinates["event_phase"] = ("event", np.array(self.event_phases), told)
+        parts.coordinates["intervals"] = ("event", np.array(self.grid.intervals))
+        return parts._replace(attributes=attributes)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the columns of the force law, of friction and of the contacts as text.
@@ -215,8 +206,6 @@ class MeshTable(MeshColumns):
         OutputExistsError
             If the file exists.
         """
-        from tribodyn.mesh.table_file import write_csv
-
         write_csv(self, path)
 
     @classmethod
@@ -238,9 +227,7 @@ class MeshTable(MeshColumns):
         InputError
             If there is no such file, or it holds no mesh table.
         """
-        from tribodyn.mesh.storage import load
-
-        return load(path)
+        return cls(**stored_values(path))
 
     def plot_stiffness(self) -> Any:
         """Draw pair and mesh stiffness over the mesh cycle.

@@ -13,39 +13,25 @@ from typing import Any, NoReturn, cast
 import numpy as np
 
 from tribodyn import units
-from tribodyn.errors import InputError, OutputExistsError, Problem
-from tribodyn.mesh.cycle import COORDINATES, GearData, NoGears
+from tribodyn.errors import InputError
 from tribodyn.mesh.force_law import at_rest
+from tribodyn.mesh.gears import COORDINATES, GearData, NoGears
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
-from tribodyn.mesh.storage import is_mesh_table, load
+from tribodyn.mesh.storage import (
+    DIRECTIONS,
+    FACTS,
+    OF_CONTACTS,
+    OF_RAMPS,
+    OF_THE_MESH,
+    UNITS,
+    is_mesh_table,
+)
 from tribodyn.mesh.table import MeshTable
 from tribodyn.types import Array
 
-#: Unit of every column; those of the first group stand once, the others once for each contact.
-_OF_THE_MESH = {
-    "phase": "", "static_transmission_error": "m", "unloaded_transmission_error": "m",
-    "mesh_stiffness_tangent": "N/m",
-}  # fmt: skip
-_OF_RAMPS = {"ramp_deflection": "m", "ramp_stiffness": "N/m"}
-_OF_CONTACTS = {
-    "stiffness": "N/m", "load_share": "", "in_contact": "", "friction_coefficient": "",
-    "sliding_direction": "", "pinion_curvature_radius": "m", "wheel_curvature_radius": "m",
-    "corner_share": "", "tooth_stiffness": "N/m", "path": "m", "load_per_width": "N/m",
-    "hertz_pressure": "Pa", "sliding_speed": "m/s", "entrainment_speed": "m/s",
-    "slide_to_roll_ratio": "", "equivalent_radius": "m", "central_film": "m",
-    "minimum_film": "m", "film_ratio": "", "film_pressure": "Pa", "film_stiffness": "N/m",
-}  # fmt: skip
-_DIRECTIONS = ("direction", "friction_direction")
-_UNITS = {**_OF_THE_MESH, **_OF_RAMPS, **_OF_CONTACTS, **dict.fromkeys(_DIRECTIONS, "")}
-#: What holds for the whole file.
-_FACTS = {
-    "base_radius_pinion": "m", "base_radius_wheel": "m", "pinion_torque": "N*m",
-    "pinion_speed": "rad/s", "maximum_single_pair_stiffness": "N/m",
-}  # fmt: skip
 #: Columns that only tell of the contact and may hold NaN.
-_TOLD = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness",
-         "hertz_pressure", "path")  # fmt: skip
 _FILMS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
+_TOLD = (*_FILMS, "hertz_pressure", "path")
 _SPEEDS = ("sliding_speed", "entrainment_speed")
 _FRICTION = ("sliding_direction", "pinion_curvature_radius", "wheel_curvature_radius")
 _HEADER = re.compile(r"([a-z_]+?)(?:_(\d+))?\s*(?:\[([^\]]*)\])?")
@@ -155,7 +141,7 @@ class TableFile:
         names = {field.name for field in fields(MeshTable)}
         for name in ("friction_coefficient", *_FRICTION):
             columns.setdefault(name, np.zeros(shape))
-        for name in set(_OF_CONTACTS) & names:
+        for name in names.intersection(OF_CONTACTS):
             columns.setdefault(name, np.full(shape, np.nan) if name not in _FILMS else None)  # type: ignore[arg-type]
         columns.setdefault("friction_direction", None)  # type: ignore[arg-type]
         columns.setdefault("unloaded_transmission_error", None)  # type: ignore[arg-type]
@@ -174,12 +160,10 @@ class TableFile:
         if stated is None or self.has_force_law or abs(torque - stated) <= _SAME_TORQUE * stated:
             return
         raise InputError(
-            Problem(
-                f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m",
-                "argument pinion_torque",
-                "Its stiffness holds for that load alone: it has no force law",
-                f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table",
-            )
+            f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m",
+            "argument pinion_torque",
+            "Its stiffness holds for that load alone: it has no force law",
+            f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table",
         )
 
     def _need_friction_columns(self) -> None:
@@ -204,21 +188,21 @@ def read_table_file(path: str | os.PathLike[str]) -> TableFile:
 
 
 def _own(place: Path) -> TableFile:
-    table = load(place)
+    table = MeshTable.load(place)
     columns = {
         field.name: value
         for field in fields(table)
         if isinstance(value := getattr(table, field.name), np.ndarray)
-        and field.name in (*_UNITS, "normal_force")
+        and field.name in (*UNITS, "normal_force")
     }
     if table.gears is not None:
         del columns["direction"]
-    facts = {name: float(getattr(table, name)) for name in _FACTS}
+    facts = {name: float(getattr(table, name)) for name in FACTS}
     return TableFile(str(place), table.grid, columns, facts, table.gears)
 
 
 def _refuse(path: Any, what: str, why: str, remedy: str, where: str = "") -> NoReturn:
-    raise InputError(Problem(what, f"{path}: {where}" if where else str(path), why, remedy))
+    raise InputError(what, f"{path}: {where}" if where else str(path), why, remedy)
 
 
 def _checked(
@@ -231,7 +215,7 @@ def _checked(
         why = "A contact carries by a stiffness or by the ramps of a force law"
         remedy = "Add stiffness, or ramp_deflection and ramp_stiffness"
         _refuse(path, "the column stiffness is missing", why, remedy)
-    for one, other in (_OF_RAMPS, tuple(_OF_RAMPS)[::-1]):
+    for one, other in (OF_RAMPS, OF_RAMPS[::-1]):
         if one in columns and other not in columns:
             _refuse(path, f"the column {other} is missing", "Each ramp has both", f"Add {other}")
     radii = [f"base_radius_{gear}" for gear in ("pinion", "wheel")]
@@ -345,24 +329,24 @@ def _in_si(path: Any, name: str, unit: str, values: Array) -> Array:
     """Column in SI; a unit of another kind is refused."""
     if unit in ("", "-", "1"):
         unit = ""
-    if unit == _UNITS[name] or (name in _DIRECTIONS and unit in ("", "m")):
+    if unit == UNITS[name] or (name in DIRECTIONS and unit in ("", "m")):
         return values
     shown = f"{name} [{unit or '1'}]"
-    if not unit or not _UNITS[name]:
-        why = f"It is given in {_UNITS[name] or '1'}"
+    if not unit or not UNITS[name]:
+        why = f"It is given in {UNITS[name] or '1'}"
         _refuse(path, f"the unit of {shown} does not fit", why, "Correct the unit", name)
     try:
-        return np.asarray(values * units.convert(1.0, unit, _UNITS[name]))
+        return np.asarray(values * units.convert(1.0, unit, UNITS[name]))
     except Exception:
-        why = f"It is given in {_UNITS[name]}, or in a unit of the same kind"
+        why = f"It is given in {UNITS[name]}, or in a unit of the same kind"
         _refuse(path, f"the unit of {shown} does not fit", why, "Correct the unit", name)
 
 
 def _fact(path: Any, name: str, value: Any) -> float:
     try:
-        number = float(value) if not isinstance(value, str) else units.parse(value, _FACTS[name])
+        number = float(value) if not isinstance(value, str) else units.parse(value, FACTS[name])
     except Exception as error:
-        _refuse(path, f"{name} = {value}", str(error), f"Write {name} in {_FACTS[name]}", name)
+        _refuse(path, f"{name} = {value}", str(error), f"Write {name} in {FACTS[name]}", name)
     if not (np.isfinite(number) and number > 0.0):
         _refuse(path, f"{name} = {value}", "It is greater than zero", "Correct it", name)
     return number
@@ -392,7 +376,7 @@ def _csv(place: Path) -> tuple[dict[str, float], dict[str, Array], list[float]]:
             except ValueError:
                 what = f'"{entry}" in row {number + 1} is no number'
                 _refuse(place, what, "Numbers have a decimal point", "Correct it", names[column])
-    facts = {n: _fact(place, n, told.strip()) for n, told in stated if n in _FACTS}
+    facts = {n: _fact(place, n, told.strip()) for n, told in stated if n in FACTS}
     events = [_event(place, e) for n, told in stated if n == "events" for e in told.split(",")]
     return facts, _gathered(place, names, values), events
 
@@ -411,12 +395,12 @@ def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
         match = _HEADER.fullmatch(header.strip())
         name, number, unit = match.groups() if match else (header, None, None)
         coordinate = 0
-        for of in _DIRECTIONS[::-1]:
+        for of in DIRECTIONS[::-1]:
             if name.startswith(f"{of}_") and name.removeprefix(f"{of}_") in COORDINATES:
                 coordinate = COORDINATES.index(name.removeprefix(f"{of}_"))
                 name = of
-        if name not in _UNITS:
-            known = ", ".join(_UNITS)
+        if name not in UNITS:
+            known = ", ".join(UNITS)
             _refuse(place, f'the column "{header}" is unknown', f"Known are {known}", "Rename it")
         at = (int(number or 1) - 1, coordinate)
         if at in found.setdefault(name, {}):
@@ -428,9 +412,9 @@ def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
 def _stacked(place: Path, name: str, parts: dict[tuple[int, int], Array]) -> Array:
     count = max(contact for contact, _ in parts) + 1
     rows = next(iter(parts.values())).size
-    if name in _OF_THE_MESH:
+    if name in OF_THE_MESH:
         return parts[0, 0]
-    if name in _DIRECTIONS:
+    if name in DIRECTIONS:
         whole = np.zeros((rows, count, len(COORDINATES)))
         for (contact, coordinate), values in parts.items():
             whole[:, contact, coordinate] = values
@@ -451,45 +435,14 @@ def _netcdf(place: Path) -> tuple[dict[str, float], dict[str, Array]]:
     except (OSError, ValueError) as error:
         _refuse(place, "the mesh table cannot be read", str(error), "Give a netCDF 4 file")
     columns = {}
-    for name in (name for name in _UNITS if name in data):
+    for name in (name for name in UNITS if name in data):
         values = np.asarray(data[name].values, dtype=float)
-        if values.ndim == 1 and name not in _OF_THE_MESH:
+        if values.ndim == 1 and name not in OF_THE_MESH:
             values = values[:, None]
         columns[name] = _in_si(place, name, str(data[name].attrs.get("units", "")), values)
     sizes = {name: values.shape[0] for name, values in columns.items()}
     if len(set(sizes.values())) > 1:
         what = ", ".join(f"{name} has {size} rows" for name, size in sizes.items())
         _refuse(place, what, "The first dimension of every column is the phase", "Transpose it")
-    facts = {n: _fact(place, n, data.attrs[n]) for n in _FACTS if n in data.attrs}
+    facts = {n: _fact(place, n, data.attrs[n]) for n in FACTS if n in data.attrs}
     return facts, columns
-
-
-def write_csv(table: MeshTable, path: str | os.PathLike[str]) -> None:
-    """Write a mesh table as CSV, from which :func:`read_table_file` makes an equal one."""
-    place = Path(path)
-    if place.exists():
-        why = "An existing file is never overwritten"
-        raise OutputExistsError(Problem(f"{path} exists already", "argument path", why))
-    facts = {name: float(getattr(table, name)) for name in _FACTS}
-    columns: dict[str, Array] = {"phase": table.phase}
-    for name, unit in _UNITS.items():
-        values = table.phase if name == "phase" else getattr(table, name)
-        if values is None or (name == "direction" and values.ndim == 1):
-            continue
-        flat = np.asarray(values, dtype=float).reshape(table.phase.size, -1)
-        if name in _DIRECTIONS:
-            heads = [f"{name}_{c}" for c in COORDINATES]
-            heads = heads if name == "direction" else [
-                f"{h}_{i + 1}" for i in range(flat.shape[1] // 6) for h in heads
-            ]  # fmt: skip
-        else:
-            several = name not in _OF_THE_MESH
-            heads = [f"{name}_{i + 1}" if several else name for i in range(flat.shape[1])]
-        columns |= {
-            f"{head} [{unit or '-'}]" if name != "phase" else head: flat[:, number]
-            for number, head in enumerate(heads)
-        }
-    lines = [f"# {name} = {value!r} {_FACTS[name]}" for name, value in facts.items()]
-    lines.append(",".join(columns))
-    lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
-    place.write_text("\n".join(lines) + "\n", encoding="utf-8")

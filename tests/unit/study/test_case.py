@@ -196,3 +196,15 @@ def test_the_document_behind_a_case_is_cited() -> None:
     assert "authors and year not known" in cite(case)
     assert case.lubricant_properties.source.rstrip(".") in cite(case)
     assert "Values of the case" not in cite(case.replace({"origin": None}))
+
+
+def test_ra_becomes_rms_and_is_told(case: Any) -> None:
+    ra = {f"gears.{gear}.roughness_ra": "0.4 um" for gear in ("pinion", "wheel")}
+    rough = case.replace({"gears.composite_roughness": None, **ra})
+    assert rough.composite_roughness == pytest.approx(math.sqrt(2.0) * 0.5e-6)
+    told = {row.key: row for row in assumptions(rough)}
+    assert told["gears.pinion.roughness_rms"].value == "0.5 um"
+    assert "Rq = 1.25 Ra" in told["gears.wheel.roughness_rms"].reason
+    again = read_case(rough.to_toml())
+    assert again == rough
+    assert again.composite_roughness == rough.composite_roughness

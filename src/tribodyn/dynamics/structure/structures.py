@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
 
 Pair = tuple[float, float]
+#: A value for both gears, or one for each.
+Support = float | tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -136,11 +138,10 @@ _NO_SHAFTS = "That model has no shafts"
 
 def _supports(default: Any) -> dict[str, Option]:
     """Options of gears on springs and dampers."""
+    pair: dict[str, Any] = {"pair": True, "absent": _FIXED}
     return {
-        "bearing_stiffness": number(
-            default, 1e3, 1e13, _GUARD, of="bearing_stiffness", absent=_FIXED
-        ),
-        "bearing_damping": number(None, 0.0, 1e9, _GUARD, of="bearing_damping", absent=_FIXED),
+        "bearing_stiffness": number(default, 1e3, 1e13, _GUARD, of="bearing_stiffness", **pair),
+        "bearing_damping": number(None, 0.0, 1e9, _GUARD, of="bearing_damping", **pair),
         "bearing_damping_ratio": number(
             0.02, 0.0, 2.0, "supports lie between 0.01 and 0.1",
             meaning="damping of each gear on its bearing over its critical value", absent=_FIXED,
@@ -148,13 +149,19 @@ def _supports(default: Any) -> dict[str, Option]:
     }  # fmt: skip
 
 
+def both(value: Support | None) -> Pair:
+    """Values of the supports of pinion and wheel: two, or one for both; zero where none is."""
+    return (value[0], value[1]) if isinstance(value, tuple) else (value or 0.0, value or 0.0)
+
+
 def support_damping(
-    stiffness: float | None, mass: float, damping: float | None, ratio: float | None
-) -> float:
-    """Damping of a support [N*s/m]: given, or a part of its critical value."""
+    stiffness: Support | None, mass: Pair, damping: Support | None, ratio: float | None
+) -> Pair:
+    """Damping of the supports of both gears [N*s/m]: given, or a part of its critical value."""
     if damping is not None or stiffness is None:
-        return damping or 0.0
-    return 2.0 * (ratio or 0.0) * math.sqrt(stiffness * mass)
+        return both(damping)
+    critical = [2.0 * math.sqrt(k * m) for k, m in zip(both(stiffness), mass, strict=True)]
+    return ((ratio or 0.0) * critical[0], (ratio or 0.0) * critical[1])
 
 
 @STRUCTURES.define(
@@ -166,22 +173,20 @@ def support_damping(
 def _spur6(
     gears: Gearing,
     *,
-    bearing_stiffness: float | None,
-    bearing_damping: float | None,
+    bearing_stiffness: Support | None,
+    bearing_damping: Support | None,
     bearing_damping_ratio: float | None,
 ) -> System:
-    stiffness = bearing_stiffness or 0.0
     return spur6(
         gears.mesh,
         mass=gears.mass,
         moment_of_inertia=gears.moment_of_inertia,
         base_radius=gears.base_radius,
         torque=gears.torque,
-        bearing_stiffness=stiffness,
-        bearing_damping=[
-            support_damping(stiffness, mass, bearing_damping, bearing_damping_ratio)
-            for mass in gears.mass
-        ],
+        bearing_stiffness=both(bearing_stiffness),
+        bearing_damping=support_damping(
+            bearing_stiffness, gears.mass, bearing_damping, bearing_damping_ratio
+        ),
         **gears.contact,
     )
 
@@ -234,15 +239,20 @@ def _shaft_options() -> dict[str, Option]:
 def _fzg12(
     gears: Gearing,
     *,
-    bearing_stiffness: float,
-    bearing_damping: float | None,
+    bearing_stiffness: Support,
+    bearing_damping: Support | None,
     bearing_damping_ratio: float | None,
     **shafts: float,
 ) -> System:
     def bodies(of_gears: Pair, name: str) -> list[float]:
         return [shafts[f"shaft1_{name}"], of_gears[1], of_gears[0], shafts[f"shaft2_{name}"]]
 
-    masses = bodies(gears.mass, "mass")
+    masses, stiffness = bodies(gears.mass, "mass"), both(bearing_stiffness)
+    # Shaft 1 carries the wheel, shaft 2 the pinion, and each disc stands as its gear does.
+    discs = support_damping(
+        stiffness, (masses[3], masses[0]), bearing_damping, bearing_damping_ratio
+    )
+    wheels = support_damping(stiffness, gears.mass, bearing_damping, bearing_damping_ratio)
     return fzg12(
         gears.mesh,
         torque=gears.torque[0],
@@ -251,10 +261,7 @@ def _fzg12(
         moment_of_inertia=bodies(gears.moment_of_inertia, "moment_of_inertia"),
         shaft_stiffness=[shafts[f"shaft{number}_stiffness"] for number in (1, 2)],
         shaft_damping=[shafts[f"shaft{number}_damping"] for number in (1, 2)],
-        bearing_stiffness=bearing_stiffness,
-        bearing_damping=[
-            support_damping(bearing_stiffness, mass, bearing_damping, bearing_damping_ratio)
-            for mass in masses
-        ],
+        bearing_stiffness=[stiffness[1], stiffness[1], stiffness[0], stiffness[0]],
+        bearing_damping=[discs[1], wheels[1], wheels[0], discs[0]],
         **gears.contact,
     )

@@ -208,11 +208,9 @@ def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
     except (TypeError, ValueError) as error:
         shapes = ", ".join(str(np.shape(item)) for item in arguments)
         raise InputError(
-            Problem(
-                what=f"the shapes {shapes} of load, radius and speed do not fit",
-                where="arguments load_per_width, equivalent_radius, entrainment_speed",
-                why="they must be numbers, or arrays that broadcast",
-            )
+            f"the shapes {shapes} of load, radius and speed do not fit",
+            where="arguments load_per_width, equivalent_radius, entrainment_speed",
+            why="they must be numbers, or arrays that broadcast",
         ) from error
     return arrays[0].shape, [np.ascontiguousarray(array).reshape(-1) for array in arrays]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_between, require_one_of, require_positive
+from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.lubricant.roelands import ROELANDS_PRESSURE
 from tribodyn.types import Array
@@ -113,20 +113,16 @@ def _scalar(name: str, value: Any, unit: str) -> float:
         number = np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what=f"{name} = {value!r}",
-                where=f"argument {name}",
-                why=f"it must be a number {unit}".rstrip(),
-            )
+            f"{name} = {value!r}",
+            where=f"argument {name}",
+            why=f"it must be a number {unit}".rstrip(),
         ) from error
     if number.ndim:
         raise InputError(
-            Problem(
-                what=f"{name} has the shape {number.shape}",
-                where=f"argument {name}",
-                why="one contact takes single numbers",
-                remedy="Use solve_line_contacts for arrays",
-            )
+            f"{name} has the shape {number.shape}",
+            where=f"argument {name}",
+            why="one contact takes single numbers",
+            remedy="Use solve_line_contacts for arrays",
         )
     return float(number)
 
@@ -205,39 +201,33 @@ def moes_case(
 def _check_lubricant(lubricant: Any) -> None:
     if not isinstance(lubricant, Lubricant):
         raise InputError(
-            Problem(
-                what=f"lubricant is of the type {type(lubricant).__name__}",
-                where="argument lubricant",
-                why="the viscosity, its rise with pressure and the density are needed",
-                remedy="Give tribodyn.lubricant.Lubricant(dynamic_viscosity, density, "
-                "pressure_viscosity_coefficient), or one of tribodyn.lubricant.library()",
-            )
+            f"lubricant is of the type {type(lubricant).__name__}",
+            where="argument lubricant",
+            why="the viscosity, its rise with pressure and the density are needed",
+            remedy="Give tribodyn.lubricant.Lubricant(dynamic_viscosity, density, "
+            "pressure_viscosity_coefficient), or one of tribodyn.lubricant.library()",
         )
 
 
 def _check_width(half_width: float, radius: float) -> None:
     if half_width > radius:
         raise InputError(
-            Problem(
-                what=f"the dry contact is {2e3 * half_width:.4g} mm wide on bodies with an "
-                f"equivalent radius of {1e3 * radius:.4g} mm",
-                where="arguments load_per_width, equivalent_radius",
-                why="the contact must be narrow against the radius",
-                remedy="Check the units: load in N/m, radius in m, modulus in Pa",
-            )
+            f"the dry contact is {2e3 * half_width:.4g} mm wide on bodies with an "
+            f"equivalent radius of {1e3 * radius:.4g} mm",
+            where="arguments load_per_width, equivalent_radius",
+            why="the contact must be narrow against the radius",
+            remedy="Check the units: load in N/m, radius in m, modulus in Pa",
         )
 
 
 def _check_pressure(pressure: float, load: float, modulus: float, radius: float) -> None:
     if pressure > _HIGHEST_PRESSURE:
         raise InputError(
-            Problem(
-                what=f"the Hertz pressure is {pressure * 1e-9:.4g} GPa at {load:.4g} N/m, "
-                f"a modulus of {modulus:.4g} Pa and a radius of {radius:.4g} m",
-                where="arguments load_per_width, equivalent_radius, effective_modulus",
-                why="the laws of viscosity are carried on to 4 GPa at most, measured to about 1",
-                remedy="Check the units: load in N/m, radius in m, modulus in Pa",
-            )
+            f"the Hertz pressure is {pressure * 1e-9:.4g} GPa at {load:.4g} N/m, "
+            f"a modulus of {modulus:.4g} Pa and a radius of {radius:.4g} m",
+            where="arguments load_per_width, equivalent_radius, effective_modulus",
+            why="the laws of viscosity are carried on to 4 GPa at most, measured to about 1",
+            remedy="Check the units: load in N/m, radius in m, modulus in Pa",
         )
 
 
@@ -252,11 +242,9 @@ def _check_growth(scales: ContactScales, pressure: float) -> None:
     growth = scales.oil[1] if scales.viscosity_law == "barus" else 0.0
     if growth > _GREATEST_GROWTH:
         raise InputError(
-            Problem(
-                what=f"at the Hertz pressure of {pressure * 1e-9:.4g} GPa the law of Barus raises "
-                f"the viscosity by exp({growth:.4g})",
-                where="argument viscosity_law",
-                why=f"computable up to exp({_GREATEST_GROWTH:g}), and measured to 0.1 GPa",
-                remedy='Use viscosity_law = "roelands"',
-            )
+            f"at the Hertz pressure of {pressure * 1e-9:.4g} GPa the law of Barus raises "
+            f"the viscosity by exp({growth:.4g})",
+            where="argument viscosity_law",
+            why=f"computable up to exp({_GREATEST_GROWTH:g}), and measured to 0.1 GPa",
+            remedy='Use viscosity_law = "roelands"',
         )

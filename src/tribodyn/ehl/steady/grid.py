@@ -16,7 +16,7 @@ from tribodyn.ehl.formulas.lubrication_regimes import (
     rigid_piezoviscous,
 )
 from tribodyn.ehl.steady.contact_case import ContactScales
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 
 INLETS = ("flooded", "zero")
 
@@ -82,25 +82,21 @@ def choose_domain(domain: Any, inlet: str, film: float, scales: ContactScales) -
     """Extent of the grid: by the film, or as stated."""
     if inlet not in INLETS:
         raise InputError(
-            Problem(
-                what=f"inlet = {inlet!r}",
-                where="argument inlet",
-                why='"flooded": oil everywhere before the contact; "zero": no pressure before the '
-                "first position of the domain, as if the oil began there",
-            )
+            f"inlet = {inlet!r}",
+            where="argument inlet",
+            why='"flooded": oil everywhere before the contact; "zero": no pressure before the '
+            "first position of the domain, as if the oil began there",
         )
     stated = not (isinstance(domain, str) and domain == "auto")
     if stated:
         start, end = _pair(domain)
     elif inlet == "zero":
         raise InputError(
-            Problem(
-                what='inlet = "zero" with domain = "auto"',
-                where="argument inlet",
-                why="the film then depends on where the oil begins",
-                remedy="State the domain, for example (-4.5, 1.5) in half widths, or take the "
-                'inlet "flooded"',
-            )
+            'inlet = "zero" with domain = "auto"',
+            where="argument inlet",
+            why="the film then depends on where the oil begins",
+            remedy="State the domain, for example (-4.5, 1.5) in half widths, or take the "
+            'inlet "flooded"',
         )
     else:
         # The first terms hold for gears; between rigid bodies all lengths go with the root.
@@ -119,22 +115,18 @@ def _pair(domain: Any) -> tuple[float, float]:
         start, end = (float(edge) for edge in domain)
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what=f"domain = {domain!r}",
-                where="argument domain",
-                why='it is "auto" or a pair (first position, last position) in half widths b',
-                remedy="For example domain = (-4.5, 1.5)",
-            )
+            f"domain = {domain!r}",
+            where="argument domain",
+            why='it is "auto" or a pair (first position, last position) in half widths b',
+            remedy="For example domain = (-4.5, 1.5)",
         ) from error
     if not (-1e5 <= start <= -1.05 and 1.05 <= end <= 1e5):
         raise InputError(
-            Problem(
-                what=f"domain = ({start:g}, {end:g})",
-                where="argument domain",
-                why="in half widths b, the dry contact reaches from -1 to 1: the first position "
-                "lies between -1e5 and -1.05, the last one between 1.05 and 1e5",
-                remedy='Give multiples of the half width, not metres, or domain = "auto"',
-            )
+            f"domain = ({start:g}, {end:g})",
+            where="argument domain",
+            why="in half widths b, the dry contact reaches from -1 to 1: the first position "
+            "lies between -1e5 and -1.05, the last one between 1.05 and 1e5",
+            remedy='Give multiples of the half width, not metres, or domain = "auto"',
         )
     return start, end
 
@@ -142,14 +134,12 @@ def _pair(domain: Any) -> tuple[float, float]:
 def _check_extent(start: float, end: float, inlet: str, film: float) -> None:
     if inlet == "flooded" and start > _NEAREST_TAIL:
         raise InputError(
-            Problem(
-                what=f"domain = ({start:g}, {end:g}) with a flooded inlet",
-                where="argument domain",
-                why=f"the inlet before the domain is given by the wedge alone from X = "
-                f"{_NEAREST_TAIL:g} outwards",
-                remedy=f'Begin at X <= {_NEAREST_TAIL:g}, take domain = "auto", or take '
-                'inlet = "zero" for a contact that is starved from there',
-            )
+            f"domain = ({start:g}, {end:g}) with a flooded inlet",
+            where="argument domain",
+            why=f"the inlet before the domain is given by the wedge alone from X = "
+            f"{_NEAREST_TAIL:g} outwards",
+            remedy=f'Begin at X <= {_NEAREST_TAIL:g}, take domain = "auto", or take '
+            'inlet = "zero" for a contact that is starved from there',
         )
     if film > start * start:
         raise _too_short(start, end, film)
@@ -157,13 +147,11 @@ def _check_extent(start: float, end: float, inlet: str, film: float) -> None:
 
 def _too_short(start: float, end: float, film: float) -> InputError:
     return InputError(
-        Problem(
-            what=f"domain = ({start:g}, {end:g}) with a film of about {film:.3g} b^2/R",
-            where="argument domain",
-            why=f"the film is thicker than the inlet of the domain is high "
-            f"({0.5 * start * start:.3g} b^2/R)",
-            remedy='Take domain = "auto", or check load (N/m), radius (m) and speed (m/s)',
-        )
+        f"domain = ({start:g}, {end:g}) with a film of about {film:.3g} b^2/R",
+        where="argument domain",
+        why=f"the film is thicker than the inlet of the domain is high "
+        f"({0.5 * start * start:.3g} b^2/R)",
+        remedy='Take domain = "auto", or check load (N/m), radius (m) and speed (m/s)',
     )
 
 
@@ -179,34 +167,27 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
         return MOST, True
     if isinstance(nodes, bool) or not isinstance(nodes, Real) or not float(nodes).is_integer():
         raise InputError(
-            Problem(
-                what=f"nodes = {nodes!r}",
-                where="argument nodes",
-                why=f'it is "auto" or a whole number from {FEWEST} to {MOST}',
-            )
+            f"nodes = {nodes!r}",
+            where="argument nodes",
+            why=f'it is "auto" or a whole number from {FEWEST} to {MOST}',
         )
     count = int(float(nodes))
     near = 2 ** min(14, max(6, round(math.log2(max(count - 1, 1))))) + 1
     if not FEWEST <= count <= MOST:
         raise InputError(
-            Problem(
-                what=f"nodes = {count}",
-                where="argument nodes",
-                why=f"a grid has {FEWEST} to {MOST} nodes",
-                remedy=f"Take nodes = {near}",
-            )
+            f"nodes = {count}",
+            where="argument nodes",
+            why=f"a grid has {FEWEST} to {MOST} nodes",
+            remedy=f"Take nodes = {near}",
         )
     intervals = count - 1
     while intervals % 2 == 0 and intervals > _COARSEST:
         intervals //= 2
     if intervals > _COARSEST:
         raise InputError(
-            Problem(
-                what=f"nodes = {count}, hence {count - 1} intervals",
-                where="argument nodes",
-                why=f"halving the intervals must lead to {_COARSEST} or fewer, and ends at "
-                f"{intervals}",
-                remedy=f"Take nodes = {near}, or another 2^k + 1",
-            )
+            f"nodes = {count}, hence {count - 1} intervals",
+            where="argument nodes",
+            why=f"halving the intervals must lead to {_COARSEST} or fewer, and ends at {intervals}",
+            remedy=f"Take nodes = {near}, or another 2^k + 1",
         )
     return count, False

@@ -15,7 +15,7 @@ from tribodyn.ehl.steady.contact_problem import ContactProblem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, estimate_film
 from tribodyn.ehl.steady.rescue import solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
-from tribodyn.errors import InputError, Problem, require_between, warn
+from tribodyn.errors import InputError, require_between, warn
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 
@@ -267,22 +267,18 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
     position = np.linspace(start, end, problem.nodes) * case.half_width
     if not callable(profile):
         raise InputError(
-            Problem(
-                what=f"profile is of the type {type(profile).__name__}",
-                where="argument profile",
-                why="it must give the heights over the position",
-                remedy="Make it by tribodyn.ehl.RoughnessProfile, or give a function",
-            )
+            f"profile is of the type {type(profile).__name__}",
+            where="argument profile",
+            why="it must give the heights over the position",
+            remedy="Make it by tribodyn.ehl.RoughnessProfile, or give a function",
         )
     heights = np.asarray(profile(position), dtype=float)
     if heights.shape != position.shape or not np.all(np.isfinite(heights)):
         raise InputError(
-            Problem(
-                what=f"profile returns heights of shape {heights.shape} for {position.size} "
-                "positions, or heights that are not finite",
-                where="argument profile",
-                why="every node of the grid needs a height",
-            )
+            f"profile returns heights of shape {heights.shape} for {position.size} "
+            "positions, or heights that are not finite",
+            where="argument profile",
+            why="every node of the grid needs a height",
         )
     return np.ascontiguousarray(heights * case.equivalent_radius / case.half_width**2)
 
@@ -290,11 +286,9 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
 def _start(start: Any) -> Any:
     if not isinstance(start, LineContactSolution):
         raise InputError(
-            Problem(
-                what=f"start is of the type {type(start).__name__}",
-                where="argument start",
-                why="it must be a solution of a similar contact",
-            )
+            f"start is of the type {type(start).__name__}",
+            where="argument start",
+            why="it must be a solution of a similar contact",
         )
     return start._grid
 

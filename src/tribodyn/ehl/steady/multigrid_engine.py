@@ -17,7 +17,7 @@ from tribodyn.ehl.steady.newton_engine import (
     steady_contact,
     warm_start,
 )
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
 
 #: The set-up of the source documents: five grids, the finest with 1024 intervals, pressure to
@@ -82,15 +82,13 @@ def count_grids(intervals: int, levels: int | None = None) -> int:
     if isinstance(levels, bool) or levels not in possible:
         fits = ", ".join(str(count) for count in possible)
         raise InputError(
-            Problem(
-                what=f"levels = {levels!r} with {intervals} intervals",
-                where="argument levels",
-                why=f"every grid has half the intervals of the next, the coarsest {_FEWEST} to "
-                f"{_MOST} of them",
-                remedy=f"Take levels = {fits}"
-                if possible
-                else "Take nodes = 2^k + 1, such as 1025 with levels = 5",
-            )
+            f"levels = {levels!r} with {intervals} intervals",
+            where="argument levels",
+            why=f"every grid has half the intervals of the next, the coarsest {_FEWEST} to "
+            f"{_MOST} of them",
+            remedy=f"Take levels = {fits}"
+            if possible
+            else "Take nodes = 2^k + 1, such as 1025 with levels = 5",
         )
     return int(levels)
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +16,7 @@ from tribodyn.ehl.steady.rescue import Verified
 from tribodyn.ehl.stiffness.film_stiffness import film_stiffness
 from tribodyn.ehl.stiffness.frequency import frequency_response
 from tribodyn.lubricant import Lubricant
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array
 
 
@@ -91,6 +93,11 @@ class LineContactSolution(Record):
     compressible : bool
         Whether the density rises with pressure.
     """
+
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "viscosity": Labels(("position",), ""),
+        "density": Labels(("position",), ""),
+    }
 
     position: Array = quantity("position", unit="m", axis=True)
     pressure: Array = quantity("position", unit="Pa")
@@ -191,14 +198,6 @@ class LineContactSolution(Record):
     def _units(self, unit: str | None) -> dict[str, str]:
         """Units; none for a contact given by the numbers of Moes."""
         return {"units": ""} if self.lubricant is None else super()._units(unit)
-
-    def _parts(self) -> Parts:
-        """Pressure and film with viscosity and density, and the facts that are known."""
-        parts = super()._parts()
-        for name in ("viscosity", "density"):
-            parts.variables[name] = ("position", getattr(self, name), {"units": ""})
-        known = {name: value for name, value in parts.attributes.items() if value is not None}
-        return parts._replace(attributes=known)
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import SolvedContact
 from tribodyn.ehl.steady.grid import estimate_film
-from tribodyn.errors import ComputationError, Problem, require_one_of, require_positive, warn
+from tribodyn.errors import ComputationError, require_one_of, require_positive, warn
 
 #: Change of ln(w) for the slope of the estimated film.
 _STEP = 1e-4
@@ -70,11 +70,9 @@ def central_film_slope(solution: SolvedContact) -> float:
     )
     if products < 0:
         raise ComputationError(
-            Problem(
-                what=f"The tangent of the film was not found in {-products} steps of GMRES",
-                why=f"the solution has {grid.n + 1} nodes and M = {solution.moes_load:.4g}",
-                remedy="Take another number of nodes, or two solutions at 0.1 % more and less load",
-            )
+            f"The tangent of the film was not found in {-products} steps of GMRES",
+            why=f"the solution has {grid.n + 1} nodes and M = {solution.moes_load:.4g}",
+            remedy="Take another number of nodes, or two solutions at 0.1 % more and less load",
         )
     return float(slope) * solution.film_unit
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.ehl.steady.solution import LineContactSolution
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array, Index
 
@@ -184,6 +184,4 @@ def require_same(name: str, values: Sequence[Any]) -> None:
 
 
 def _bad(what: str, why: str) -> InputError:
-    return InputError(
-        Problem(what, "FilmState", why, "Give films of equal nodes, oil and viscosity law")
-    )
+    return InputError(what, "FilmState", why, "Give films of equal nodes, oil and viscosity law")

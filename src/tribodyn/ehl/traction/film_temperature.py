@@ -185,12 +185,10 @@ def blok_flash_temperature(
     carried = first * np.sqrt(np.abs(speed_1)) + second * np.sqrt(np.abs(speed_2))
     if np.any(carried == 0.0):
         raise InputError(
-            Problem(
-                what="surface_speed_1 = surface_speed_2 = 0 m/s",
-                where="arguments surface_speed_1 and surface_speed_2",
-                why="a contact at rest carries no heat away with its surfaces",
-                remedy="Give the speeds of the surfaces relative to the contact",
-            )
+            "surface_speed_1 = surface_speed_2 = 0 m/s",
+            where="arguments surface_speed_1 and surface_speed_2",
+            why="a contact at rest carries no heat away with its surfaces",
+            remedy="Give the speeds of the surfaces relative to the contact",
         )
     return np.asarray(FLASH_FACTORS[kind] * heat / (carried * np.sqrt(2.0 * width)))[()]
 
@@ -261,10 +259,8 @@ def film_temperature_rise(heat: Callable[[Array], tuple[Array, Array]], resistan
             return step
         rise = step
     raise ComputationError(
-        Problem(
-            what=f"the film temperature did not settle in {_MOST_STEPS} steps",
-            where="flash temperature",
-            why=f"heat made and led away still differ by {np.max(np.abs(excess)):.3g} K",
-            remedy="Leave out flash_temperature, or check viscosity and speeds",
-        )
+        f"the film temperature did not settle in {_MOST_STEPS} steps",
+        where="flash temperature",
+        why=f"heat made and led away still differ by {np.max(np.abs(excess)):.3g} K",
+        remedy="Leave out flash_temperature, or check viscosity and speeds",
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
+from tribodyn.errors import InputError, require_between, require_positive, warn
 from tribodyn.types import Array
 
 #: Thermal loading beyond which the fit was not made: bearings reach several tens.
@@ -102,13 +102,11 @@ def _check(factor: Array, loading: float) -> None:
     """Refuse factors that are none, and say where the formula extrapolates."""
     if np.any(factor <= 0.0):
         raise InputError(
-            Problem(
-                what=f"thermal loading eta_0 beta u_e^2/k = {loading:.4g}",
-                where="inlet_heating_factor",
-                why="the formula of Zhu and Cheng gives no film at this loading and pressure; it "
-                f"was made for loadings up to about {_GREATEST_LOADING:g}",
-                remedy="Check viscosity, speed and conductivity, or leave out inlet_heating",
-            )
+            f"thermal loading eta_0 beta u_e^2/k = {loading:.4g}",
+            where="inlet_heating_factor",
+            why="the formula of Zhu and Cheng gives no film at this loading and pressure; it "
+            f"was made for loadings up to about {_GREATEST_LOADING:g}",
+            remedy="Check viscosity, speed and conductivity, or leave out inlet_heating",
         )
     if loading > _GREATEST_LOADING:
         warn(

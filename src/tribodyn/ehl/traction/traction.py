@@ -12,7 +12,7 @@ from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import heated_log_viscosity
 from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
 from tribodyn.ehl.traction.shear_models import SHEAR_MODELS, ShearModel
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
 #: Contacts sheared at a time: their arrays stay in the cache of the processor.
@@ -181,11 +181,9 @@ def _spread(name: str, value: ArrayLike, contacts: int) -> Array:
     array = np.asarray(value, dtype=float)
     if array.shape not in {(), (1,), (contacts,)}:
         raise InputError(
-            Problem(
-                what=f"{name} has the shape {array.shape}",
-                where=f"argument {name}",
-                why=f"there are {contacts} contacts",
-                remedy="Give one value, or one of each contact",
-            )
+            f"{name} has the shape {array.shape}",
+            where=f"argument {name}",
+            why=f"there are {contacts} contacts",
+            remedy="Give one value, or one of each contact",
         )
     return np.broadcast_to(array, (contacts,))

@@ -19,7 +19,7 @@ from tribodyn.ehl.formulas.lubrication_regimes import (
 from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
 from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
 from tribodyn.ehl.steady.line_contact import solve_line_contact
-from tribodyn.errors import ComputationError, InputError, Problem, require_one_of, require_positive
+from tribodyn.errors import ComputationError, InputError, require_one_of, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 
@@ -71,13 +71,11 @@ def _time(time: ArrayLike) -> Array:
     t = np.asarray(time, dtype=float).reshape(-1)
     if t.size < 2 or not np.all(np.isfinite(t)) or np.any(np.diff(t) <= 0.0):
         raise InputError(
-            Problem(
-                what=f"{t.size} instants"
-                + ("" if t.size < 2 else f", least step {np.min(np.diff(t)):.4g} s"),
-                where="argument time",
-                why="time must hold at least two finite instants that rise",
-                remedy="200 to 800 steps a mesh cycle, as numpy.linspace(0, duration, 401)",
-            )
+            f"{t.size} instants"
+            + ("" if t.size < 2 else f", least step {np.min(np.diff(t)):.4g} s"),
+            where="argument time",
+            why="time must hold at least two finite instants that rise",
+            remedy="200 to 800 steps a mesh cycle, as numpy.linspace(0, duration, 401)",
         )
     return t
 
@@ -86,21 +84,17 @@ def _series(name: str, given: Series, t: Array) -> Array:
     values = np.asarray(given(t) if callable(given) else given, dtype=float)
     if values.ndim > 0 and values.shape != t.shape:
         raise InputError(
-            Problem(
-                what=f"{name} has the shape {values.shape}",
-                where=f"argument {name}",
-                why=f"time has the shape {t.shape}",
-                remedy="Give a number, one value per instant, or a function of time",
-            )
+            f"{name} has the shape {values.shape}",
+            where=f"argument {name}",
+            why=f"time has the shape {t.shape}",
+            remedy="Give a number, one value per instant, or a function of time",
         )
     bad = np.flatnonzero(~np.isfinite(np.atleast_1d(values)))
     if bad.size:
         raise InputError(
-            Problem(
-                what=f"{name} is {np.atleast_1d(values)[bad[0]]} at instant {bad[0]}",
-                where=f"argument {name}",
-                why="all values must be finite",
-            )
+            f"{name} is {np.atleast_1d(values)[bad[0]]} at instant {bad[0]}",
+            where=f"argument {name}",
+            why="all values must be finite",
         )
     return np.ascontiguousarray(np.broadcast_to(values, t.shape))
 
@@ -109,13 +103,11 @@ def _require_speed(speed: Array) -> None:
     if np.any(speed < 0.0):
         i = int(np.argmin(speed))
         raise InputError(
-            Problem(
-                what=f"entrainment_speed = {speed[i]:.6g} m/s at instant {i}",
-                where="argument entrainment_speed",
-                why="the oil enters at the negative end of the grid: the speed must be zero or "
-                "positive",
-                remedy="Mirror the contact, so that the surfaces roll in positive direction",
-            )
+            f"entrainment_speed = {speed[i]:.6g} m/s at instant {i}",
+            where="argument entrainment_speed",
+            why="the oil enters at the negative end of the grid: the speed must be zero or "
+            "positive",
+            remedy="Mirror the contact, so that the surfaces roll in positive direction",
         )
 
 
@@ -123,13 +115,11 @@ def _require_impose(impose: str, approach: Series | None) -> None:
     require_one_of("impose", impose, ("load", "approach"))
     if (impose == "approach") != (approach is not None):
         raise InputError(
-            Problem(
-                what=f'impose = "{impose}" with '
-                + ("an approach" if approach is not None else "no approach"),
-                where="arguments impose and approach",
-                why="exactly one of load and approach is imposed, the other is the answer",
-                remedy='Give approach together with impose = "approach", and only then',
-            )
+            f'impose = "{impose}" with '
+            + ("an approach" if approach is not None else "no approach"),
+            where="arguments impose and approach",
+            why="exactly one of load and approach is imposed, the other is the answer",
+            remedy='Give approach together with impose = "approach", and only then',
         )
 
 
@@ -143,12 +133,10 @@ def _travel(
     if surface_speeds is None:
         if any(profile is not None for profile in roughness):
             raise InputError(
-                Problem(
-                    what="a roughness profile without surface speeds",
-                    where="argument surface_speeds",
-                    why="each surface carries its roughness at its own speed",
-                    remedy="Give (u_1, u_2); both are entrainment_speed in pure rolling",
-                )
+                "a roughness profile without surface speeds",
+                where="argument surface_speeds",
+                why="each surface carries its roughness at its own speed",
+                remedy="Give (u_1, u_2); both are entrainment_speed in pure rolling",
             )
         return np.zeros((2, t.size))
     speeds = np.array([_series("surface_speeds", item, t) for item in surface_speeds])
@@ -157,12 +145,10 @@ def _travel(
     if np.any(apart > 1e-6 * np.max(np.abs(speeds))):
         i = int(np.argmax(apart))
         raise InputError(
-            Problem(
-                what=f"surface speeds {speeds[0, i]:.6g} and {speeds[1, i]:.6g} m/s, "
-                f"entrainment_speed {speed[i]:.6g} m/s at instant {i}",
-                where="arguments surface_speeds and entrainment_speed",
-                why="the entrainment speed is HALF the sum of the surface speeds",
-            )
+            f"surface speeds {speeds[0, i]:.6g} and {speeds[1, i]:.6g} m/s, "
+            f"entrainment_speed {speed[i]:.6g} m/s at instant {i}",
+            where="arguments surface_speeds and entrainment_speed",
+            why="the entrainment speed is HALF the sum of the surface speeds",
         )
     steps = 0.5 * (speeds[:, 1:] + speeds[:, :-1]) * np.diff(t)
     return np.concatenate((np.zeros((2, 1)), np.cumsum(steps, axis=1)), axis=1)
@@ -364,13 +350,11 @@ class MovingContact:
         table, imposed = self.table(), self.inputs.approach is None
         if not self.inputs.entrainment_speed[0] > 0.0:
             raise InputError(
-                Problem(
-                    what="entrainment_speed = 0 at the first instant",
-                    where="arguments entrainment_speed and start",
-                    why="without rolling no steady film carries the load",
-                    remedy='Begin with a positive speed, or with start = "unloaded" and an '
-                    "imposed approach",
-                )
+                "entrainment_speed = 0 at the first instant",
+                where="arguments entrainment_speed and start",
+                why="without rolling no steady film carries the load",
+                remedy='Begin with a positive speed, or with start = "unloaded" and an '
+                "imposed approach",
             )
         state, row = self._reference_state(), table[0].copy()
         first = row.copy()
@@ -391,12 +375,10 @@ class MovingContact:
 
         if self.inputs.approach is None:
             raise InputError(
-                Problem(
-                    what='start = "unloaded" with an imposed load',
-                    where="argument start",
-                    why="an unloaded film carries no load",
-                    remedy='Take start = "steady", or impose the approach',
-                )
+                'start = "unloaded" with an imposed load',
+                where="argument start",
+                why="an unloaded film carries no load",
+                remedy='Take start = "steady", or impose the approach',
             )
         n, row = self.nodes - 1, self.table()[0]
         X = np.linspace(*self.domain, n + 1)
@@ -406,13 +388,11 @@ class MovingContact:
                 H += profile(X * self.scale.half_width - travel[0]) / self.scale.film
         if not float(H.min()) > 0.0:
             raise InputError(
-                Problem(
-                    what=f"approach = {-row[1] * self.scale.film:.6g} m at the first instant",
-                    where="arguments approach and start",
-                    why="an unloaded start needs an open gap: a negative approach, beyond the "
-                    "highest peaks",
-                    remedy='Begin earlier, or take start = "steady"',
-                )
+                f"approach = {-row[1] * self.scale.film:.6g} m at the first instant",
+                where="arguments approach and start",
+                why="an unloaded start needs an open gap: a negative approach, beyond the "
+                "highest peaks",
+                remedy='Begin earlier, or take start = "steady"',
             )
         width = min(0.5 * np.sqrt(2.0 * row[1] / row[3]), 0.9 * self.domain[1])
         last = int((width - self.domain[0]) / self.dx)
@@ -450,11 +430,9 @@ class MovingContact:
         if status != 0:
             inputs = self.inputs
             raise ComputationError(
-                Problem(
-                    what=f"The steady state of the first instant, t = {inputs.time[0]:.6g} s, was "
-                    f"not found: {REASONS[status]}",
-                    why=f"load {inputs.load[0]:.6g} N/m, radius {inputs.radius[0]:.6g} m, "
-                    f"entrainment speed {inputs.entrainment_speed[0]:.6g} m/s",
-                    remedy="Begin with a moderate load and without roughness, or take more nodes",
-                )
+                f"The steady state of the first instant, t = {inputs.time[0]:.6g} s, was "
+                f"not found: {REASONS[status]}",
+                why=f"load {inputs.load[0]:.6g} N/m, radius {inputs.radius[0]:.6g} m, "
+                f"entrainment speed {inputs.entrainment_speed[0]:.6g} m/s",
+                remedy="Begin with a moderate load and without roughness, or take more nodes",
             )

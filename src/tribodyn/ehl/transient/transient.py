@@ -20,7 +20,6 @@ from tribodyn.ehl.transient.moving_contact import (
 from tribodyn.ehl.transient.transient_result import TransientLineContact
 from tribodyn.errors import (
     ComputationError,
-    Problem,
     require_between,
     require_one_of,
     require_positive,
@@ -231,16 +230,14 @@ def _failure(
         else f"approach {inputs.approach[instant]:.6g} m"
     )
     return ComputationError(
-        Problem(
-            what=f"The contact did not converge at instant {instant} of {inputs.time.size - 1}, "
-            f"t = {inputs.time[instant]:.6g} s: {REASONS[status]}",
-            where=f"{given}, radius {inputs.radius[instant]:.6g} m, entrainment speed "
-            f"{inputs.entrainment_speed[instant]:.6g} m/s",
-            why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
-            f"{step_halvings} times",
-            remedy="Take more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
-            "of the load",
-        )
+        f"The contact did not converge at instant {instant} of {inputs.time.size - 1}, "
+        f"t = {inputs.time[instant]:.6g} s: {REASONS[status]}",
+        where=f"{given}, radius {inputs.radius[instant]:.6g} m, entrainment speed "
+        f"{inputs.entrainment_speed[instant]:.6g} m/s",
+        why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
+        f"{step_halvings} times",
+        remedy="Take more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
+        "of the load",
     )
 
 

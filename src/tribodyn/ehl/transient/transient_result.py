@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import numpy as np
 
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
 
@@ -63,6 +66,8 @@ class TransientLineContact(Record):
         ``"flooded"`` or ``"zero"``.
     """
 
+    DERIVED: ClassVar[Mapping[str, Labels]] = {"kept_time": Labels(("kept_time",), "s", axis=True)}
+
     time: Array = quantity("time", unit="s", axis=True)
     central_film: Array = quantity("time", unit="m")
     minimum_film: Array = quantity("time", unit="m")
@@ -91,12 +96,6 @@ class TransientLineContact(Record):
     def kept_time(self) -> Array:
         """Instants whose pressure and film are kept [s]."""
         return np.asarray(self.time[self.kept])
-
-    def _parts(self) -> Parts:
-        """Series over time, with the instants whose pressure and film are kept."""
-        parts = super()._parts()
-        parts.coordinates["kept_time"] = ("kept_time", self.kept_time, {"units": "s"})
-        return parts
 
     def __repr__(self) -> str:
         """One line with the figures that tell series apart."""

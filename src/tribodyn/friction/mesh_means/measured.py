@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
+from tribodyn.errors import InputError, require_between, require_positive, warn
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.model import numbers
 from tribodyn.types import Array, Index, Mask
@@ -100,7 +100,7 @@ def _points(*columns: tuple[float, ...]) -> Array:
     if len({len(column) for column in columns}) > 1 or not columns[0]:
         counted = ", ".join(f"{len(c)} {n}" for c, n in zip(columns, names, strict=True))
         why, remedy = "Each point has one of each", "Give lists of one length"
-        raise InputError(Problem(counted, 'friction law "measured"', why, remedy))
+        raise InputError(counted, where='friction law "measured"', why=why, remedy=remedy)
     for name, column, unit in zip(names, columns, ("N*m", "rad/s", ""), strict=True):
         require_positive(name, np.array(column), unit)
     require_between(names[2], np.array(columns[2]), 0.0, 1.0)
@@ -110,7 +110,7 @@ def _points(*columns: tuple[float, ...]) -> Array:
         if place in seen:
             what = f"two points at {place[0]:.4g} N*m and {place[1] / _RPM:.4g} rpm"
             why, remedy = "One place has one friction coefficient", "Give their mean"
-            raise InputError(Problem(what, 'friction law "measured"', why, remedy))
+            raise InputError(what, where='friction law "measured"', why=why, remedy=remedy)
         seen.add(place)
     return np.asarray(points)
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.contact import effective_modulus
-from tribodyn.errors import ComputationError, Problem
+from tribodyn.errors import ComputationError
 from tribodyn.gear import Material
 from tribodyn.stiffness.loaded.load_points import FAR, ContactPlaces
 from tribodyn.stiffness.teeth.influence import GearInfluence
@@ -251,4 +251,4 @@ class ContactProblem:
 def _check_status(status: int) -> None:
     if status:
         what, remedy = _STATUS[status]
-        raise ComputationError(Problem(what, "loaded tooth contact", "", remedy))
+        raise ComputationError(what, "loaded tooth contact", "", remedy)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import SpurGear, SpurPair, half_tooth
-from tribodyn.nomenclature import QUANTITIES
-from tribodyn.record import Parts, Record, fact, record
+from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.teeth.load_point import load_point
 from tribodyn.types import Array, Index
 
@@ -80,30 +80,6 @@ def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: in
     return np.asarray(spectrum[..., mesh_cycles * np.arange(1, count + 1)])
 
 
-#: Array -> its last dimensions and its quantity in the nomenclature.
-_ARRAYS: dict[str, tuple[tuple[str, ...], str]] = {
-    "transmission_error": (("phase",), "static_transmission_error"),
-    "deflection": (("phase",), "static_transmission_error"),
-    "mesh_stiffness_secant": (("phase",), "mesh_stiffness_secant"),
-    "mesh_stiffness_tangent": (("phase",), "mesh_stiffness_tangent"),
-    "normal_force": (("phase", "pair"), "normal_force"),
-    "load_share": (("phase", "pair"), "load_share"),
-    "pair_deflection": (("phase", "pair"), "static_transmission_error"),
-    "load_per_width": (("phase", "slice", "pair"), "load_per_width"),
-}
-_PLACES: dict[str, str] = {
-    "path": "path",
-    "gap": "static_transmission_error",
-    "pinion_curvature_radius": "curvature_radius",
-    "wheel_curvature_radius": "curvature_radius",
-}
-
-
-def _labels(quantity: str) -> dict[str, str]:
-    known = QUANTITIES[quantity]
-    return {"units": known.unit or "1", "long_name": known.meaning}
-
-
 @record
 class LoadedContact(Record):
     """Quasi-static mesh under load; made by :func:`tribodyn.stiffness.loaded_contact`.
@@ -143,20 +119,27 @@ class LoadedContact(Record):
         Slope of the total force over the transmission error at this load.
     """
 
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "deflection": Labels(("torque", "phase"), of="static_transmission_error"),
+        "mesh_stiffness_secant": Labels(("torque", "phase")),
+        "load_share": Labels(("torque", "phase", "pair")),
+        "pair_deflection": Labels(("torque", "phase", "pair"), of="static_transmission_error"),
+    }
+
     gear_pair: SpurPair
     provider: str = fact()
     reference: str = fact()
-    torque: Array
-    phase: Array
-    number: Index
-    path: Array
-    pinion_curvature_radius: Array
-    wheel_curvature_radius: Array
-    gap: Array
-    transmission_error: Array
-    normal_force: Array
-    load_per_width: Array
-    mesh_stiffness_tangent: Array
+    torque: Array = quantity("torque", axis=True)
+    phase: Array = quantity("phase", axis=True, of="mesh_phase")
+    number: Index = quantity("pair", unit="1", axis=True, name="pair")
+    path: Array = quantity("phase", "pair")
+    pinion_curvature_radius: Array = quantity("phase", "pair", of="curvature_radius")
+    wheel_curvature_radius: Array = quantity("phase", "pair", of="curvature_radius")
+    gap: Array = quantity("phase", "pair", of="static_transmission_error")
+    transmission_error: Array = quantity("torque", "phase", of="static_transmission_error")
+    normal_force: Array = quantity("torque", "phase", "pair")
+    load_per_width: Array = quantity("torque", "phase", "slice", "pair")
+    mesh_stiffness_tangent: Array = quantity("torque", "phase")
 
     @property
     def total_normal_force(self) -> Array:
@@ -229,31 +212,6 @@ class LoadedContact(Record):
         """Bending moment, shear and normal force at the foot of every loaded tooth."""
         radii = self.pinion_curvature_radius, self.wheel_curvature_radius
         return root_loads(self.gear_pair, radii, self.normal_force)
-
-    def _parts(self) -> Parts:
-        parts, several = super()._parts(), ("torque",) * self.torque.ndim
-        for name, (dims, quantity) in _ARRAYS.items():
-            parts.variables[name] = ((*several, *dims), getattr(self, name), _labels(quantity))
-        for name, quantity in _PLACES.items():
-            parts.variables[name] = (("phase", "pair"), getattr(self, name), _labels(quantity))
-        parts.coordinates["phase"] = ("phase", self.phase, _labels("mesh_phase"))
-        parts.coordinates["pair"] = ("pair", self.number)
-        parts.coordinates["torque"] = (several, self.torque, _labels("torque"))
-        return parts
-
-    def plot(self, **options: Any) -> Any:
-        """Draw transmission error, stiffness and load sharing over the roll angle.
-
-        Parameters
-        ----------
-        **options
-            Of the figure.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "loaded_contact", **options)
 
     def plot_load_sharing(self) -> Any:
         """Draw the force on a tooth pair over its way through the mesh.

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.errors import Argument, InputError
 from tribodyn.types import Array
 
 #: Distance beyond the end nodes, over their span, that is rounding and not a place off the flank.
@@ -180,11 +180,9 @@ class GearInfluence:
 
 def _unusable(what: str) -> InputError:
     return InputError(
-        Problem(
-            what=what,
-            where="GearInfluence",
-            why="It needs at least four increasing nodes, positive self compliances and one "
-            "finite table of nodes by nodes for each neighbour",
-            remedy="Check the provider of the compliances",
-        )
+        what,
+        where="GearInfluence",
+        why="It needs at least four increasing nodes, positive self compliances and one "
+        "finite table of nodes by nodes for each neighbour",
+        remedy="Check the provider of the compliances",
     )

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurPair
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded import loaded_contact
 from tribodyn.stiffness.loaded.contact import NO_OPTIONS
 from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.result import harmonic_amplitudes
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 #: Loads of single pairs in single slices that are held in memory at the same time.
 _AT_ONCE = 4_000_000
@@ -55,6 +54,12 @@ class HarrisMap(Record):
         Means over the phases.
     """
 
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "mean_transmission_error": Labels(("torque",), "m"),
+        "peak_to_peak_transmission_error": Labels(("torque",), "m"),
+        "order": Labels(("order",), "1", axis=True),
+    }
+
     gear_pair: SpurPair
     provider: str = fact()
     reference: str = fact()
@@ -78,30 +83,14 @@ class HarrisMap(Record):
         return np.asarray(np.ptp(self.transmission_error, axis=1))
 
     @property
+    def order(self) -> Index:
+        """Orders of the mesh frequency (k,)."""
+        return np.arange(1, self.harmonics.shape[1] + 1)
+
+    @property
     def quietest_torque(self) -> float:
         """Torque of the least peak-to-peak transmission error [N*m]."""
         return float(self.torque[np.argmin(self.peak_to_peak_transmission_error)])
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        for name in ("mean_transmission_error", "peak_to_peak_transmission_error"):
-            parts.variables[name] = ("torque", getattr(self, name), {"units": "m"})
-        parts.coordinates["order"] = ("order", np.arange(1, self.harmonics.shape[1] + 1))
-        return parts
-
-    def plot(self, **options: Any) -> Any:
-        """Draw the transmission error over phase and torque.
-
-        Parameters
-        ----------
-        **options
-            Of the figure.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "harris_map", **options)
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 
-from tribodyn.drawing import draw
 from tribodyn.gear import SpurPair
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array
 
 
@@ -43,6 +43,11 @@ class TipReliefOptimum(Record):
     map_objective : array (a, l) [m]
         The objective there; a first amount of zero is the pair without tip relief.
     """
+
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "peak_to_peak_before": Labels(("torque",), "m"),
+        "peak_to_peak_after": Labels(("torque",), "m"),
+    }
 
     gear_pair: SpurPair
     modified_pair: SpurPair
@@ -81,26 +86,6 @@ class TipReliefOptimum(Record):
             for edge in axis[[0, -1]]
         ]
         return any(edges)
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        for name in ("peak_to_peak_before", "peak_to_peak_after"):
-            parts.variables[name] = ("torque", getattr(self, name), {"units": "m"})
-        return parts
-
-    def plot(self, **options: Any) -> Any:
-        """Draw the objective over amount and length, and the errors before and after.
-
-        Parameters
-        ----------
-        **options
-            Of the figure.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "tip_relief_map", **options)
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

@@ -104,7 +104,8 @@ class Case(Section, whole=True):
         if not found:
             found = derive.case_problems(self)
         elif readable and self.gears is not None:
-            found += derive.gear_problems(self.gears)
+            told = {key for key, _ in found}
+            found += [fault for fault in derive.gear_problems(self.gears) if fault[0] not in told]
         if found:
             raise InputError(source.place(found))
         self._source, self._assumed = source, dict(marks)
@@ -227,9 +228,9 @@ class Case(Section, whole=True):
     @property
     def composite_roughness(self) -> float | None:
         """Root of the sum of squares of both roughnesses [m]; None if none is given."""
-        each = (self.gears.pinion.roughness_rms, self.gears.wheel.roughness_rms)
-        if each[0] is not None and each[1] is not None:
-            return math.hypot(each[0], each[1])
+        pinion, wheel = self.gears.pinion.rms, self.gears.wheel.rms
+        if pinion is not None and wheel is not None:
+            return math.hypot(pinion, wheel)
         return self.gears.composite_roughness
 
     @property

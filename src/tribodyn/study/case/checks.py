@@ -30,6 +30,8 @@ _ABOUT = ("assumed", "based_on")
 #: Abscissae of a stiffness table.
 _ABSCISSAE = ("phase", "roll_angle")
 _RECTANGULAR = ("single_pair_stiffness", "double_pair_stiffness")
+#: Roughness of one flank, in one way or the other.
+_HEIGHTS = ("roughness_rms", "roughness_ra")
 _SAME = "They are two ways of saying the same thing"
 
 
@@ -39,19 +41,25 @@ def _both(given: Given, one: str, other: str) -> tuple[str, Problem]:
 
 
 def _roughness(given: Given) -> Found:
-    keys = [f"gears.{gear}.roughness_rms" for gear in ("pinion", "wheel")]
-    present = [key for key in keys if key in given]
+    present: dict[str, str] = {}
+    for gear in ("pinion", "wheel"):
+        keys = [key for name in _HEIGHTS if (key := f"gears.{gear}.{name}") in given]
+        if keys:
+            present[gear] = keys[0]
+        if len(keys) == 2:
+            yield _both(given, *keys)
     if "gears.composite_roughness" in given:
-        for key in present:
+        for gear, key in present.items():
             what = (
                 f"{given.show('gears.composite_roughness')} and {given.show(key)} "
-                f"of the {key.split('.')[1]} are both given"
+                f"of the {gear} are both given"
             )
             yield "gears.composite_roughness", Problem(what, "", _SAME, "Keep one of them")
     elif len(present) == 1:
-        absent = next(key for key in keys if key not in given)
-        what = f"roughness_rms of the {absent.split('.')[1]} is missing"
-        why = f"{given.show(present[0])} of the {present[0].split('.')[1]} needs its counterpart"
+        ((gear, key),) = present.items()
+        absent = key.replace(*(("pinion", "wheel") if gear == "pinion" else ("wheel", "pinion")))
+        what = f"{absent.split('.')[2]} of the {absent.split('.')[1]} is missing"
+        why = f"{given.show(key)} of the {gear} needs its counterpart"
         yield absent, Problem(what, "", why, "Add it, or give composite_roughness in [gears]")
 
 
@@ -131,13 +139,14 @@ def _needs(given: Given, law: FrictionLaw | None) -> Found:
         why = f"{users[0]} needs an oil"
         remedy = 'Add [lubricant] with for example name = "80W"'
         yield "lubricant", Problem("the table [lubricant] is missing", "", why, remedy)
-    rough = ("composite_roughness", "pinion.roughness_rms", "wheel.roughness_rms")
+    rough = ("composite_roughness", *(f"pinion.{height}" for height in _HEIGHTS))
     if (
         tribological
         and not (law is not None and law.needs_film)
         and not any(f"gears.{name}" in given for name in rough)
     ):
-        why, remedy = f"{users[0]} needs it", 'Add composite_roughness = "0.5 um" to [gears]'
+        why = f"{users[0]} needs it"
+        remedy = 'Add composite_roughness = "0.5 um" to [gears], or roughness_ra to both gears'
         what = "composite_roughness is missing"
         yield "gears.composite_roughness", Problem(what, "", why, remedy)
 

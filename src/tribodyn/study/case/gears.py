@@ -12,6 +12,8 @@ from tribodyn.study.case.section import table as inner_table
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"
 _MOST = 0.5e-3
+#: Rms over mean roughness: sqrt(pi/2), 1.253, of normally distributed heights.
+RQ_OVER_RA = 1.25
 _TURN = 2.0 * math.pi
 _SHAPES = ("linear", "parabolic")
 
@@ -107,15 +109,25 @@ class Gear(Section):
     roughness_rms: float | None = number(
         None, 0.0, 20e-6, "ground to milled flanks; " + _GUARD, of="roughness_rms"
     )
+    roughness_ra: float | None = number(
+        None, 0.0, 16e-6, "ground to milled flanks; " + _GUARD, of="roughness_ra"
+    )
     modification: Modification | None = inner_table(
         Modification, "what the loaded flanks have that the involute has not", "none"
     )
+
+    @property
+    def rms(self) -> float | None:
+        """Rms roughness of the flanks [m], given or from Ra; None where neither is."""
+        if self.roughness_rms is None and self.roughness_ra is not None:
+            return RQ_OVER_RA * self.roughness_ra
+        return self.roughness_rms
 
 
 class Gears(Section):
     """The ``[gears]`` table."""
 
-    kind: str = choice("spur", ("spur", "table"), later=("hypoid",), meaning="kind of gear pair")
+    kind: str = choice("spur", ("spur", "table"), meaning="kind of gear pair")
     table: str | None = file_path(
         meaning="mesh table of another program, as CSV or netCDF", example='"mesh.csv"'
     )

@@ -97,8 +97,11 @@ class Source:
         return self.find()
 
     def line(self, key: str) -> int:
-        """Line of a key or, where it is not written, of the nearest table around it; or zero."""
+        """Line of a key or, where it is not written, of what it holds or is held by; or zero."""
         while key and key not in self.lines:
+            inside = [at[0] for other, at in self.lines.items() if other.startswith(f"{key}.")]
+            if inside:
+                return min(inside)
             key = key.rpartition(".")[0]
         return self.lines[key][0] if key else 0
 

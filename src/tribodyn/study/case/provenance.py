@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
-from tribodyn.study.case.gears import is_idle
+from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.stated import same
 
@@ -32,6 +33,7 @@ _OIL = tuple(
 _LOAD = ("operation.speed", "operation.torque")
 _ROUGHNESS = (
     "gears.composite_roughness", "gears.pinion.roughness_rms", "gears.wheel.roughness_rms",
+    "gears.pinion.roughness_ra", "gears.wheel.roughness_ra",
 )  # fmt: skip
 _MASSES = tuple(
     f"gears.{gear}.{name}" for gear in ("pinion", "wheel") for name in ("mass", "moment_of_inertia")
@@ -232,7 +234,17 @@ def assumptions(case: Case) -> tuple[Assumption, ...]:
         value = derived.get(key, values[key])
         shown = "automatic" if value is None else spec.show(value)
         rows.append(Assumption(key, shown, kind, reason or spec.meaning))
-    return (*rows, *_oil_assumptions(case))
+    return (*rows, *_heights(case), *_oil_assumptions(case))
+
+
+def _heights(case: Case) -> Iterator[Assumption]:
+    """Rms roughness of flanks that the case gives as Ra."""
+    for name, gear in (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)):
+        key = f"gears.{name}.roughness_rms"
+        spec = spec_of(case, key)
+        if gear.roughness_ra is not None and gear.rms is not None and spec is not None:
+            reason = f"Rq = {RQ_OVER_RA:g} Ra, as of ground flanks, whose heights are normal"
+            yield Assumption(key, spec.show(gear.rms), "assumed", reason)
 
 
 def _oil_assumptions(case: Case) -> list[Assumption]:

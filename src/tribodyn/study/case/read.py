@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from tribodyn import units
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.given import Source
@@ -130,7 +131,9 @@ def key_lines(text: str) -> dict[str, list[int]]:
 
 #: A number followed by a unit, without quotes.
 _BARE_UNIT = re.compile(r"=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-zµ°%][^\"'#]*?)\s*(?:#.*)?$")
-_COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
+_UNQUOTED = re.compile(r"=\s*([^\"'#\[{]*'?[^\"'#\[{]*?)\s*(?:#.*)?$")
+#: Quotes of word processors.
+_CURLY = re.compile("[“”„‟″‘‚«»]")
 _BARE_WORD = re.compile(r"=\s*([A-Za-z][\w-]*)\s*(?:#.*)?$")
 
 #: Characters of a faulty line that a message repeats.
@@ -243,14 +246,24 @@ def _repeated(text: str, reason: str, number: int) -> tuple[str, int, int] | Non
     return (near[0][0], near[0][1][0], near[0][1][1]) if near else None
 
 
+def _with_quotes(number: str) -> str:
+    """A number as TOML, one with a unit in quotes."""
+    return f'"{number}"' if " " in number else number
+
+
 def _remedy(content: str) -> str:
-    if match := _COMMA.search(content):
-        key = content.split("=")[0].strip()
-        return f"Write a decimal point: {key} = {match.group(1)}.{match.group(2)}"
+    key = content.split("=")[0].strip()
+    if _CURLY.search(content):
+        straight = _CURLY.sub('"', content.partition("#")[0]).strip()
+        return f"Write straight quotes, as a text editor does: {straight}"
+    meant = units.readings(match.group(1)) if (match := _UNQUOTED.search(content)) else []
+    if meant:
+        shown = " or ".join(f"{key} = {_with_quotes(text)}" for text in meant)
+        return f"Write {shown}: {units.NUMBERS}"
     if match := _BARE_UNIT.search(content):
-        return f'Put the value in quotes: {content.split("=")[0].strip()} = "{match.group(1)}"'
+        return f'Put the value in quotes: {key} = "{match.group(1)}"'
     if match := _BARE_WORD.search(content):
-        return f'Put the word in quotes: {content.split("=")[0].strip()} = "{match.group(1)}"'
+        return f'Put the word in quotes: {key} = "{match.group(1)}"'
     if content.count('"') % 2:
         return "Close the quotes"
     if content.startswith("[") and "]" not in content:

@@ -135,7 +135,6 @@ class Dynamics(Section):
     model: str = model_choice(
         "spur-6dof",
         _structures,
-        later=("hypoid-14dof",),
         meaning="structure that vibrates",
     )
     mesh_law: str | None = choice(

@@ -16,13 +16,11 @@ from tribodyn import units
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Option
 from tribodyn.study.case.section import Choice, Section, Table, section_at
+from tribodyn.study.case.words import word
 
 Chosen = Mapping[str, Choice]
 Found = list[tuple[str, Problem]]
 Kind = TypeVar("Kind", bound=Section)
-
-#: A number with a comma for its decimal point.
-_COMMA = re.compile(r"\s*[+-]?\d+,\d+(?!\d*,)")
 
 
 @dataclass(frozen=True)
@@ -53,14 +51,14 @@ def written(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _comma(name: str, value: str) -> FaultError | None:
-    """Say that a number is written with a decimal point, where it has a comma."""
-    if not _COMMA.match(value):
+def _grouped(spec: Option, name: str, value: str) -> FaultError | None:
+    """Say how numbers are written, where one has a comma or separated thousands."""
+    meant = units.readings(value)
+    if not meant:
         return None
-    point = value.strip().replace(",", ".", 1)
-    shown = point if point.replace(".", "", 1).lstrip("+-").isdigit() else f'"{point}"'
-    why, remedy = "The decimal sign is a point, not a comma", f"Write {name} = {shown}"
-    return FaultError(f"{name} = {written(value)}", why, remedy)
+    shown = [f"{name} = {text}" if not spec.unit else f'{name} = "{text}"' for text in meant]
+    why = units.NUMBERS[0].upper() + units.NUMBERS[1:]
+    return FaultError(f"{name} = {written(value)}", why, f"Write {' or '.join(shown)}")
 
 
 def _misread(spec: Option, name: str, value: str, told: str) -> FaultError:
@@ -89,8 +87,8 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
                 shown, f"{name} is a quantity in {spec.unit or '1'}", str(error)
             ) from None
     if isinstance(value, str):
-        if comma := _comma(name, value):
-            raise comma
+        if grouped := _grouped(spec, name, value):
+            raise grouped
         if not spec.unit:
             raise FaultError(shown, f"{name} is a pure number, not text", "Write it without quotes")
         try:
@@ -139,13 +137,11 @@ def _name(spec: Option, name: str, value: Any) -> str:
     known = spec.names() if spec.names else []
     if isinstance(value, str) and value in known:
         return value
-    label = "This version has" if spec.later else "Allowed"
-    shown, why = f"{name} = {written(value)}", f"{label}: {', '.join(known)}"
-    if value in spec.later:
-        raise FaultError(
-            shown, f'"{value}" comes with a later release. {why}', "Choose one of these"
-        )
+    shown, why = f"{name} = {written(value)}", f"Allowed: {', '.join(known)}"
     near = difflib.get_close_matches(str(value), known, n=1)
+    said = None if near else word(str(value))
+    if said is not None:
+        raise FaultError(shown, said.meaning, f"Allowed: {', '.join(known)}")
     raise FaultError(shown, why, f'Did you mean "{near[0]}"?' if near else "Choose one of these")
 
 
@@ -154,6 +150,8 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
     as_text = not isinstance(value, Plain)
     if isinstance(value, Plain):
         value = value.value
+    if spec.pair and isinstance(value, list | tuple):
+        return _both_gears(spec, name, value, as_text)
     if spec.kind == "number":
         result = _real(spec, name, value, as_text)
         _in_range(spec, name, result, value)
@@ -181,6 +179,13 @@ def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ..
         result.append(_real(spec, label, item, as_text))
         _in_range(spec, label, result[-1], item)
     return tuple(result)
+
+
+def _both_gears(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ...]:
+    if len(value) != 2:
+        remedy = f"Write one value for both gears, or {name} = [{spec.example}, {spec.example}]"
+        raise FaultError(f"{name} = {written(value)}", "A list has pinion and wheel", remedy)
+    return _list(spec, name, value, as_text)
 
 
 def read_table(
@@ -297,9 +302,26 @@ def unknown(path: tuple[str, ...], value: Any) -> Problem:
     shown = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
     place = f"[{'.'.join(table)}]" if table else "the top of the file"
     why = f"{place} has: {', '.join(known)}"
+    told = f"{shown}: unknown key"
+    if said := word(name):
+        return Problem(told, "", said.meaning, f"Write {said.key}" if said.key else "Remove it")
+    if remedy := _of_one_gear(name, section):
+        return Problem(told, "", why, remedy)
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
     if near:
-        return Problem(f"{shown}: unknown key", "", why, f'Did you mean "{near[0]}"?')
+        return Problem(told, "", why, f'Did you mean "{near[0]}"?')
     homes = _homes(name)
-    remedy = f"It belongs to {' or '.join(homes)}" if homes else "Remove it"
-    return Problem(f"{shown}: unknown key", "", why, remedy)
+    return Problem(told, "", why, f"It belongs to {' or '.join(homes)}" if homes else "Remove it")
+
+
+def _of_one_gear(name: str, section: type[Section] | None) -> str:
+    """What to write for a key that has the name of a gear in it."""
+    for gear in ("pinion", "wheel"):
+        inner = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
+        spec = section.spec(inner) if section and inner != name else None
+        if spec is not None and spec.pair:
+            example = f"{inner} = [{spec.example}, {spec.example}]"
+            return f"Give that of pinion and wheel in one list: {example}"
+        if inner != name and f"[gears.{gear}]" in _homes(inner):
+            return f"It is {inner} in [gears.{gear}]"
+    return ""

@@ -41,16 +41,13 @@ def damping_of(case: Case, mesh: MeshTable) -> Damping:
             body["base_radius_pinion"], body["base_radius_wheel"],
         )  # fmt: skip
         mesh_damping = 2.0 * data.mesh_damping_ratio * math.sqrt(mesh.mean_mesh_stiffness * mass)
-    return Damping(
-        mesh_damping,
-        _support(case, body.get("mass_pinion", 0.0)),
-        _support(case, body.get("mass_wheel", 0.0)),
-    )
+    supports = _supports(case, (body.get("mass_pinion", 0.0), body.get("mass_wheel", 0.0)))
+    return Damping(mesh_damping, *supports)
 
 
-def _support(case: Case, mass: float) -> float:
+def _supports(case: Case, masses: tuple[float, float]) -> tuple[float, float]:
     from tribodyn.dynamics.structure.structures import support_damping
 
     names = ("bearing_stiffness", "bearing_damping", "bearing_damping_ratio")
     values = [effective(case).get(f"dynamics.{name}") for name in names]
-    return support_damping(values[0], mass, values[1], values[2])
+    return support_damping(values[0], masses, values[1], values[2])

@@ -13,6 +13,7 @@ import numpy as np
 from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.record import Parts, Record, record
 from tribodyn.reporting import write_report_of
+from tribodyn.stored import write_dataset
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.assembly import static_error
 from tribodyn.study.pipeline.save import new_directory
@@ -174,7 +175,7 @@ class Result(Record):
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
             (place / "summary.json").write_text(_json(self._summary), encoding="utf-8")
             self.mesh.save(place / "mesh.nc")
-            self.to_xarray().to_netcdf(place / "response.nc", engine="h5netcdf")
+            write_dataset(self.to_xarray(), place / "response.nc")
             write_report_of(self, place / "report.html")
         return target
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.files import cannot_write, clear_leftovers, whole
 
 #: What a result directory holds; only such a directory may be replaced.
 RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.html")
@@ -26,29 +25,8 @@ _KINDS = {
 
 def write_file(path: Path, text: str) -> None:
     """Write a text file at once: it appears complete or not at all."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise InputError(_cannot(path, error)) from None
-    partial = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        partial.chmod(0o666 & ~_umask())
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-def _cannot(path: Path, error: OSError) -> Problem:
-    reason = error.strerror or str(error)
-    return Problem(f"cannot write: {reason}", str(path), "", "Choose another place")
+    with whole(path) as partial:
+        partial.write_text(text, encoding="utf-8")
 
 
 def check_target(
@@ -56,6 +34,12 @@ def check_target(
 ) -> None:
     """Refuse a directory that cannot or must not be written, before any work is done."""
     parent = target.absolute().parent
+    try:
+        target.absolute().lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        pass
+    except (OSError, ValueError) as error:
+        raise InputError(cannot_write(target, error)) from None
     if parent.exists() and not parent.is_dir():
         raise InputError(
             Problem("this is a file, not a directory", str(target.parent), "", "Choose another")
@@ -97,33 +81,8 @@ def _strangers(target: Path) -> str:
 @contextmanager
 def new_directory(target: Path, *, force: bool = False) -> Iterator[Path]:
     """Fill a directory beside its place and move it there when it is complete."""
+    clear_leftovers(target)
     check_target(target, force)
-    place = target.absolute()
-    try:
-        partial = Path(tempfile.mkdtemp(prefix=f".{place.name}.", dir=place.parent))
-    except OSError as error:
-        raise InputError(_cannot(target, error)) from None
-    try:
-        yield partial
-        partial.chmod(0o777 & ~_umask())
+    with whole(target, folder=True) as place:
+        yield place
         check_target(target, force)
-        _publish(partial, place)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
-
-
-def _publish(partial: Path, place: Path) -> None:
-    """Move the complete directory to its place; what was there goes last."""
-    if not place.exists():
-        partial.rename(place)
-        return
-    old = Path(tempfile.mkdtemp(prefix=f".{place.name}.old.", dir=place.parent))
-    try:
-        place.rename(old / place.name)
-        try:
-            partial.rename(place)
-        except BaseException:
-            (old / place.name).rename(place)
-            raise
-    finally:
-        shutil.rmtree(old, ignore_errors=True)

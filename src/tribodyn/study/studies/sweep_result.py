@@ -17,6 +17,7 @@ from tribodyn.drawing import draw
 from tribodyn.errors import InputError, Problem
 from tribodyn.record import Parts, Record, record
 from tribodyn.reporting import write_report_of
+from tribodyn.stored import write_dataset
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.studies.axes import Axis
@@ -206,6 +207,6 @@ class Sweep(Record):
         with new_directory(target, force=force) as place:
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
             (place / "sweep.csv").write_text(self.to_csv(), encoding="utf-8")
-            self.to_xarray().to_netcdf(place / "sweep.nc", engine="h5netcdf")
+            write_dataset(self.to_xarray(), place / "sweep.nc")
             write_report_of(self, place / "report.html")
         return target

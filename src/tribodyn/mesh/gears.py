@@ -1,0 +1,81 @@
+"""The gears behind a mesh table: spur gears, or none if another program made the table."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Any, NoReturn
+
+import numpy as np
+
+from tribodyn.contact import path_of_contact
+from tribodyn.errors import InputError, quiet
+from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
+from tribodyn.types import Array
+
+#: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
+COORDINATES = (
+    "pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta",
+)  # fmt: skip
+
+
+class NoGears:
+    """What stands for the gear pair in a table of another program: it says that there is none."""
+
+    def __getattr__(self, name: str) -> NoReturn:
+        """Answer every question about the gears with one sentence."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise InputError(
+            "this mesh table has no gear pair",
+            where="MeshTable.gear_pair",
+            why="Another program made it, and such a table knows contacts, not gears",
+            remedy="Ask for what is a column of the table",
+        )
+
+    def __repr__(self) -> str:
+        """One line."""
+        return "no gear pair"
+
+
+@dataclass(frozen=True)
+class GearData:
+    """The spur gears behind a mesh table; tables of other programs have none."""
+
+    pair: SpurPair  #: both gears in their working position
+
+    @property
+    def direction(self) -> Array:
+        """Change of the compression with each of the :data:`COORDINATES` [1 or m]."""
+        sign = 1.0 if self.pair.driver == "pinion" else -1.0
+        radii = (self.pair.pinion.base_radius, self.pair.wheel.base_radius)
+        return np.asarray(sign * np.array([0.0, 1.0, radii[0], 0.0, -1.0, -radii[1]]))
+
+    @property
+    def pitch_point_age(self) -> float | None:
+        """Mesh cycles from entry to pitch point; None where that is outside of the contact."""
+        contact = path_of_contact(self.pair)
+        age = contact.direction * (contact.C - contact.A) / self.pair.base_pitch
+        return float(age) if 0.0 <= age < contact.contact_ratio else None
+
+    def written(self) -> str:
+        """The gears as text for a file."""
+        return json.dumps(asdict(self.pair))
+
+
+def read_pair(text: str) -> SpurPair:
+    """Gears that :meth:`GearData.written` wrote."""
+    values = json.loads(text)
+    with quiet():
+        # Whoever made the table has seen what there was to say about these gears.
+        for name in ("pinion", "wheel"):
+            rack = BasicRack(**values[name].pop("rack"))
+            modification = _read_modification(values[name].pop("modification", {}))
+            values[name] = SpurGear(rack=rack, modification=modification, **values[name])
+        return SpurPair(**values)
+
+
+def _read_modification(values: dict[str, Any]) -> FlankModification:
+    """Modification of a gear; tables from before there were any have none."""
+    chart = values.pop("profile_map", None)
+    return FlankModification(profile_map=ProfileMap(**chart) if chart else None, **values)

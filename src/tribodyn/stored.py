@@ -1,0 +1,128 @@
+"""What is read is a regular file of limited size, and a stored table proves that it is whole.
+
+A netCDF file carries a checksum over its dimensions, variables and attributes, so that a flipped
+bit or a changed column is refused. Files without one come from an earlier version.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import io
+import os
+import re
+import stat
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["LARGEST", "file_kind", "read_bytes", "read_dataset", "write_dataset"]
+
+#: Size of the largest file that is read: text, tables as text, netCDF [bytes].
+LARGEST = {"case": 10**6, "table": 10**7, "netcdf": 2**30}
+#: Attribute in which netCDF tells who wrote a file, and the checksum in it.
+_ORIGIN, _ON_FILE = "_NCProperties", re.compile(rb"tribodyn=([0-9a-f]{64})")
+
+
+def file_kind(path: Path) -> str:
+    """``"file"``, ``"directory"``, empty where nothing is, or why it cannot be read."""
+    try:
+        mode = path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return ""
+    except (OSError, ValueError) as error:
+        return getattr(error, "strerror", None) or str(error)
+    if stat.S_ISDIR(mode):
+        return "directory"
+    return "file" if stat.S_ISREG(mode) else "it is no regular file but a pipe, socket or device"
+
+
+def read_bytes(path: str | PathLike[str], kind: str) -> bytes:
+    """Content of a regular file; OSError says why there is none, before anything is awaited."""
+    told = file_kind(Path(path))
+    if told != "file":
+        told = {"": "there is no such file", "directory": "it is a directory"}.get(told, told)
+        raise OSError(errno.EINVAL, told, str(path))
+    most = LARGEST[kind]
+    held = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with open(held, "rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        text = f"it is larger than {most / 1e6:g} MB, too large for a file of this kind"
+        raise OSError(errno.EFBIG, text, str(path))
+    return content
+
+
+def write_dataset(data: Any, path: str | PathLike[str]) -> None:
+    """Write labelled arrays to a netCDF file, with the checksum of what they hold."""
+    import h5py
+    import xarray
+
+    whole: xarray.Dataset = data.to_dataset() if isinstance(data, xarray.DataArray) else data
+    try:
+        whole.to_netcdf(path, engine="h5netcdf")
+        with h5py.File(path, "r+") as file:
+            told = bytes(file.attrs[_ORIGIN]).decode()
+            file.attrs[_ORIGIN] = np.bytes_(f"{told},tribodyn={_digest(whole)}")
+    except RuntimeError as error:  # HDF5 tells some faults of the disk so.
+        if number := re.search(r"errno = (\d+)", str(error)):
+            raise OSError(int(number[1]), os.strerror(int(number[1])), str(path)) from None
+        raise
+
+
+def read_dataset(path: str | PathLike[str], where: Any = "argument path") -> xarray.Dataset:
+    """Read a netCDF file that this library may have written; a changed one is refused."""
+    import h5py
+    import xarray
+
+    try:
+        content = io.BytesIO(read_bytes(path, "netcdf"))
+        with h5py.File(content) as file:
+            told = _ON_FILE.search(bytes(file.attrs.get(_ORIGIN, b"")))
+        with xarray.open_dataset(content, engine="h5netcdf") as opened:
+            data = opened.load()
+        whole = told is None or told[1].decode() == _digest(data)
+    # A damaged file makes HDF5 and its readers stumble in many ways.
+    except Exception as error:
+        reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        remedy = "Give a netCDF 4 file as it was written"
+        raise InputError(Problem(f"{path} cannot be read", where, reason, remedy)) from None
+    if not whole:
+        why = "Its checksum belongs to other values: it was damaged or changed after it was written"
+        remedy = "Write it anew, or take a copy from before"
+        raise InputError(Problem(f"{path} is not as it was written", where, why, remedy))
+    return data
+
+
+def _digest(data: xarray.Dataset) -> str:
+    """Hash of names, dimensions, values and attributes."""
+    found = hashlib.sha256(_told(data.attrs))
+    for name in sorted(map(str, data.variables)):
+        variable = data.variables[name]
+        values = np.asarray(variable.values)
+        kind = values.dtype.kind
+        found.update(repr((name, variable.dims, values.shape, "f" if kind == "f" else "")).encode())
+        if kind in "biuf":
+            found.update(values.astype("<f8" if kind == "f" else "<i8").tobytes())
+        else:
+            found.update(repr([str(each) for each in values.reshape(-1)]).encode())
+        found.update(_told(variable.attrs))
+    return found.hexdigest()
+
+
+def _told(attributes: Any) -> bytes:
+    """Attributes as they come back from a file."""
+    plain = {str(name): np.asarray(value).tolist() for name, value in attributes.items()}
+    return repr(sorted((name, _plain(value)) for name, value in plain.items())).encode()
+
+
+def _plain(value: Any) -> Any:
+    """One number or text is the same as a list of it."""
+    return value[0] if isinstance(value, list) and len(value) == 1 else value

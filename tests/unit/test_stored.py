@@ -1,0 +1,92 @@
+"""Only regular files of limited size are read, and a stored table that changed is refused."""
+
+from __future__ import annotations
+
+import os
+import socket
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+import tribodyn.stored as stored
+from tribodyn.errors import InputError
+from tribodyn.stored import read_bytes, read_dataset, write_dataset
+
+
+def _data() -> xarray.Dataset:
+    return xarray.Dataset(
+        {
+            "force": (("time", "gear"), np.arange(6.0).reshape(3, 2), {"units": "N"}),
+            "verdict": (("time",), np.array(["physical", "", "µ"], dtype=object)),
+            "touching": (("time",), np.array([True, False, True])),
+            "period": (("time",), np.array([1, 2, 0])),
+            "single": ((), 4.0),
+        },
+        {"time": [0.0, 0.5, np.nan]},
+        {"teeth": 24, "share": 0.5, "title": "x", "names": ["a", "b"]},
+    )
+
+
+def test_read_as_it_was_written(tmp_path: Path) -> None:
+    write_dataset(_data(), tmp_path / "a.nc")
+    told = h5py.File(tmp_path / "a.nc").attrs["_NCProperties"]
+    assert b"tribodyn=" in told
+    xarray.testing.assert_equal(read_dataset(tmp_path / "a.nc"), _data())
+    write_dataset(_data().force, tmp_path / "b.nc")
+    assert read_dataset(tmp_path / "b.nc").force.identical(_data().force)
+
+
+@pytest.mark.parametrize("name", ["force", "period", "touching", "time"])
+def test_one_changed_value_is_refused(tmp_path: Path, name: str) -> None:
+    write_dataset(_data(), tmp_path / "a.nc")
+    with h5py.File(tmp_path / "a.nc", "r+") as file:
+        value = file[name][...]
+        value.reshape(-1)[1] += 1
+        file[name][...] = value
+    with pytest.raises(InputError, match="not as it was written"):
+        read_dataset(tmp_path / "a.nc")
+
+
+def test_a_changed_attribute_or_name_is_refused(tmp_path: Path) -> None:
+    for number, change in enumerate(
+        (
+            lambda file: file.attrs.__setitem__("teeth", 25),
+            lambda file: file["force"].attrs.__setitem__("units", "kN"),
+            lambda file: file.move("force", "Force"),
+            lambda file: file.__delitem__("period"),
+        )
+    ):
+        path = tmp_path / f"{number}.nc"
+        write_dataset(_data(), path)
+        with h5py.File(path, "r+") as file:
+            change(file)
+        with pytest.raises(InputError, match="not as it was written"):
+            read_dataset(path)
+
+
+def test_only_regular_files_are_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    opened = socket.socket(socket.AF_UNIX)
+    opened.bind(str(tmp_path / "socket"))
+    for path in (tmp_path / "pipe", tmp_path / "socket", Path("/dev/zero")):
+        with pytest.raises(OSError, match="no regular file"):
+            read_bytes(path, "case")
+    opened.close()
+    with pytest.raises(OSError, match="directory"):
+        read_bytes(tmp_path, "case")
+    with pytest.raises(OSError, match="no such file"):
+        read_bytes(tmp_path / "none", "case")
+    with pytest.raises(OSError, match="long"):
+        read_bytes(tmp_path / ("x" * 5000), "case")
+
+
+def test_the_size_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(stored.LARGEST, "case", 10)
+    (tmp_path / "a").write_bytes(b"0123456789")
+    assert len(read_bytes(tmp_path / "a", "case")) == 10
+    (tmp_path / "a").write_bytes(b"0123456789a")
+    with pytest.raises(OSError, match="larger than"):
+        read_bytes(tmp_path / "a", "case")
