@@ -41,6 +41,7 @@ def solved():
         return drawn, list(pool.map(solve, drawn))
 
 
+@pytest.mark.slow
 def test_none_fails_and_none_needs_a_second_attempt(solved):
     drawn, found = solved
     assert len(found) == COUNT

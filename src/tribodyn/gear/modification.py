@@ -148,10 +148,14 @@ class FlankModification:
         return any(self.single_pitch_deviation) or any(self.cumulative_pitch_deviation)
 
     @property
+    def teeth_differ(self) -> bool:
+        """Whether one tooth of the gear meets another gap than the next."""
+        return self.changes_pitch or self.run_out != 0.0
+
+    @property
     def changes_anything(self) -> bool:
         """Whether the flanks differ at all from involutes in their places."""
-        shape = self.changes_profile or self.changes_lead
-        return shape or self.changes_pitch or self.run_out != 0.0
+        return self.changes_profile or self.changes_lead or self.teeth_differ
 
     def tooth_problems(self, teeth: int) -> list[Problem]:
         """Find lists that do not belong to a gear of this number of teeth.

@@ -133,7 +133,7 @@ class SpurPair(MeshGeometry):
     @property
     def teeth_differ(self) -> bool:
         """Whether one mesh cycle differs from the next."""
-        return self.has_pitch_deviation or self.has_run_out
+        return any(gear.modification.teeth_differ for gear in (self.pinion, self.wheel))
 
     @property
     def has_modification(self) -> bool:

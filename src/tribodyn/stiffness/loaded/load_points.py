@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.contact import PathOfContact, extended_contact, path_of_contact
 from tribodyn.errors import Argument, InputError
-from tribodyn.gear import SpurPair, flank_gap, hunting_period, pitch_gap, run_out_gap
+from tribodyn.gear import SpurPair, flank_gap, pitch_gap, run_out_gap
 from tribodyn.types import Array, Index, Mask
 
 #: Separation of flanks that cannot meet [m].
@@ -110,8 +110,9 @@ _MOST_SLICES = 1001
 
 
 def mesh_period(pair: SpurPair) -> int:
-    """Mesh cycles after which everything repeats."""
-    return hunting_period(pair) if pair.teeth_differ else 1
+    """Mesh cycles after which everything repeats: turns of the gears whose teeth differ."""
+    differ = [gear for gear in (pair.pinion, pair.wheel) if gear.modification.teeth_differ]
+    return math.lcm(*(gear.teeth for gear in differ))
 
 
 def slice_widths(pair: SpurPair, slices: int | None) -> Array:
