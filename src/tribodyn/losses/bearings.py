@@ -124,8 +124,8 @@ class BearingMoments:
 
     Examples
     --------
-    >>> BearingMoments(0.01, 0.02, 0.0, 0.005).total
-    0.035
+    >>> BearingMoments(0.25, 0.5, 0.0, 0.125).total
+    0.875
     """
 
     rolling: float
@@ -169,7 +169,7 @@ def bearing_moments(
     axial_load : float [N]
         Axial load; its sense does not matter.
     sliding_friction : float, optional
-        mu_EHL of the full film: 0.05 for mineral oil, 0.04 for synthetic oil, 0.02 for cylindrical
+        mu_EHL of the full film, a friction coefficient: 0.05 for mineral oil, 0.04 for synthetic oil, 0.02 for cylindrical
         rollers; by default 0.05, or 0.02 for these.
     replenishment : float
         K_rs: 3e-8 for an oil bath or jet, 6e-8 for grease and oil-air, a dimensionless factor.

@@ -20,7 +20,7 @@ def gear_loss_factor(pair: SpurPair, load_share: Callable[[Array], Array] | None
     pair : SpurPair
         The pair.
     load_share : callable, optional
-        Load share of a tooth pair as a function of its ``path`` [m]; equal sharing by default.
+        Load share of a tooth pair as a function of its ``path`` in m; equal sharing by default.
 
     Returns
     -------

@@ -47,7 +47,7 @@ class PowerLossTable:
     other_loss : array or float [N*m]
         What bearings and seals lose more than without load, in each row, as torque.
     gear_sets : float
-        Gear sets in the loop that share the loss: 1 where the slave gears are in ``other_loss``, 2
+        Gear sets in the loop that share the loss, a pure number: 1 where the slave gears are in ``other_loss``, 2
         where they are like those tested.
     torque_loss_uncertainty : float [N*m]
         Standard uncertainty of one reading; by default that of the repeats.
@@ -56,7 +56,7 @@ class PowerLossTable:
     other_loss_uncertainty : float [N*m]
         Standard uncertainty of ``other_loss``.
     gear_loss_factor_uncertainty : float
-        Standard uncertainty of H_V.
+        Standard uncertainty of H_V, a pure number.
 
     Raises
     ------
@@ -130,7 +130,7 @@ class FrictionFromLoss:
     friction_coefficient : array
         Mean friction coefficient.
     standard_uncertainty : array
-        Its standard uncertainty, of first order.
+        Its standard uncertainty of first order, a pure number.
     degrees_of_freedom : array
         Effective degrees of freedom of that uncertainty (Welch and Satterthwaite), a pure number.
     monte_carlo_uncertainty : array
@@ -169,8 +169,8 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
     Parameters
     ----------
     path : str or Path
-        File whose first line names ``speed``, ``torque`` and ``torque_loss`` with their units, for
-        example ``speed [rpm], torque [N*m], torque_loss [N*m]``; lines with # are left out.
+        File whose first line names ``speed``, ``torque`` and ``torque_loss`` with their units in
+        brackets; lines with # are left out.
     gear_loss_factor : float
         H_V of the gears.
     **more : object
@@ -214,8 +214,8 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
     values = {name: _column(file, lines[1:], columns[name], problems) for name in COLUMNS}
     if problems:
         raise InputError(problems)
-    scaled = {name: np.array(values[name]) * columns[name][1] for name in COLUMNS}
-    return PowerLossTable(**scaled, gear_loss_factor=gear_loss_factor, **more)
+    speed, torque, loss = (np.array(values[name]) * columns[name][1] for name in COLUMNS)
+    return PowerLossTable(speed, torque, loss, gear_loss_factor, **more)
 
 
 def _columns(file: Path, head: Iterable[str]) -> Mapping[str, tuple[int, float]]:
@@ -406,8 +406,8 @@ def _matched(
         if point.mean < rest[0].mean - _SCATTER * scatter:
             problems.append(
                 Problem(
-                    f"torque_loss = {point.mean:.4g} N*m is below the {rest[0].mean:.4g} N*m without "
-                    f"load at {speed / _RPM:.4g} rpm",
+                    f"torque_loss = {point.mean:.4g} N*m is below the {rest[0].mean:.4g} N*m "
+                    f"without load at {speed / _RPM:.4g} rpm",
                     where,
                     "A load can only add to the loss",
                     "Check columns, zero of the torque meter and oil temperature of both runs",

@@ -62,8 +62,9 @@ def churning_loss(
 ) -> float:
     """Power lost by a spur gear that churns in an oil bath.
 
-    ``P = rho/2 omega^3 S_m R^3 C_m``; slow,
-    ``C_m = 1.366 (h/D)^0.45 (V/D^3)^0.1 Fr^-0.6 Re^-0.21``; fast, ``C_m = 3.644 (h/D)^0.1 (V/D^3)^-0.35 Fr^-0.88 (b/D)^0.85``. The acceleration
+    ``P = rho/2 omega^3 S_m R^3 C_m``, slow with
+    ``C_m = 1.366 (h/D)^0.45 (V/D^3)^0.1 Fr^-0.6 Re^-0.21``, fast with
+    ``C_m = 3.644 (h/D)^0.1 (V/D^3)^-0.35 Fr^-0.88 (b/D)^0.85``. The acceleration
     ``omega^2 sqrt(R m)`` tells them apart: slow below 750 m/s^2, fast above 1250 m/s^2, joined in
     a line between.
 
@@ -129,7 +130,7 @@ def churning_loss(
     part = float(np.clip((acceleration - 750.0) / 500.0, 0.0, 1.0))
     coefficient = (1.0 - part) * slow + part * fast
     surface = wetted_surface(pitch_radius, face_width, module, immersion)
-    return 0.5 * oil_density * speed**3 * surface * pitch_radius**3 * coefficient
+    return float(0.5 * oil_density * speed**3 * surface * pitch_radius**3 * coefficient)
 
 
 def wetted_surface(radius: float, width: float, module: float, immersion: float) -> float:
@@ -193,4 +194,4 @@ def windage_loss(
         )
     shape = (1.0 + 2.3 * face_width / pitch_radius) * pitch_radius**4.6
     mist = (0.028 * 1e3 * oil_viscosity + 0.019) ** 0.2
-    return 1e3 * 2.82e-7 * shape * (speed / _RPM) ** 2.8 * mist
+    return float(1e3 * 2.82e-7 * shape * (speed / _RPM) ** 2.8 * mist)
