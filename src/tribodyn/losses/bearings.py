@@ -169,8 +169,8 @@ def bearing_moments(
     axial_load : float [N]
         Axial load; its sense does not matter.
     sliding_friction : float, optional
-        mu_EHL of the full film, a friction coefficient: 0.05 for mineral oil, 0.04 for synthetic oil, 0.02 for cylindrical
-        rollers; by default 0.05, or 0.02 for these.
+        mu_EHL, the coefficient of the full film: 0.05 for mineral oil, 0.04 for synthetic oil, 0.02
+        for cylindrical rollers; by default 0.05, or 0.02 for these.
     replenishment : float
         K_rs: 3e-8 for an oil bath or jet, 6e-8 for grease and oil-air, a dimensionless factor.
     drag_factor : float

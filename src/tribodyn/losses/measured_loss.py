@@ -47,8 +47,8 @@ class PowerLossTable:
     other_loss : array or float [N*m]
         What bearings and seals lose more than without load, in each row, as torque.
     gear_sets : float
-        Gear sets in the loop that share the loss, a pure number: 1 where the slave gears are in ``other_loss``, 2
-        where they are like those tested.
+        Gear sets in the loop that share the loss, a pure number: 1 where the slave gears are in
+        ``other_loss``, 2 where they are like those tested.
     torque_loss_uncertainty : float [N*m]
         Standard uncertainty of one reading; by default that of the repeats.
     torque_uncertainty : float [N*m]
