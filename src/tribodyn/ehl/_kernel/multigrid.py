@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
+from tribodyn.compiled import announced, source_digest
 from tribodyn.ehl._kernel.elementary import INNER, JIT
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.multigrid_levels import (
@@ -327,4 +327,7 @@ def _build(digest: str) -> Any:
     return multigrid_solve
 
 
-multigrid_solve = _build(source_digest(Path(__file__).parent, _SOURCES))
+multigrid_solve = announced(
+    _build(source_digest(Path(__file__).parent, _SOURCES)),
+    "the multigrid film solver", "half a minute",
+)  # fmt: skip
