@@ -95,17 +95,17 @@ class PathOfContact:
     E: float
     direction: int
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Length of the path of contact [m]."""
         return abs(self.E - self.A)
 
-    @property
+    @cached_property
     def contact_ratio(self) -> float:
         """Transverse contact ratio."""
         return self.length / self.pair.base_pitch
 
-    @property
+    @cached_property
     def pairs(self) -> int:
         """Largest number of tooth pairs in contact at a time."""
         return math.ceil(self.contact_ratio - _ROUNDING)

@@ -168,12 +168,12 @@ class MeshGeometry:
     wheel: ToothForm
     center_distance: float
 
-    @property
+    @cached_property
     def ratio(self) -> float:
         """Gear ratio z_wheel / z_pinion, at least one."""
         return self.wheel.teeth / self.pinion.teeth
 
-    @property
+    @cached_property
     def base_pitch(self) -> float:
         """Distance of neighbouring flanks along the line of action [m]."""
         return self.pinion.base_pitch
@@ -188,25 +188,25 @@ class MeshGeometry:
             self.center_distance,
         )
 
-    @property
+    @cached_property
     def line_of_action_length(self) -> float:
         """Distance of the two base tangent points, a sin(alpha_wt) [m]."""
         return self.center_distance * math.sin(self.operating_pressure_angle)
 
-    @property
+    @cached_property
     def path_limits(self) -> tuple[float, float]:
         """Ends of the path of contact as ``path`` [m]: at the wheel's tip, at the pinion's tip."""
         wheel_reach = self.wheel.roll_angle(self.wheel.tip_radius) * self.wheel.base_radius
         pinion_reach = self.pinion.roll_angle(self.pinion.tip_radius) * self.pinion.base_radius
         return self.line_of_action_length - wheel_reach, pinion_reach
 
-    @property
+    @cached_property
     def transverse_contact_ratio(self) -> float:
         """Length of the path of contact over the base pitch."""
         first, last = self.path_limits
         return (last - first) / self.base_pitch
 
-    @property
+    @cached_property
     def backlash(self) -> float:
         """Total play on the line of action [m]; rounding of the shifts below zero counts as zero.
 
@@ -223,7 +223,7 @@ class MeshGeometry:
         thickness = self.pinion.tooth_thickness(radii[0]) + self.wheel.tooth_thickness(radii[1])
         return (2.0 * math.pi * radii[0] / self.pinion.teeth - thickness) * cosine
 
-    @property
+    @cached_property
     def tip_shortening_coefficient(self) -> float:
         """Shortening of the addenda that default tip diameters have, over the module."""
         return tip_shortening_coefficient(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any
 
 from tribodyn.errors import Argument, InputError, Problem
@@ -129,25 +130,25 @@ class FlankModification:
         if problems:
             raise InputError(problems)
 
-    @property
+    @cached_property
     def changes_profile(self) -> bool:
         """Whether the gap depends on the place along the profile."""
         shaped = (self.tip_relief, self.root_relief, self.profile_crowning, self.profile_slope)
         return any(shaped) or _any(self.wear_depth) or self.profile_map is not None
 
-    @property
+    @cached_property
     def changes_lead(self) -> bool:
         """Whether the gap depends on the place along the face."""
         chart = self.profile_map
         mapped = chart is not None and len(chart.face_position) > 1
         return bool(self.crowning or self.lead_slope) or mapped
 
-    @property
+    @cached_property
     def changes_pitch(self) -> bool:
         """Whether the teeth differ in their places around the gear."""
         return any(self.single_pitch_deviation) or any(self.cumulative_pitch_deviation)
 
-    @property
+    @cached_property
     def changes_anything(self) -> bool:
         """Whether the flanks differ at all from involutes in their places."""
         shape = self.changes_profile or self.changes_lead

@@ -141,34 +141,34 @@ class ToothForm:
             )
         ]
 
-    @property
+    @cached_property
     def generating_shift_coefficient(self) -> float:
         """Profile shift that is cut, tooth thinning included."""
         infeed = self.tooth_thinning / (2.0 * math.sin(self.normal_pressure_angle))
         return self.profile_shift_coefficient - infeed / self.normal_module
 
-    @property
+    @cached_property
     def reference_radius(self) -> float:
         """Radius of the reference circle m z / 2 [m]."""
         return 0.5 * self.normal_module * self.teeth
 
-    @property
+    @cached_property
     def base_radius(self) -> float:
         """Radius of the base circle [m]."""
         return self.reference_radius * math.cos(self.normal_pressure_angle)
 
-    @property
+    @cached_property
     def tip_radius(self) -> float:
         """Radius of the tip circle [m]."""
         return 0.5 * self.tip_diameter
 
-    @property
+    @cached_property
     def root_radius(self) -> float:
         """Radius of the root circle that the rack cuts [m]."""
         depth = self.rack.dedendum_coefficient - self.generating_shift_coefficient
         return self.reference_radius - depth * self.normal_module
 
-    @property
+    @cached_property
     def base_pitch(self) -> float:
         """Distance of neighbouring flanks along the line of action [m]."""
         return math.pi * self.normal_module * math.cos(self.normal_pressure_angle)
@@ -269,7 +269,7 @@ class ToothForm:
         """
         return 2.0 * radius * self.half_tooth_angle(radius)
 
-    @property
+    @cached_property
     def tip_thickness(self) -> float:
         """Tooth thickness along the tip circle [m]."""
         return self.tooth_thickness(self.tip_radius)
@@ -292,7 +292,7 @@ class ToothForm:
             center_depth=depth * module,
         )
 
-    @property
+    @cached_property
     def undercut(self) -> bool:
         """Whether the rack tip removes involute near the base circle."""
         return self.trochoid.undercuts

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ class Grid:
     segment_left: Array  #: [-]
     segment_right: Array  #: [-]
 
-    @property
+    @cached_property
     def steps(self) -> int:
         """Number of steps in a mesh cycle."""
         return int(self.left.size)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.contact import effective_modulus
 from tribodyn.errors import ComputationError
 from tribodyn.gear import Material
 from tribodyn.stiffness.loaded.load_points import FAR, ContactPlaces
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import load_point
+from tribodyn.stiffness.teeth.weber import local_terms
 from tribodyn.types import Array
 
 
@@ -56,17 +54,10 @@ class Compliance:
 
 def local_coefficients(material: Material, places: ContactPlaces) -> tuple[Array, float]:
     """Coefficients of the compression after Weber and Banaschek with its Hertzian half width."""
-    nu = material.poissons_ratio
-    scale = 2.0 * (1.0 - nu**2) / (math.pi * material.youngs_modulus)
-    radii = places.pinion_curvature_radius, places.wheel_curvature_radius
-    reduced = radii[0] * radii[1] / (radii[0] + radii[1])
-    square = 8.0 * reduced / (math.pi * effective_modulus(material, material))
-    total = np.zeros(places.path.shape)
     pair = places.contact.pair
-    for gear, radius in zip((pair.pinion, pair.wheel), radii, strict=True):
-        depth = load_point(gear, radius).depth
-        total += np.log(2.0 * depth) - 0.5 * np.log(square) - nu / (2.0 * (1.0 - nu))
-    return scale * total, scale
+    radii = places.pinion_curvature_radius, places.wheel_curvature_radius
+    terms, scale = local_terms((pair.pinion, pair.wheel), radii, material)
+    return scale * terms.sum(axis=0), scale
 
 
 _STATUS = {
