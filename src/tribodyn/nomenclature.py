@@ -119,6 +119,9 @@ corner_share | | | | part of the load on tip corners beyond the path of contact
 mesh_force | N | N | N | dynamic force along the line of action
 friction_force | F_f | N | N | dynamic friction force of all tooth pairs
 power | P | W | W | power
+efficiency | eta | | | output power over input power
+pitch_line_velocity | v_t | m/s | m/s | speed of the flanks at the operating pitch circle
+tangential_force | F_t | N | N | force of the torque on the operating pitch circle
 mesh_damping | c_m | N*s/m | N*s/m | damping of the tooth contact along the line of action | "900 N*s/m"
 mesh_damping_ratio | zeta | | | mesh damping over its critical value
 bearing_stiffness | k_b | N/m | N/um | radial stiffness of the supports of both gears, or a list of that of pinion and wheel | "500 N/um"

@@ -176,6 +176,28 @@ def test_buttons_do_not_lie_under_the_menu(visit: Visit) -> None:
     assert overlaps == []
 
 
+def test_legends_stand_below_on_a_narrow_screen(visit: Visit) -> None:
+    if visit.page.viewport_size["width"] >= 720:
+        return
+    beside = visit.page.evaluate(
+        """[...document.querySelectorAll('.figure')].filter(figure => {
+             const plots = [...figure.querySelectorAll('.nsewdrag')]
+               .map(part => part.getBoundingClientRect());
+             return [...figure.querySelectorAll('.legend')].some(legend =>
+               plots.some(plot => legend.getBoundingClientRect().top < plot.bottom));
+           }).map(figure => figure.id)"""
+    )
+    assert beside == []
+
+
+def test_meanings_can_be_read(visit: Visit) -> None:
+    widths = visit.page.evaluate(
+        """[...document.querySelectorAll('#numbers tbody tr:not(.topic) td:last-child')]
+             .map(cell => cell.getBoundingClientRect().width)"""
+    )
+    assert min(widths) > 200
+
+
 def test_spectra_switch_to_a_logarithmic_scale(visit: Visit) -> None:
     figure = visit.page.locator("#figure-spectrum")
     kind = "document.getElementById('figure-spectrum')._fullLayout.yaxis2.type"

@@ -45,6 +45,7 @@ def test_run_adds_the_figures_of_the_film(capsys: pytest.CaptureFixture[str]) ->
     assert found["minimum_film_ratio"] == pytest.approx(found["minimum_film_over_path"] / roughness)
 
 
+@pytest.mark.slow
 def test_a_film_in_series_softens_the_mesh_a_little(capsys: pytest.CaptureFixture[str]) -> None:
     soft = figures(capsys, "fzg-film")
     stiff = figures(capsys, "fzg-film", "film.stiffness=none", out="stiff")

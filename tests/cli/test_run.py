@@ -138,6 +138,7 @@ def test_a_closed_pipe_is_no_failure() -> None:
     assert done.stderr == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", ["computing", "writing"])
 def test_ctrl_c_leaves_nothing(folder: Path, moment: str) -> None:
     # A long transient is interrupted while it marches; a result while its report is written.

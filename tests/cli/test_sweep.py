@@ -214,6 +214,7 @@ bar._NoBar.__enter__ = lambda self: Slow()
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["sweep", "bifurcation"])
 def test_ctrl_c_keeps_what_is_done(folder: Path, command: str) -> None:
     hook = folder.parent / f"{folder.name}-hook"

@@ -86,6 +86,7 @@ def test_the_film_falls_with_torque_and_rises_with_speed(case: Any) -> None:
     assert exponent == pytest.approx(0.68, abs=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings(r"ignore:\[film-stiffness\]")
 @pytest.mark.parametrize("kind", ["tangent", "secant"])
 def test_film_stiffness_rises_with_torque_and_falls_with_speed(case: Any, kind: str) -> None:
@@ -103,6 +104,7 @@ def test_film_stiffness_rises_with_torque_and_falls_with_speed(case: Any, kind: 
         assert np.all(sign * np.diff(mesh) > 0.0)
 
 
+@pytest.mark.slow
 def test_the_film_is_far_stiffer_than_the_teeth_and_changes_the_series_little(case: Any) -> None:
     mesh = mesh_of(case)
     here = mesh.in_contact

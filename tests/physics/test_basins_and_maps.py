@@ -240,6 +240,7 @@ def test_a_motion_that_has_not_settled_is_no_fault_of_the_step():
     assert step_verdict(0.2, 0, 0.31, 1, 0.1) == "step-limited"
 
 
+@pytest.mark.slow
 def test_peak_of_light_damping_lies_on_the_backbone():
     """The free oscillation over the edge of a dead zone: a sine in contact, a parabola off it."""
     load = 0.5

@@ -142,6 +142,7 @@ def test_exponents_that_differ_by_thousands_keep_their_digits():
     assert found.exponents == pytest.approx([-0.1, -0.1, fast.max(), fast.min()], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_chaotic_exponent_agrees_with_the_independent_computation():
     frequency = CHAOTIC["W"] / TURN
     found = lyapunov_exponents(

@@ -183,6 +183,7 @@ def test_too_few_places_leave_films_out_and_are_told(monkeypatch: pytest.MonkeyP
     assert np.abs(deviations(mesh, known)["film_pressure"]).max() < 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("positions", [30, 60, 200])
 def test_the_film_in_series_with_relief_does_not_depend_on_the_positions(positions: int) -> None:
     mesh = table(
@@ -216,6 +217,7 @@ def random_mesh(seed: int) -> Any:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_random_modified_pairs_have_the_films_of_their_contacts(seed: int) -> None:
     mesh = random_mesh(seed)

@@ -132,6 +132,7 @@ def test_the_film_in_series_is_solved_at_the_share_that_it_makes(kind: str) -> N
     assert np.abs(mesh.load_share - share).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_kinds_of_stiffness_keep_their_order() -> None:
     # the film falls with a tenth power of the load, which is what tangent and secant differ by
     stiffness = {
@@ -316,6 +317,7 @@ def test_coupled_pairs_with_tip_contact_need_no_more_positions(kind: str) -> Non
     assert mesh.load_share == pytest.approx(finer.load_share, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_a_pair_that_its_relief_keeps_apart_settles() -> None:
     pair = fzg("pinion")
     relief = FlankModification(tip_relief=40e-6)

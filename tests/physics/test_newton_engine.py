@@ -79,6 +79,7 @@ def tangent(grid):
     return cH, cP, J
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("imposed", [True, False])
 @pytest.mark.parametrize("ratio", [0, 4])
 def test_linear_solver_equals_the_dense_matrix(contact, imposed, ratio):
@@ -129,6 +130,7 @@ def _coefficients(grid):
     return cH, cP, eps
 
 
+@pytest.mark.slow
 def test_imposed_approach_returns_the_load_that_was_imposed(contact):
     grid = contact._grid
     P, H = grid.P.copy(), np.zeros(grid.n + 1)

@@ -12,8 +12,9 @@ import pytest
 from numpy.typing import NDArray
 
 from known_pairs import pair_of
+from known_systems import reference_system
 from tribodyn.cases import load_case
-from tribodyn.dynamics import FineSamples, Response
+from tribodyn.dynamics import FineSamples, Response, natural_modes
 from tribodyn.gear import BasicRack, Material, SpurPair, spur_pair
 from tribodyn.mesh import MeshTable, build
 from tribodyn.study import Case
@@ -113,6 +114,7 @@ def drawable() -> Any:
             case=case,
             mesh=mesh,
             response=response_of(mesh, names, periods=periods, steady=steady),
+            natural_modes=natural_modes(reference_system()),
             system=SimpleNamespace(
                 stiffness=1e9 * np.eye(6),
                 damping=np.zeros((6, 6)),

@@ -83,6 +83,7 @@ def test_one_interruption_ends_a_march_and_its_process(lanes):
     assert b"KeyboardInterrupt" in told
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize(
     "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=20000"],

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.screen import figures, say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import changed_case
 from tribodyn.errors import InputError, OutputExistsError, Problem
 
@@ -49,16 +49,15 @@ def check(
     """
     from tribodyn.study.case.provenance import assumptions
     from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.first_look import operating_figures
     from tribodyn.study.pipeline.geometry import geometry
-    from tribodyn.study.pipeline.summary import SUMMARY
 
     checked = changed_case(case, set_ or [])
-    values = geometry(checked)
+    values = {n: float(v) for n, v in (geometry(checked) | operating_figures(checked)).items()}
     if json:
         say_json(values)
     else:
-        rows = [[n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in values.items()]
-        say(f"{checked.title}\n{table(rows)}")
+        say(f"{checked.title}\n{figures(values)}")
     show_warnings((warning.code, warning.message) for warning in case_cautions(checked))
     kinds = [assumption.kind for assumption in assumptions(checked)]
     tell(

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.screen import figures, say, say_json, show_warnings, tell
 from tribodyn.cli.settings import changed_case, check_place
-
-if TYPE_CHECKING:
-    from tribodyn.study.pipeline.result import Result
 
 
 def run(
@@ -63,7 +60,7 @@ def run(
     if json:
         say_json(result.summary())
     elif not quiet:
-        _show(result)
+        say(f"{result.case.title}\n{figures(result.summary())}")
     show_warnings((warning.code, warning.message) for warning in result.warnings)
     report = target / "report.html"
     tell(f"Report: {report}")
@@ -71,10 +68,3 @@ def run(
         import webbrowser
 
         webbrowser.open(report.absolute().as_uri())
-
-
-def _show(result: Result) -> None:
-    from tribodyn.study.pipeline.summary import SUMMARY
-
-    rows = [[n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in result.summary().items()]
-    say(f"{result.case.title}\n{table(rows)}")

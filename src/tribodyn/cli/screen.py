@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tribodyn.errors import Problem
@@ -67,6 +67,26 @@ def show_warnings(warnings: Iterable[tuple[str, str]]) -> None:
     """
     for code, message in warnings:
         tell(f"warning [{code}]: {message}")
+
+
+def figures(values: Mapping[str, float]) -> str:
+    """Lay out summary figures by topic: name, value, meaning.
+
+    Parameters
+    ----------
+    values : mapping of str to float
+        Names and SI values.
+
+    Returns
+    -------
+    str
+    """
+    from tribodyn.study.pipeline.summary import SUMMARY, by_topic
+
+    rows = {n: [n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in values.items()}
+    lines = dict(zip(rows, table(list(rows.values())).splitlines(), strict=True))
+    topics = by_topic(values).items()
+    return "\n".join("\n".join([topic, *(lines[n] for n in names)]) for topic, names in topics)
 
 
 def table(rows: Sequence[Sequence[str]], *, indent: str = "  ") -> str:

@@ -16,7 +16,7 @@ from tribodyn.ehl.formulas.power_laws import (
     pan_hamrock_central,
     pan_hamrock_minimum,
 )
-from tribodyn.ehl.steady.solved_films import Films, solved_films
+from tribodyn.ehl.steady.batch import Films, solved_films
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.model import Model, Registry, choice, integer, numbers

@@ -15,8 +15,12 @@ from tribodyn.gear.mesh_geometry import (
     flank_ranges,
     zero_backlash_center_distance,
 )
-from tribodyn.gear.modification import FlankModification, amount_problems
-from tribodyn.gear.profile_map import LARGEST_AMOUNT, ProfileMap
+from tribodyn.gear.modification import (
+    LARGEST_AMOUNT,
+    FlankModification,
+    ProfileMap,
+    amount_problems,
+)
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
 
@@ -134,7 +138,7 @@ class SpurPair(MeshGeometry):
     @cached_property
     def teeth_differ(self) -> bool:
         """Whether one mesh cycle differs from the next."""
-        return self.has_pitch_deviation or self.has_run_out
+        return any(gear.modification.teeth_differ for gear in (self.pinion, self.wheel))
 
     @cached_property
     def has_modification(self) -> bool:

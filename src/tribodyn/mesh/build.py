@@ -19,9 +19,9 @@ from tribodyn.mesh.loads import (
     tribological_contact,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.sharing import shared_load_columns, teeth_of
+from tribodyn.mesh.sharing import ToothContact, shared_load_columns, teeth_of
 from tribodyn.mesh.table import MeshTable
-from tribodyn.mesh.tooth_contact import NO_OPTIONS, ToothContact
+from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
 from tribodyn.types import Array, Mask

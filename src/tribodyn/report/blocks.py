@@ -27,6 +27,8 @@ SECTIONS = (
     "spectrum",
     "bearing_force",
     "bearing_spectrum",
+    "mode_shapes",
+    "campbell",
 )
 
 #: Room above the panels for marks and buttons [px].

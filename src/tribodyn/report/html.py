@@ -9,6 +9,7 @@ from typing import Any
 
 from tribodyn.report.blocks import Block, figure_blocks
 from tribodyn.report.friction_loop import compared_friction
+from tribodyn.report.modes import HEAD, modes_table
 from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.reporting import report_of
@@ -75,6 +76,9 @@ def render_report(result: Any) -> str:
             operating_point=operating_point(result.case),
             cards=headlines(summary),
             rows=table(summary),
+            modes=modes_table(result) if "natural_frequency_1" in summary else [],
+            modes_head=HEAD,
+            speed_of=result.case.operation.speed_of,
             compared=compared_friction(summary),
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],

@@ -2,53 +2,32 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tribodyn.nomenclature import QUANTITIES
-from tribodyn.plot.look.labels import readable
-from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.plot.look.labels import engineering, readable
+from tribodyn.study.pipeline.summary import SUMMARY, by_topic
+from tribodyn.study.pipeline.words import in_words
 from tribodyn.units import convert
 
 #: Summary figures shown on cards at the top, most wanted first.
 HEADLINES = (
+    "pitch_line_velocity",
+    "line_load",
+    "maximum_hertz_pressure",
     "transverse_contact_ratio",
     "mesh_frequency",
-    "peak_mesh_force",
+    "mesh_natural_frequency",
+    "resonance_speed",
+    "dynamic_factor_peak",
+    "peak_to_peak_static_transmission_error",
     "peak_to_peak_dynamic_transmission_error",
-    "rms_acceleration_loa_pinion",
     "rms_bearing_force_loa_pinion",
-    "mean_friction_coefficient",
     "contact_loss_share",
-    "central_film_pitch_point",
-    "minimum_film_over_path",
+    "efficiency",
+    "mean_friction_coefficient",
+    "oil_viscosity",
     "minimum_film_ratio",
-    "oil_film_stiffness_pitch_point",
-)
-
-_STATISTICS = {
-    "peak_to_peak": "peak to peak",
-    "mean": "mean",
-    "rms": "rms",
-    "peak": "peak",
-    "maximum": "greatest",
-    "minimum": "least",
-}
-#: Names whose words do not follow from their parts.
-_WORDS = {
-    "omega_max_dt": "omega_max dt",
-    "minimum_film_over_path": "Minimum film over the path of contact",
-    "line_of_action_indicator": "Bearing force across over along the line of action",
-}
-_START = re.compile(rf"^({'|'.join(_STATISTICS)})_")
-_ENDINGS = (
-    (re.compile(r"_harmonic_(\d+)$"), "mesh harmonic {}"),
-    (re.compile(r"_(pinion|wheel|shaft[12])$"), "{}"),
-    (re.compile(r"_(loa)$"), "along the line of action"),
-    (re.compile(r"_(oloa)$"), "across the line of action"),
-    (re.compile(r"_([A-E])$"), "at {}"),
-    (re.compile(r"_(pitch_point)$"), "at the pitch point"),
 )
 
 
@@ -63,45 +42,27 @@ class Number:
     si: str
     si_unit: str
     meaning: str  #: one line
-
-
-def in_words(name: str) -> str:
-    """Write the name of a summary figure in words, the quantity first."""
-    if name in _WORDS:
-        return _WORDS[name]
-    said: list[str] = []
-    rest = name
-    start = _START.match(rest) if rest not in QUANTITIES else None
-    if start:
-        rest = rest[start.end() :]
-    for pattern, words in _ENDINGS:
-        end = pattern.search(rest)
-        if end:
-            rest = rest[: end.start()]
-            said.insert(0, words.format(end.group(1)))
-    if start:
-        said.insert(0, _STATISTICS[start.group(1)])
-    rest = rest.replace("_", " ")
-    return ", ".join([rest[:1].upper() + rest[1:], *said])
+    topic: str  #: heading of its rows
 
 
 def describe(name: str, value: float, digits: int = 5) -> Number:
     """Put one figure of a summary into words."""
     figure = SUMMARY[name]
+    shown = convert(float(value), figure.unit, figure.display_unit)
     return Number(
         name,
         in_words(name),
-        f"{convert(float(value), figure.unit, figure.display_unit):.{digits}g}",
-        readable(figure.display_unit),
+        *engineering(shown, readable(figure.display_unit), digits),
         f"{value:.6g}",
         readable(figure.unit),
         figure.meaning,
+        figure.topic,
     )
 
 
 def table(summary: Mapping[str, float]) -> list[Number]:
-    """Put a whole summary into words."""
-    return [describe(name, value) for name, value in summary.items()]
+    """Put a whole summary into words, the rows of a topic together."""
+    return [describe(n, summary[n]) for names in by_topic(summary).values() for n in names]
 
 
 def headlines(summary: Mapping[str, float]) -> list[Number]:

@@ -11,12 +11,12 @@ from typing import Any
 from tribodyn import plot
 from tribodyn.report.blocks import Block, drawn_block
 from tribodyn.report.html import plotly_script, template, text_of
-from tribodyn.report.numbers import in_words
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.reporting import report_of
 from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.words import in_words
 
 #: Figures of the summary that the report of a sweep draws and tabulates, where they occur.
 SWEEP_FIGURES = (

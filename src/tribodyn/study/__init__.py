@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.studies.bifurcation import bifurcation
+    from tribodyn.study.studies.modes import campbell, natural_modes
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.study.studies.static import (
         comprehensive_stiffness,
@@ -29,10 +30,12 @@ __all__ = [
     "Result",
     "Sweep",
     "bifurcation",
+    "campbell",
     "comprehensive_stiffness",
     "film_over_operation",
     "harris_map",
     "loaded_contact",
+    "natural_modes",
     "optimize_tip_relief",
     "read_case",
     "run",
@@ -44,10 +47,12 @@ __all__ = [
 _HOMES = {
     "Case": "case.case",
     "bifurcation": "studies.bifurcation",
+    "campbell": "studies.modes",
     "comprehensive_stiffness": "studies.static",
     "film_over_operation": "studies.static",
     "harris_map": "studies.static",
     "loaded_contact": "pipeline.loaded_teeth",
+    "natural_modes": "studies.modes",
     "optimize_tip_relief": "studies.static",
     "read_case": "case.read",
     "run": "pipeline.run",

@@ -72,6 +72,7 @@ def test_without_tip_contact_pairs_on_the_path_carry_all():
     assert np.ptp(mesh.static_transmission_error) > np.ptp(with_corners.static_transmission_error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PAIRS)
 def test_the_force_law_is_the_loaded_contact_within_its_error(name):
     mesh, close = table(PAIRS[name], steps=1024), LARGEST_ERROR

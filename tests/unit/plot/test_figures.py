@@ -30,6 +30,7 @@ NAMES = (
     "spectrum",
     "bearing_force",
     "bearing_spectrum",
+    "mode_shapes",
 )
 #: Axes that are pure numbers.
 UNITLESS = {

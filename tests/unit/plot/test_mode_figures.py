@@ -20,11 +20,46 @@ def test_bars_are_the_energy_shares() -> None:
     modes = natural_modes(reference_system())
     figure = modes.plot()
     assert "77 % of the strain at 5276 Hz" in figure.layout.title.text
-    moving, mesh = curve(figure, "pinion"), curve(figure, "contact 0", "y2")
+    moving, mesh = curve(figure, "pinion"), curve(figure, "mesh", "y2")
     np.testing.assert_allclose(moving.y, 100.0 * modes.body_share()["pinion"][1:])
     np.testing.assert_allclose(mesh.y, 100.0 * modes.strain_share[1:, -1])
     assert len(set(mesh.x)) == 5
     assert figure.layout.barmode == "stack"
+
+
+def test_ramps_of_a_force_law_are_one_mesh() -> None:
+    from tribodyn.dynamics import Contact, System
+
+    def ramp(stiffness: float, gap: float) -> Contact:
+        return Contact([1.0, -1.0], stiffness=stiffness, gap=gap)
+
+    ramps = [ramp(2e8, 0.0), ramp(1e8, 1e-6), ramp(5e7, 2e-6)]
+    pair = System(
+        np.diag([1.0, 2.0]), np.zeros((2, 2)), np.diag([1e7, 0.0]), [900.0, -900.0], ramps
+    )
+    modes = natural_modes(pair)
+    names = {trace.name for trace in modes.plot().data if trace.yaxis == "y2"}
+    assert modes.contacts == 3
+    assert "mesh" in names
+    assert not [name for name in names if name.startswith("contact")]
+    np.testing.assert_allclose(
+        curve(modes.plot(), "mesh", "y2").y, 100.0 * modes.contact_share[modes.rigid :]
+    )
+
+
+def test_the_operating_speed_is_marked() -> None:
+    import tribodyn as td
+
+    case = td.load_case("fzg-roughness")
+    diagram = td.campbell(case, ("1000 rpm", "5000 rpm"))
+    (mark,) = diagram.plot().layout.shapes
+    assert mark.x0 == pytest.approx(case.operation.speed * 30.0 / np.pi)
+    # a harmonic of z teeth meets a mode at 60 f / (order z)
+    teeth = case.gears.pinion.teeth
+    for met in diagram.resonances:
+        expected = 60.0 * met.frequency / (met.order * teeth)
+        assert met.speed * 30.0 / np.pi == pytest.approx(expected, rel=1e-12)
+    assert diagram.resonances
 
 
 def test_modes_of_one_frequency_keep_a_bar_each() -> None:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
-from tribodyn.report.numbers import HEADLINES, describe, headlines, in_words, table
+from tribodyn.plot.look.labels import engineering
+from tribodyn.report.numbers import HEADLINES, describe, headlines, table
 from tribodyn.study import SUMMARY
+from tribodyn.study.pipeline.words import in_a_sentence, in_words
 from tribodyn.units import parse
 
 
@@ -34,6 +38,44 @@ def test_names_read_like_words(name: str, words: str) -> None:
     assert in_words(name) == words
 
 
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("rms_bearing_force_loa_pinion",
+         "rms bearing force along the line of action of the pinion"),
+        ("peak_to_peak_dynamic_transmission_error", "peak to peak dynamic transmission error"),
+        ("static_transmission_error_harmonic_1", "static transmission error in mesh harmonic 1"),
+        ("efficiency", "efficiency"),
+    ],
+)  # fmt: skip
+def test_names_read_within_a_sentence(name: str, words: str) -> None:
+    assert in_a_sentence(name) == words
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "digits", "shown"),
+    [
+        (18350.0, "N/µm", 4, ("18.35", "kN/µm")),
+        (9999.0, "N", 4, ("9999", "N")),
+        (31415926.0, "W", 4, ("31.42", "MW")),
+        (123456.0, "kg", 4, ("123456", "kg")),
+        (0.05, "µm", 4, ("0.05", "µm")),
+        (0.0, "N", 4, ("0", "N")),
+        (1200.0, "rpm", 2, ("1200", "rpm")),
+    ],
+)
+def test_large_numbers_have_no_power_of_ten(
+    value: float, unit: str, digits: int, shown: tuple[str, str]
+) -> None:
+    assert engineering(value, unit, digits) == shown
+
+
+def test_rows_stand_by_topic() -> None:
+    topics = [row.topic for row in table(dict.fromkeys(reversed(SUMMARY), 1.5))]
+    assert topics[0] == "Operating point"
+    assert len(dict.fromkeys(topics)) == 1 + sum(a != b for a, b in pairwise(topics))
+
+
 def test_every_summary_figure_can_be_printed() -> None:
     rows = table(dict.fromkeys(SUMMARY, 1.5))
     assert [row.name for row in rows] == list(SUMMARY)
@@ -43,11 +85,11 @@ def test_every_summary_figure_can_be_printed() -> None:
 
 def test_both_columns_are_the_same_value() -> None:
     for name, figure in SUMMARY.items():
-        row = describe(name, 0.0123)
-        assert parse(f"{row.shown} {row.unit}".strip(), figure.unit) == pytest.approx(
-            0.0123, rel=1e-4
-        )
-        assert float(row.si) == 0.0123
+        value = 300.25 if figure.unit == "K" else 0.0123  # degrees are counted from elsewhere
+        row = describe(name, value)
+        shown = parse(f"{row.shown} {row.unit}".strip(), figure.unit)
+        assert shown == pytest.approx(value, rel=1e-4)
+        assert float(row.si) == value
 
 
 def test_cards_keep_their_order_and_leave_out_what_is_missing() -> None:

@@ -184,11 +184,12 @@ def test_figures_are_methods(result: Any) -> None:
 def test_only_figures_of_a_run_are_methods(result: Any) -> None:
     offered = [name for name in dir(result) if name.startswith("plot_")]
     assert "plot_film" in offered
-    assert "plot_campbell" not in offered
+    assert {"plot_campbell", "plot_mode_shapes"} <= set(offered)
+    assert "plot_forced_response" not in offered
     with pytest.raises(
-        AttributeError, match=r"draws a Campbell. Call tribodyn\.dynamics\.campbell"
+        AttributeError, match=r"draws a ForcedResponse. Call tribodyn\.dynamics\.forced_response"
     ):
-        _ = result.plot_campbell
+        _ = result.plot_forced_response
 
 
 def test_a_figure_of_somebody_else_is_a_method_too(result: Any) -> None:

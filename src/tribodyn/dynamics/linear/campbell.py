@@ -69,6 +69,8 @@ class Campbell(Record):
         Number of the first elastic mode, which is the number of rigid ones.
     resonances : tuple of Resonance
         All crossings, sorted by speed.
+    operating_speed : float, optional
+        Speed that the figure marks [rad/s].
 
     Examples
     --------
@@ -86,6 +88,7 @@ class Campbell(Record):
     damping_ratio: Array = quantity("speed", "mode", unit="1")
     first_mode: int
     resonances: tuple[Resonance, ...]
+    operating_speed: float | None = None
 
     def __repr__(self) -> str:
         """One line."""

@@ -15,7 +15,6 @@ from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.motion import (
     Forces,
     clearance,
-    compression,
     forces,
     quadratic,
     rows_within,
@@ -129,24 +128,28 @@ def _crossing(points: _Points, step: Index, state: Array, before: Array, after: 
     (q0, v0), (q1, v1) = np.split(state, 2, axis=1), np.split(end, 2, axis=1)
     h = points.duration(step)[:, None]
 
-    def distance(tau: Array) -> Array:
-        t = tau[:, None]
-        q = (1.0 + 2.0 * t) * (1.0 - t) ** 2 * q0 + t**2 * (3.0 - 2.0 * t) * q1
-        q = q + h * t * (1.0 - t) * ((1.0 - t) * v0 - t * v1)
-        rows = nodes._replace(
-            direction=quadratic(nodes.direction, step, tau), error=quadratic(nodes.error, step, tau)
+    def distance(j: int, of: Index, tau: Array) -> Array:
+        """Clearance of one contact at fractions of the steps in which it crosses."""
+        t, part = tau[:, None], step[of]
+        q = (1.0 + 2.0 * t) * (1.0 - t) ** 2 * q0[of] + t**2 * (3.0 - 2.0 * t) * q1[of]
+        q = q + h[of] * t * (1.0 - t) * ((1.0 - t) * v0[of] - t * v1[of])
+        direction, error, gap = (
+            quadratic(rows[:, :, j], part, tau)
+            for rows in (nodes.direction, nodes.error, nodes.gap)
         )
-        return clearance(compression(rows, q), quadratic(nodes.gap, step, tau), before, after)
+        pressed = np.einsum("ri,ri->r", direction, q) - error
+        return clearance(pressed, gap, before[of, j], after[of, j])
 
     places = np.full(before.shape, np.nan)
     for j in map(int, np.flatnonzero(np.any(before != after, axis=0))):
-        low, high = np.zeros(step.size), np.ones(step.size)
-        beyond = distance(low)[:, j] <= 0.0
+        of = np.flatnonzero(before[:, j] != after[:, j])
+        low, high = np.zeros(of.size), np.ones(of.size)
+        beyond = distance(j, of, low) <= 0.0
         for _ in range(_HALVINGS):
             tau = 0.5 * (low + high)
-            inside = distance(tau)[:, j] > 0.0
+            inside = distance(j, of, tau) > 0.0
             low, high = np.where(inside, tau, low), np.where(inside, high, tau)
-        places[:, j] = np.where(before[:, j] != after[:, j], np.where(beyond, 0.0, low), np.nan)
+        places[of, j] = np.where(beyond, 0.0, low)
     first, last = np.nanmin(places, axis=1), np.nanmax(places, axis=1)
     return np.where(last - first < _TOGETHER, first, 0.0)
 

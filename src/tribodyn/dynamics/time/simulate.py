@@ -134,5 +134,7 @@ def simulate(
         part = record[first * steps : (first + count) * steps + 1]
         state = marcher.march(state, count, record=part, elapsed=first)
         progress.advance(count)
+    progress.start("Forces along the motion")
+    response = build_response(marcher.compiled, mesh_frequency, record[:, :, 0], extra)
     progress.finish()
-    return build_response(marcher.compiled, mesh_frequency, record[:, :, 0], extra)
+    return response

@@ -11,6 +11,8 @@ from tribodyn.nomenclature import lookup
 from tribodyn.types import Array
 from tribodyn.units import convert
 
+#: Units that are told in thousands and millions.
+_PREFIXED = ("N", "W", "Hz", "Pa")
 _SIGNS = (("^2", "²"), ("^3", "³"), ("*", "·"), ("um", "µm"), ("deg", "°"))
 
 
@@ -55,6 +57,17 @@ def significant(value: float, digits: int = 3) -> str:
         return "0"
     decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
     return f"{value:.{decimals}f}" if decimals <= digits + 3 else f"{value:.{digits - 1}e}"
+
+
+def engineering(value: float, unit: str, digits: int = 5) -> tuple[str, str]:
+    """Number and unit without a power of ten, a large one in thousands of its unit."""
+    power = 0
+    while power < 3 and abs(value) >= 10.0**digits and unit.startswith(_PREFIXED):
+        value, power = value / 1e3, power + 1
+    shown = significant(value, digits)
+    if "." in shown and "e" not in shown:
+        shown = shown.rstrip("0").rstrip(".")
+    return shown, ("", "k", "M", "G")[power] + unit
 
 
 def scaled(values: Any, unit: str) -> tuple[float, str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 
 if TYPE_CHECKING:
@@ -41,12 +41,23 @@ def _bars(labels: list[str], shares: dict[str, Any]) -> list[Trace]:
     ]
 
 
+def _strained(modes: NaturalModes) -> dict[str, Any]:
+    """Strain of each spring in the elastic modes; contacts of one force law are one mesh."""
+    share, springs = modes.strain_share[modes.rigid :], len(modes.elements) - modes.contacts
+    found = {name: share[:, column] for column, name in enumerate(modes.elements[:springs])}
+    laws = np.unique(modes.linear.bundle)
+    for number, law in enumerate(laws, 1):
+        members = springs + np.flatnonzero(modes.linear.bundle == law)
+        found[f"mesh {number}" if laws.size > 1 else "mesh"] = share[:, members].sum(axis=1)
+    return found
+
+
 @drawing(
     "mode_shapes",
     heading="Natural modes",
     caption="One bar for each natural frequency. Above, which body moves; below, which spring "
     "is strained. A mode with much of its strain in the mesh answers to transmission errors.",
-    of="NaturalModes",
+    of=("NaturalModes", "Result.natural_modes"),
     made_by="Call tribodyn.dynamics.natural_modes and its plot method.",
 )
 def mode_shapes(modes: NaturalModes) -> Any:
@@ -66,9 +77,7 @@ def mode_shapes(modes: NaturalModes) -> Any:
     # Two modes can have one frequency: the number keeps their bars apart.
     labels = [f"{first + k}: {significant(float(value), 4)}" for k, value in enumerate(hertz)]
     moving = {body: share[first:] for body, share in modes.body_share().items()}
-    strained = {
-        name: modes.strain_share[first:, column] for column, name in enumerate(modes.elements)
-    }
+    strained = _strained(modes)
     share = modes.contact_share[first:]
     if share.size and modes.contacts:
         top = int(np.argmax(share))
@@ -158,8 +167,9 @@ def _met(diagram: Campbell) -> list[Trace]:
     heading="Campbell diagram",
     caption="Natural frequencies across, mesh harmonics rising with speed. Where two lines cross "
     "the mesh can drive a resonance; the thicker the line of a mode and the larger the dot, the "
-    "more of the strain sits in the mesh.",
-    of="Campbell",
+    "more of the strain sits in the mesh. Of a case the operating speed is marked, and the "
+    "stiffness is that at this speed and load.",
+    of=("Campbell", "Result.campbell"),
     made_by="Call tribodyn.dynamics.campbell and its plot method.",
 )
 def campbell(diagram: Campbell) -> Any:
@@ -180,11 +190,13 @@ def campbell(diagram: Campbell) -> Any:
     top = 1.1 * (min(modes, lines) or lines)
     axis = {"range": [0.0, top]}
     traces = [*_modes(diagram, speed, top), *_rising(diagram, speed, top), *_met(diagram)]
+    now = diagram.operating_speed
+    marks = [] if now is None else [("now", float(displayed("speed", now)))]
     return stack(
         _title(diagram),
         axis_label("speed"),
         [Panel(axis_label("frequency"), traces, axis, height=1.8)],
-        {"hovermode": "closest"},
+        {"hovermode": "closest", **event_lines(marks)},
     )
 
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from tribodyn.analysis import Spectrum, amplitude_spectrum
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import TOTAL, button_row
 from tribodyn.plot.mesh.cycle import RUN
 from tribodyn.plot.motion.courses import DIRECTIONS, GEARS, words_of
@@ -23,8 +23,12 @@ if TYPE_CHECKING:
 
 #: Highest mesh harmonic drawn.
 _HIGHEST = 80
-#: Decades below the largest line that count: those that the logarithmic scale shows.
+#: Decades below the largest line that count on the logarithmic scale.
 _DECADES = 4.0
+#: The same on a linear scale.
+_SEEN = 1.8
+#: Left end of the axis of the orders, and the part of it within which marks share a name.
+_FIRST, _APART = 0.4, 0.04
 
 
 def _no_harmonics(result: Result) -> str:
@@ -90,20 +94,39 @@ def _strongest(panel: Panel) -> str:
     return f"{bars['x'][top]:g} ({frequency} {display_unit('frequency')})"
 
 
-def _harmonic_layout(panels: Sequence[Panel]) -> dict[str, Any]:
+def _natural(result: Result, last: float) -> dict[str, Any]:
+    """Mark the natural frequencies as far as the harmonics go, their names within the panel."""
+    modes, marks = result.natural_modes, dict[float, list[str]]()
+    for hertz in modes.frequency[modes.rigid :]:
+        place = float(hertz) / result.mesh.mesh_frequency
+        if _FIRST < place <= last:
+            near = [at for at in marks if place - at < _APART * last]
+            told = rounded("frequency", float(hertz))
+            marks.setdefault(place, []).append("" if near else told)
+            for at in near[:1]:
+                marks[at].append(told)
+    lines = event_lines((", ".join(filter(None, names)), at) for at, names in marks.items())
+    upright = {"textangle": -90, "yanchor": "top", "xanchor": "left", "yshift": 0,
+               "bgcolor": "rgba(255, 255, 255, 0.75)"}  # fmt: skip
+    lines["annotations"] = [{**note, **upright} for note in lines["annotations"] if note["text"]]
+    return lines
+
+
+def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> dict[str, Any]:
     """Layout of a figure of harmonics, with buttons for a linear and a logarithmic scale."""
-    linear: dict[str, Any] = {}
-    logarithmic: dict[str, Any] = {}
+    ends = [_last_order(panels, decades) + 0.6 for decades in (_SEEN, _DECADES)]
+    linear: dict[str, Any] = {"xaxis.range": [_FIRST, ends[0]]}
+    logarithmic: dict[str, Any] = {"xaxis.range": [_FIRST, ends[1]]}
     for number, panel in enumerate(panels, start=1):
         axis = f"yaxis{'' if number == 1 else number}"
         linear |= {f"{axis}.type": "linear", f"{axis}.autorange": True}
         logarithmic |= {f"{axis}.type": "log", f"{axis}.range": _decades(panel)}
-    orders = {"range": [0.4, _last_order(panels) + 0.6], "showgrid": False}
+    orders = {"range": [_FIRST, ends[0]], "showgrid": False}
     menu = button_row([("linear", linear), ("logarithmic", logarithmic)])
-    return {"xaxis": orders, "updatemenus": [menu]}
+    return {"xaxis": orders, "updatemenus": [menu], **_natural(result, ends[0])}
 
 
-def _last_order(panels: Sequence[Panel]) -> float:
+def _last_order(panels: Sequence[Panel], decades: float) -> float:
     """Highest order whose line counts beside the largest of its unit in the figure."""
     largest: dict[str, float] = {}
     for panel in panels:
@@ -112,7 +135,7 @@ def _last_order(panels: Sequence[Panel]) -> float:
         largest[unit] = max(top, largest.get(unit, 0.0))
     last = 1.0
     for panel in panels:
-        least = 10.0**-_DECADES * largest[panel.label.rpartition("[")[2]]
+        least = 10.0**-decades * largest[panel.label.rpartition("[")[2]]
         for trace in panel.traces:
             seen = np.asarray(trace["x"])[np.asarray(trace["y"]) > least]
             last = max(last, float(np.max(seen, initial=1.0)))
@@ -130,8 +153,8 @@ def _decades(panel: Panel) -> list[float]:
     "spectrum",
     heading="Spectra",
     caption="How strong each mesh harmonic is. Harmonic 1 is the mesh frequency, the teeth that "
-    "pass in a second. A high bar at a higher harmonic tells of a natural frequency near it. The "
-    "buttons switch to a logarithmic scale, on which small harmonics show.",
+    "pass in a second. Dotted lines are natural frequencies: a bar near one is amplified by it. "
+    "The buttons switch to a logarithmic scale, on which small harmonics show.",
     missing=_no_harmonics,
     of="Result",
     made_by=RUN,
@@ -162,7 +185,7 @@ def spectrum(result: Result) -> Any:
         f"Mesh harmonic {_strongest(panels[0])} is the strongest in the transmission error",
         "Mesh harmonic",
         panels,
-        _harmonic_layout(panels),
+        _harmonic_layout(result, panels),
     )
 
 
@@ -174,7 +197,8 @@ def _no_bearing_harmonics(result: Result) -> str:
     "bearing_spectrum",
     heading="Spectra of the bearing forces",
     caption="What the bearings pass on to the housing, by mesh harmonic. A harmonic that meets a "
-    "natural frequency of the housing is the one that is heard.",
+    "natural frequency of the housing is the one that is heard. Dotted lines are natural "
+    "frequencies of the gears on their supports.",
     missing=_no_bearing_harmonics,
     of="Result",
     made_by=RUN,
@@ -196,5 +220,5 @@ def bearing_spectrum(result: Result) -> Any:
         f"Mesh harmonic {_strongest(panels[0])} is the strongest on the pinion's bearing",
         "Mesh harmonic",
         panels,
-        _harmonic_layout(panels),
+        _harmonic_layout(result, panels),
     )

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, displayed, readable, rounded
+from tribodyn.plot.look.labels import axis_label, displayed, engineering, readable, rounded
 from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
 from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.words import in_a_sentence, in_words
 from tribodyn.units import convert
 
 if TYPE_CHECKING:
@@ -159,9 +160,8 @@ def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
         _told(axis, axis.values[at]) for axis, at in zip(study.axes, place, strict=True)
     )
     lost = f"; {failed} of {values.size} failed" if failed else ""
-    return f"Greatest {_words(name).lower()}: {np.nanmax(values):.4g} {unit}".rstrip() + (
-        f" at {where}{lost}"
-    )
+    greatest = " ".join(engineering(float(np.nanmax(values)), unit, 4)).rstrip()
+    return f"The {in_a_sentence(name)} is greatest at {where}: {greatest}{lost}"
 
 
 def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> list[Trace]:
@@ -236,7 +236,7 @@ def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
     values, unit = _values(study, figure)
     title = _case_title(study, figure, values, unit)
     curves = int(np.prod(values.shape[1:]))
-    label = f"{_words(figure)} [{unit}]" if unit else _words(figure)
+    label = f"{in_words(figure)} [{unit}]" if unit else in_words(figure)
     if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in study.axes):
         return _map(study, values, label, unit, title)
     panel = Panel(label, _case_curves(study, values, unit), height=1.6)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -12,28 +11,25 @@ from numpy.typing import ArrayLike
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.loaded.load_points import (
+from tribodyn.model import NO_OPTIONS
+from tribodyn.stiffness.loaded.problem import (
+    Compliance,
     ContactPlaces,
+    ContactProblem,
+    Equilibrium,
     contact_places,
+    coupled_compliance,
     extended_places,
+    independent_compliance,
+    local_coefficients,
     mesh_period,
     on_path_places,
     slice_gaps,
     slice_widths,
 )
-from tribodyn.stiffness.loaded.problem import (
-    Compliance,
-    ContactProblem,
-    Equilibrium,
-    coupled_compliance,
-    independent_compliance,
-    local_coefficients,
-)
 from tribodyn.stiffness.loaded.result import LoadedContact
 from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
 from tribodyn.types import Array, Mask
-
-NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
 def compliance_of(

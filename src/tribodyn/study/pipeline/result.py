@@ -20,7 +20,7 @@ from tribodyn.study.pipeline.save import new_directory
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Response, System
+    from tribodyn.dynamics import Campbell, NaturalModes, Response, System
     from tribodyn.errors import ModelWarning
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
@@ -117,6 +117,20 @@ class Result(Record):
         from tribodyn.study.pipeline.loaded_teeth import loaded_contact
 
         return loaded_contact(self.case)
+
+    @cached_property
+    def natural_modes(self) -> NaturalModes:
+        """Natural modes about the static load, contacts closed, friction left out."""
+        from tribodyn.dynamics import natural_modes
+
+        return natural_modes(self.system)
+
+    @cached_property
+    def campbell(self) -> Campbell:
+        """Natural frequencies and mesh harmonics over the speed, with the stiffness of this one."""
+        from tribodyn.study.studies.modes import diagram_of
+
+        return diagram_of(self.system, self.case, self.mesh.mesh_frequency)
 
     def _parts(self) -> Parts:
         """Parts of the motion with the force of all ramps of a force law, and the summary."""

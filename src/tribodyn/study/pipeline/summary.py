@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ import numpy as np
 
 from tribodyn.model import Registry
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.study.pipeline.first_look import load_figures, mode_figures, operating_figures
 from tribodyn.study.pipeline.geometry import geometry
 from tribodyn.study.pipeline.record import (
     centre_column,
@@ -44,6 +45,7 @@ class SummaryFigure:
     unit: str
     display_unit: str
     meaning: str  #: one line
+    topic: str = "Other"  #: under which it stands in tables
 
     def show(self, value: float) -> str:
         """Write the value in the display unit with six digits."""
@@ -53,22 +55,34 @@ class SummaryFigure:
         return f"{float(number):.6g} {unit}"
 
 
-def _figure(name: str, quantity: str, meaning: str) -> SummaryFigure:
+def _figure(name: str, quantity: str, *words: str) -> SummaryFigure:
     known = QUANTITIES[quantity] if quantity else None
     unit, shown = (known.unit, known.display_unit) if known else ("", "")
-    return SummaryFigure(name, unit, shown, meaning)
+    return SummaryFigure(name, unit, shown, *words)
 
 
 def _read() -> dict[str, SummaryFigure]:
     text = files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
-    rows = tomllib.loads(text).items()
-    return {name: _figure(name, quantity, meaning) for name, (quantity, meaning) in rows}
+    return {
+        name: _figure(name, quantity, meaning, topic)
+        for topic, rows in tomllib.loads(text).items()
+        for name, (quantity, meaning) in rows.items()
+    }
 
 
 #: All figures of :meth:`tribodyn.Result.summary` and ``tribodyn check`` by name.
 SUMMARY: dict[str, SummaryFigure] = _read()
 #: Figures of third parties: functions of a result, open through the entry points of this group.
 MEASURES: Registry[Measure] = Registry("summary figure", "tribodyn.summary")
+
+
+def by_topic(names: Iterable[str]) -> dict[str, list[str]]:
+    """Names of figures under their topics, both in the order of :data:`SUMMARY`."""
+    asked, topics = set(names), dict[str, list[str]]()
+    for name, figure in SUMMARY.items():
+        if name in asked:
+            topics.setdefault(figure.topic, []).append(name)
+    return topics
 
 
 def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measure], Measure]:
@@ -115,6 +129,7 @@ def summarize(result: Result) -> dict[str, float]:
     samples = measured(result.response)
     values: dict[str, Any] = {
         **geometry(result.case),
+        **operating_figures(result.case),
         **_mesh_figures(result.mesh),
         **_static_error_figures(result),
         **_film_figures(result.mesh),
@@ -122,6 +137,7 @@ def summarize(result: Result) -> dict[str, float]:
         **_error_figures(result, samples),
         **_friction_figures(result, samples),
         **_comparison(result),
+        **mode_figures(result.system, result.mesh.mesh_frequency, result.case.pinion_speed),
     }
     if centre_column(result.response.names, "pinion", "x") is not None:
         values |= _support_figures(result, samples)
@@ -131,9 +147,10 @@ def summarize(result: Result) -> dict[str, float]:
     values["omega_max_dt"] = result.response.step_number
     if is_steady(result.response):
         values["steady_state_error"] = result.response.error
+    values |= load_figures(result.case, result.mesh, values)
     measures = MEASURES.all().items()
     values |= {name: measure(result) for name, measure in measures}
-    return {name: float(value) for name, value in values.items() if value is not None}
+    return {n: float(values[n]) for n in SUMMARY if values.get(n) is not None}
 
 
 def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:

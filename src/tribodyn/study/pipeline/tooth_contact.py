@@ -46,7 +46,7 @@ def model_settings(case: Case) -> dict[str, Any]:
 def mesh_of(case: Case, progress: Progress = SILENT, *, load: float = 1.0) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle."""
     from tribodyn.mesh.build import mesh_table
-    from tribodyn.mesh.tooth_contact import ToothContact
+    from tribodyn.mesh.sharing import ToothContact
 
     if case.mesh_table is not None:
         return case.mesh_table.table(

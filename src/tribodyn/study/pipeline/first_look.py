@@ -1,0 +1,129 @@
+"""What an engineer checks first: oil at work, pitch line, load, losses, and the natural modes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, collected
+from tribodyn.study.pipeline.loaded_teeth import loaded_settings
+from tribodyn.study.pipeline.tooth_contact import chosen_options
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import System
+    from tribodyn.gear import SpurPair
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.case.case import Case
+
+#: Elastic natural frequencies in a summary.
+_MODES = 12
+#: Phases of a mesh cycle over which the share of the gear bodies is averaged.
+_PHASES = 32
+
+
+def operating_figures(case: Case) -> dict[str, float]:
+    """Speed and force at the pitch line, power, and the oil at its working temperature."""
+    torque, speed = case.pinion_torque, case.pinion_speed
+    figures = {"input_power": torque * speed}
+    if case.gears.kind != "table":
+        pair = case.gear_pair
+        radius = pair.pinion.base_radius / np.cos(pair.operating_pressure_angle)
+        figures |= {
+            "pitch_line_velocity": speed * radius,
+            "tangential_force": torque / radius,
+            "line_load": torque / pair.pinion.base_radius / pair.common_face_width,
+        }
+    oil = case.lubricant_properties
+    if oil is not None:
+        figures |= {
+            "oil_viscosity": oil.dynamic_viscosity,
+            "oil_density": oil.density,
+            "oil_pressure_viscosity_coefficient": oil.pressure_viscosity_coefficient,
+        }
+        if oil.temperature is not None:
+            figures["oil_temperature"] = oil.temperature
+    return figures
+
+
+def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> dict[str, float]:
+    """Dynamic factors, efficiency, and the mesh stiffness of the standard beside the computed."""
+    static, lost = mesh.total_normal_force, figures["mean_friction_power"]
+    power = figures["input_power"]
+    if case.operation.torque_balance == "load":
+        power += lost  # the driver brings up the friction
+    found = {
+        "dynamic_factor_peak": figures["peak_mesh_force"] / static,
+        "dynamic_factor_rms": figures["rms_mesh_force"] / static,
+        "input_power": power,
+        "efficiency": 1.0 - lost / power,
+    }
+    return found | (standard_figures(case) if case.gears.kind != "table" else {})
+
+
+def standard_figures(case: Case) -> dict[str, float]:
+    """``b c_gamma_alpha`` of ISO 6336-1, and what of the computed deflection the bodies make."""
+    from tribodyn.stiffness import iso6336_mesh_stiffness, iso6336_single_stiffness
+
+    pair, force = case.gear_pair, case.pinion_torque / case.gear_pair.pinion.base_radius
+    figures = {}
+    with collected() as outside:
+        single = iso6336_single_stiffness(pair, case.material_properties, force)
+    if not outside:  # else its polynomial does not hold for these profile shifts
+        mean = iso6336_mesh_stiffness(single, pair.transverse_contact_ratio)
+        figures["iso_mesh_stiffness"] = pair.common_face_width * mean
+    if chosen_options(case, "stiffness").get("reference") == "bore":
+        figures["gear_body_share"] = _body_share(case, _alike(pair), force)
+    return figures
+
+
+def _alike(pair: SpurPair) -> SpurPair:
+    """The pair without what makes its teeth differ from each other."""
+    even: dict[str, Any] = {
+        "run_out": 0.0,
+        "single_pitch_deviation": (),
+        "cumulative_pitch_deviation": (),
+    }
+    pinion, wheel = (
+        replace(gear, modification=replace(gear.modification, **even))
+        for gear in (pair.pinion, pair.wheel)
+    )
+    return replace(pair, pinion=pinion, wheel=wheel)
+
+
+def _body_share(case: Case, pair: SpurPair, force: float) -> float:
+    from tribodyn.stiffness import loaded_contact
+
+    settings = loaded_settings(case)
+    torque = force * pair.pinion.base_radius
+    with collected():
+        whole, teeth = (
+            loaded_contact(
+                pair, torque, phases=_PHASES,
+                **{**settings, "options": {**settings["options"], "reference": reference}},
+            ).deflection.mean()
+            for reference in ("bore", "rim")
+        )  # fmt: skip
+    return float(1.0 - teeth / whole)
+
+
+def mode_figures(system: System, mesh_frequency: float, speed: float) -> dict[str, float]:
+    """Elastic natural frequencies, and where the mesh frequency meets that of the mesh."""
+    from tribodyn.dynamics import natural_modes
+
+    try:
+        modes = natural_modes(system)
+    except InputError:
+        return {}  # a structure that is not stable about its static load has none
+    elastic = modes.frequency[modes.rigid :]
+    figures = {f"natural_frequency_{k}": f for k, f in enumerate(elastic[:_MODES], 1)}
+    if elastic.size and modes.contacts:
+        own = float(modes.frequency[int(np.argmax(modes.contact_share))])
+        figures |= {
+            "mesh_natural_frequency": own,
+            "resonance_speed": speed * own / mesh_frequency,
+            "resonance_ratio": mesh_frequency / own,
+        }
+    return figures

@@ -1,0 +1,169 @@
+"""Natural modes of a case about its static load, and the speeds at which the mesh meets them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import collected
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.derive import placed
+from tribodyn.study.studies.axes import operation_values
+from tribodyn.study.studies.grid import built
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from tribodyn.dynamics import Campbell, NaturalModes, System
+    from tribodyn.study.case.case import Case
+
+#: Mesh harmonics whose critical speeds are told.
+ORDERS = (1, 2, 3, 4, 5)
+#: Speeds of a diagram, and how far it goes beyond the operating speed and the last resonance.
+_SPEEDS, _BEYOND = 201, 1.15
+#: Shares of the energy below this are not told.
+_LEAST = 0.05
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One elastic mode in figures that are printed."""
+
+    number: int  #: counted with the rigid ones from 0
+    frequency: float  #: [Hz]
+    damping_ratio: float  #: part of the critical damping
+    moves: str  #: bodies with their shares of the kinetic energy
+    strains: str  #: mesh, shafts and supports with their shares of the strain energy
+    speeds: tuple[float, ...]  #: critical speeds, one for each of ``ORDERS`` [rad/s]
+
+
+def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
+    """Find the natural frequencies of a case about its static load; no motion is computed.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    progress : Progress
+        Told about the tooth contact; silent by default.
+
+    Returns
+    -------
+    NaturalModes
+        With the mean stiffness of the mesh at this speed and load, contacts closed.
+
+    Raises
+    ------
+    InputError
+        If the case cannot be computed as it stands.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> modes = natural_modes(tribodyn.load_case("fzg-roughness"))
+    >>> modes.frequency.round().tolist()
+    [0.0, 5045.0, 9044.0, 9390.0, 11452.0, 11991.0]
+    """
+    from tribodyn.dynamics import natural_modes as compute
+
+    return compute(_system(case, progress)[0])
+
+
+def campbell(
+    case: Case,
+    between: tuple[Any, Any] | None = None,
+    *,
+    orders: Iterable[int] = ORDERS,
+    progress: Progress = SILENT,
+) -> Campbell:
+    """Find the speeds at which mesh harmonics of a case meet its natural frequencies.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    between : tuple, optional
+        Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit; by
+        default up to beyond the speed at which the mesh frequency meets the mode of the mesh.
+    orders : iterable of int
+        Mesh harmonics.
+    progress : Progress
+        Told about the tooth contact; silent by default.
+
+    Returns
+    -------
+    Campbell
+        Its speed is that of the gear whose speed the case gives; the stiffness is that at the
+        speed and load of the case.
+
+    Raises
+    ------
+    InputError
+        If a speed is out of range, or the case cannot be computed as it stands.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> diagram = campbell(tribodyn.load_case("fzg-roughness"), ("1000 rpm", "5000 rpm"))
+    >>> [(met.order, round(met.speed * 30 / np.pi)) for met in diagram.resonances]
+    [(5, 3784), (4, 4730)]
+    """
+    system, mesh_frequency = _system(case, progress)
+    ends = None if between is None else operation_values("speed", between, case)
+    return diagram_of(system, case, mesh_frequency, ends, orders)
+
+
+def _system(case: Case, progress: Progress) -> tuple[System, float]:
+    with placed(case), collected():
+        progress.start("tooth contact")
+        member = built(case)
+        progress.finish()
+    return member.system, member.mesh.mesh_frequency
+
+
+def diagram_of(
+    system: System,
+    case: Case,
+    mesh_frequency: float,
+    ends: Sequence[float] | None = None,
+    orders: Iterable[int] = ORDERS,
+) -> Campbell:
+    """Campbell diagram of the structure of a case, with its operating speed marked."""
+    from tribodyn.dynamics import campbell as compute
+    from tribodyn.dynamics import natural_modes as modes_of
+
+    now = case.operation.speed
+    if ends is None:
+        modes = modes_of(system)
+        own = modes.frequency[int(np.argmax(modes.contact_share))] if modes.contacts else 0.0
+        top = _BEYOND * max(now, now * float(own) / mesh_frequency)
+        ends = [top / _SPEEDS, top]
+    gear = getattr(case.gears, case.operation.speed_of)
+    diagram = compute(
+        system, np.linspace(ends[0], ends[1], _SPEEDS), teeth=gear.teeth, orders=orders
+    )
+    return replace(diagram, operating_speed=now)
+
+
+def mode_rows(modes: NaturalModes, case: Case, mesh_frequency: float) -> list[Mode]:
+    """Elastic modes of a case with what moves, what is strained, and their critical speeds."""
+    per_hertz = case.operation.speed / mesh_frequency
+    bodies, springs = modes.body_share(), modes.strain_by_kind()
+    return [
+        Mode(
+            number,
+            float(modes.frequency[number]),
+            float(modes.damping_ratio[number]),
+            _told({name: float(share[number]) for name, share in bodies.items()}),
+            _told({name: float(share[number]) for name, share in springs.items()}),
+            tuple(per_hertz * float(modes.frequency[number]) / order for order in ORDERS),
+        )
+        for number in range(modes.rigid, modes.frequency.size)
+    ]
+
+
+def _told(shares: dict[str, float]) -> str:
+    largest = sorted(shares.items(), key=lambda item: -item[1])
+    return ", ".join(f"{name} {100 * share:.0f} %" for name, share in largest if share >= _LEAST)
