@@ -21,10 +21,8 @@ def operating_pressure_angle(
     ----------
     teeth_sum : int
         Sum of the numbers of teeth.
-    normal_module : float
-        Module [m].
-    normal_pressure_angle : float
-        Pressure angle of the rack [rad].
+    normal_module, normal_pressure_angle : float [m], [rad]
+        Module, and pressure angle of the rack.
     center_distance : float
         Distance of the axes [m].
 
@@ -68,12 +66,8 @@ def zero_backlash_center_distance(
 
     Parameters
     ----------
-    teeth_sum : int
-        Sum of the numbers of teeth.
-    normal_module : float
-        Module [m].
-    normal_pressure_angle : float
-        Pressure angle of the rack [rad].
+    teeth_sum, normal_module, normal_pressure_angle
+        As for :func:`operating_pressure_angle`, in [m] and [rad].
     shift_sum : float
         Sum of the profile shift coefficients.
 
@@ -117,10 +111,8 @@ def tip_shortening_coefficient(
 
     Parameters
     ----------
-    teeth_sum : int
-        Sum of the numbers of teeth.
-    normal_module : float
-        Module [m].
+    teeth_sum, normal_module
+        As for :func:`operating_pressure_angle`, in [m].
     shift_sum : float
         Sum of the profile shift coefficients.
     center_distance : float

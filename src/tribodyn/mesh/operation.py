@@ -101,23 +101,13 @@ def film_over_operation(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
-    stiffness_model : str
-        Name in ``tribodyn.stiffness.MODELS``: shares the load among the pairs.
-    stiffness_options : mapping
-        Options of the stiffness model.
-    lubricant : Lubricant
-        Oil at working temperature.
-    composite_roughness : float [m]
-        Root of the sum of squares of both roughnesses; zero for ideal flanks.
-    film_model : str
-        Name in ``tribodyn.ehl.FILM_MODELS``.
-    film_options : mapping
-        Options of the film model. Its ``stiffness`` only tells which stiffness is computed: the
-        load is shared by the teeth alone.
+    pair, material
+        As the models, their options and ``lubricant`` for :func:`tribodyn.mesh.build`; the film
+        does not change the load share.
+    stiffness_model, stiffness_options
+        As there.
+    lubricant, composite_roughness, film_model, film_options
+        As there [m].
     pinion_speed : float or array (speeds,) [rad/s]
         Speeds of the pinion in the running sense.
     pinion_torque : float or array (torques,) [N*m]
@@ -335,18 +325,12 @@ def comprehensive_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
-    stiffness_model : str
-        Name in ``tribodyn.stiffness.MODELS``.
-    stiffness_options : mapping
-        Options of the stiffness model.
-    lubricant : Lubricant
-        Oil at working temperature.
-    film_model : str
-        Name in ``tribodyn.ehl.FILM_MODELS``.
+    pair, material
+        As the models, their options and ``lubricant`` for :func:`tribodyn.mesh.build`.
+    stiffness_model, stiffness_options
+        As there.
+    lubricant, film_model
+        As there.
     film_options : mapping
         Options of the film model; ``kind`` replaces its ``stiffness``.
     kind : str

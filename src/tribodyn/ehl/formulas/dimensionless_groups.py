@@ -10,7 +10,8 @@ from typing import Any, NamedTuple, Protocol, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import require_positive, warn
+from tribodyn.checks import positive
+from tribodyn.errors import warn
 from tribodyn.types import Array
 
 
@@ -155,24 +156,15 @@ def line_contact_groups(
     >>> round(float(groups.moes_load), 3), round(float(groups.moes_material), 2)
     (1.654, 19.82)
     """
-    require_positive("load_per_width", load_per_width, "N/m", remedy="1 N/mm is 1000 N/m")
-    require_positive("equivalent_radius", equivalent_radius, "m")
-    require_positive(
-        "entrainment_speed",
-        entrainment_speed,
-        "m/s",
-        remedy="A film needs a rolling motion: give half the sum of the surface speeds",
-    )
-    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
-    require_positive("pressure_viscosity_coefficient", pressure_viscosity_coefficient, "1/Pa")
-    require_positive("effective_modulus", effective_modulus, "Pa")
     load, radius, speed, viscosity, coefficient, modulus = np.broadcast_arrays(
-        load_per_width,
-        equivalent_radius,
-        entrainment_speed,
-        dynamic_viscosity,
-        pressure_viscosity_coefficient,
-        effective_modulus,
+        *positive(
+            load_per_width=load_per_width,
+            equivalent_radius=equivalent_radius,
+            entrainment_speed=entrainment_speed,
+            dynamic_viscosity=dynamic_viscosity,
+            pressure_viscosity_coefficient=pressure_viscosity_coefficient,
+            effective_modulus=effective_modulus,
+        )
     )
     stiffness = modulus * radius
     return Groups(

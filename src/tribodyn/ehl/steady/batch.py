@@ -98,30 +98,14 @@ def solve_line_contacts(
 
     Parameters
     ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        Oil at the temperature of the inlet.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-    nodes : "auto" or int
-        Nodes of each grid.
-    method : {"newton", "multigrid"}
-        Engine.
-    domain : "auto" or (float, float) [-]
-        First and last position, in half widths of each dry contact.
-    inlet : {"flooded", "zero"}
-        Oil everywhere before the contact, or pressure zero at the first position.
-    viscosity_law : {"roelands", "barus", "isoviscous"}
-        How the viscosity rises with pressure.
-    compressible : bool
-        Whether the density rises with pressure.
-    tolerance, flux_tolerance, film_tolerance : float
-        As for one contact.
+    load_per_width, equivalent_radius, entrainment_speed : float or array [N/m], [m], [m/s]
+        Loads, radii and speeds that broadcast.
+    lubricant, effective_modulus : Lubricant, float [Pa]
+        Oil and modulus of all contacts.
+    nodes, method, domain, inlet, viscosity_law, compressible
+        As for :func:`solve_line_contact`.
+    tolerance, flux_tolerance, film_tolerance
+        As there.
     stiffness : bool
         Whether to compute the film stiffness, one or two linear solves a contact.
     length : float [m]

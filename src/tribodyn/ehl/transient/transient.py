@@ -167,10 +167,8 @@ def solve_transient_line_contact(
         Instants, rising.
     load_per_width : float, array or callable [N/m]
         Load per face width; where the approach is imposed, its estimate, which sets the grid.
-    equivalent_radius : float, array or callable [m]
-        Reduced radius of curvature.
-    entrainment_speed : float, array or callable [m/s]
-        HALF the sum of the surface speeds, zero or positive.
+    equivalent_radius, entrainment_speed : float, array or callable [m], [m/s]
+        Reduced radius of curvature; HALF the sum of the surface speeds, zero or positive.
     lubricant : Lubricant
         The oil at its working temperature.
     effective_modulus : float [Pa]
@@ -189,10 +187,8 @@ def solve_transient_line_contact(
         First and last position, b being the half width of the widest dry contact.
     inlet : {"flooded", "zero"}
         Whether the wedge before the first node is full of oil, or the oil begins there.
-    viscosity_law : {"roelands", "barus", "isoviscous"}
-        Viscosity over pressure.
-    compressible : bool
-        Whether the density rises with pressure.
+    viscosity_law, compressible
+        As for :func:`tribodyn.ehl.solve_line_contact`.
     roughness : two of RoughnessProfile or None
         Heights of the two surfaces, carried along at their speeds.
     surface_speeds : two of float, array or callable, optional [m/s]

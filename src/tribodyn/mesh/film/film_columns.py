@@ -48,10 +48,8 @@ def film_columns(
         Name in ``tribodyn.ehl.FILM_MODELS``.
     contact : TribologicalContact
         Loaded contacts.
-    material : Material
-        Material of both gears.
-    lubricant : Lubricant
-        Oil at working temperature.
+    material, lubricant : Material, Lubricant
+        Of both gears, and the oil at working temperature.
     common_face_width : float [m]
         Length of the contact line, for the film stiffness.
     film_options : mapping
@@ -147,10 +145,8 @@ def moving_film(
     ----------
     mesh : MeshTable
         Loads, radii and speeds of the pair over the mesh cycle.
-    lubricant : Lubricant
-        Oil at working temperature.
-    material : Material
-        Material of both gears.
+    lubricant, material : Lubricant, Material
+        Oil at working temperature, and material of both gears.
     steps : int
         Time steps from entry to exit; where the number of pairs changes, one of them spreads the
         jump of the load.

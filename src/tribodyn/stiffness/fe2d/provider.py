@@ -130,10 +130,8 @@ def fe2d_influence(
 
     Parameters
     ----------
-    gear : SpurGear
-        The gear.
-    material : Material
-        Its material.
+    gear, material : SpurGear, Material
+        The gear and its material.
     reference : str
         ``"bore"``: the bore is held; ``"rim"``: the wind-up of the body is taken off.
     neighbours : int

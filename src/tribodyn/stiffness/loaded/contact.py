@@ -75,19 +75,14 @@ def contact_problem(
     pair : SpurPair
         Both gears in their working position, with their deviations.
     provider : str
-        Name in ``tribodyn.stiffness.MODELS``.
+        As ``extended_contact``, ``material``, ``options`` and ``slices`` for
+        :func:`loaded_contact`.
     phase : array (p,)
         Mesh phases; the whole part counts mesh cycles, where teeth differ.
     total_force : float [N]
         Normal force of all pairs.
-    extended_contact : bool
-        Let tip corners touch outside of the path of contact.
-    material : Material
-        Material of both gears.
-    options : mapping
-        Options of the provider.
-    slices : int, optional
-        Slices of the face width; by default one, or 21 where flanks vary over the width.
+    extended_contact, material, options, slices
+        As there.
 
     Returns
     -------
@@ -132,20 +127,16 @@ def mesh_problem(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position, with their deviations.
-    provider : str
-        Name in ``tribodyn.stiffness.MODELS``.
+    pair, provider
+        As for :func:`contact_problem`.
     places : tuple
         Phase (p,), path (p, n) [m] and whether each pair is between A and E (p, n).
     total_force : float [N]
         Normal force of all pairs.
     extended_contact : bool
         Let tip corners touch outside of the path of contact; then there are two pairs more.
-    material : Material
-        Material of both gears.
-    options : mapping
-        Options of the provider.
+    material, options
+        As for :func:`contact_problem`.
 
     Returns
     -------

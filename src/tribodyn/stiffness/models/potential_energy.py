@@ -70,10 +70,8 @@ def single_pair_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material : SpurPair, Material
+        Both gears in their working position, and their material.
     path : float or array [m]
         Distance of the contact from the pinion's base tangent point.
     normal_force : float or array [N]
@@ -122,10 +120,8 @@ def potential_energy_influence(
 
     Parameters
     ----------
-    gear : SpurGear
-        The gear.
-    material : Material
-        Its material.
+    gear, material : SpurGear, Material
+        The gear and its material.
     reference : str
         ``"bore"`` or ``"rim"``: where the gear body is held.
 
@@ -169,10 +165,8 @@ def potential_energy_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material
+        As for :func:`single_pair_stiffness`.
     path : array (n, pairs) [m]
         Distance of each contact from the pinion's base tangent point.
     in_contact : bool array (n, pairs)
@@ -180,7 +174,7 @@ def potential_energy_stiffness(
     normal_force : float [N]
         Force that all pairs carry together.
     reference : str
-        ``"bore"`` or ``"rim"``: where the gear bodies are held.
+        As there.
 
     Returns
     -------

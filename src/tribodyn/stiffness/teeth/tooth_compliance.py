@@ -102,16 +102,10 @@ def sainsot_compliance(
         Angle between the load and the normal of the tooth axis.
     load_height : float or array [m]
         Height ``u`` above the root circle at which the load meets the tooth axis.
-    root_half_angle : float [rad]
-        Half of the angle that the foot of the tooth takes on the root circle.
-    root_radius : float [m]
-        Root radius.
-    bore_radius : float [m]
-        Radius of the bore, where the body is held.
-    face_width : float [m]
-        Face width.
-    material : Material
-        Material of the gear.
+    root_half_angle, root_radius, bore_radius : float [rad], [m], [m]
+        As for :func:`sainsot_coefficients`.
+    face_width, material : float [m], Material
+        Of the gear.
 
     Returns
     -------
@@ -160,12 +154,8 @@ def wind_up_compliance(
     ----------
     base_radius : float [m]
         Base radius, the lever of the normal force.
-    root_radius : float [m]
-        Root radius, outer radius of the ring.
-    bore_radius : float [m]
-        Bore radius, inner radius of the ring.
-    face_width : float [m]
-        Width of the ring.
+    root_radius, bore_radius, face_width : float [m]
+        Outer and inner radius of the ring, and its width.
     material : Material
         Material of the gear.
 

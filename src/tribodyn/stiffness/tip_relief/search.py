@@ -212,14 +212,10 @@ def with_tip_relief(
     ----------
     pair : SpurPair
         Both gears in their working position.
-    amount : float [m]
-        Material taken away at the tip; zero for no relief.
-    length : float [m]
-        Roll length of the relief.
-    gears : str
-        ``"both"``, ``"pinion"`` or ``"wheel"``.
-    shape : str
-        ``"linear"`` or ``"parabolic"``.
+    amount, length : float [m]
+        Material taken away at the tip, zero for no relief, and roll length of the relief.
+    gears, shape : str
+        ``"both"``, ``"pinion"`` or ``"wheel"``; ``"linear"`` or ``"parabolic"``.
 
     Returns
     -------
