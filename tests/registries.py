@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import tribodyn.plot
+import tribodyn.report  # noqa: F401  # Figures and reports register before anything is forgotten.
 from tribodyn.drawing import FIGURES
 from tribodyn.dynamics import STRUCTURES
 from tribodyn.ehl import FILM_MODELS

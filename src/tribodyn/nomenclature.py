@@ -124,8 +124,8 @@ pitch_line_velocity | v_t | m/s | m/s | speed of the flanks at the operating pit
 tangential_force | F_t | N | N | force of the torque on the operating pitch circle
 mesh_damping | c_m | N*s/m | N*s/m | damping of the tooth contact along the line of action | "900 N*s/m"
 mesh_damping_ratio | zeta | | | mesh damping over its critical value
-bearing_stiffness | k_b | N/m | N/um | radial stiffness of the supports of both gears, or a list of that of pinion and wheel | "500 N/um"
-bearing_damping | c_b | N*s/m | N*s/m | radial damping of the supports of both gears, or a list of that of pinion and wheel | "4000 N*s/m"
+bearing_stiffness | k_b | N/m | N/um | radial stiffness of the support of each gear; a list has that of pinion and wheel | "500 N/um"
+bearing_damping | c_b | N*s/m | N*s/m | radial damping of the support of each gear; a list has that of pinion and wheel | "4000 N*s/m"
 shaft_stiffness | k_s | N*m/rad | N*m/rad | torsional stiffness of a shaft | "75400 N*m/rad"
 shaft_damping | c_s | N*m*s/rad | N*m*s/rad | torsional damping of a shaft | "1 N*m*s/rad"
 bearing_force | F_b | N | N | force of a gear on its support

@@ -132,8 +132,10 @@ class Record:
                 parts.attributes[exported] = value
             else:
                 place = parts.coordinates if labels.axis else parts.variables
-                dims = labels.dims[len(labels.dims) - np.ndim(value) :]
-                place[exported] = (dims, value, self._told(name, labels))
+                # xarray takes a tuple for one value.
+                given = list(value) if isinstance(value, tuple) else value
+                dims = labels.dims[len(labels.dims) - np.ndim(given) :]
+                place[exported] = (dims, given, self._told(name, labels))
         return parts
 
     def _told(self, name: str, labels: Labels) -> dict[str, str]:

@@ -185,7 +185,7 @@ def test_new_writes_a_case_that_checks(
         (["check", "fzg-roughnes"], 'Did you mean "fzg-roughness"?'),
         (["check", "."], "directory"),
         (["explain", "alpha_w"], "alpha_wt"),
-        (["new", "x.toml"], "--from"),
+        (["new"], "tribodyn new my.toml"),
     ],
 )
 def test_wrong_words_name_the_right_ones(

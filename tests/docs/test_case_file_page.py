@@ -2,24 +2,63 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
+import pytest
+from generated import GENERATED, written
+from pages import ROOT, blocks
+
+import tribodyn as td
+from tribodyn.cli import call
 from tribodyn.cli.app import COMMANDS
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
+from tribodyn.study import read_case
 from tribodyn.study.case.checks import case_options
-from tribodyn.study.case.reference import case_keys, reference_tables
+from tribodyn.study.case.provenance import derived_values
+from tribodyn.study.case.reference import case_keys, reference_tables, start_toml
 
 _ROW = r"^\| `([\w-]+)` \| (.*) \|$"
+_INERTIAS = ("mass", "moment_of_inertia")
 _DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.mark.parametrize("page", GENERATED)
+def test_pages_show_what_the_program_writes(page: str) -> None:
+    shown = (ROOT / page).read_text(encoding="utf-8")
+    assert shown == written(page), "run: python tests/docs/generated.py"
 
 
 def test_all_keys_are_on_the_page_as_they_are_checked() -> None:
     page = (_DOCS / "case-file.md").read_text(encoding="utf-8")
     assert page.endswith(reference_tables())
     assert len(list(case_keys())) > 60
+
+
+def test_readme_and_page_have_the_file_that_new_writes(tmp_path: Path) -> None:
+    assert call(["new", str(tmp_path / "my.toml")]) == 0
+    text = (tmp_path / "my.toml").read_text(encoding="utf-8")
+    for page in (ROOT / "README.md", _DOCS / "case-file.md"):
+        assert text in blocks(page.read_text(encoding="utf-8"), "toml")
+
+
+@pytest.mark.slow
+def test_the_file_to_start_from_runs_without_a_warning() -> None:
+    case = read_case(start_toml())
+    body = derived_values(case)
+    assert {f"gears.{g}.{key}" for g in ("pinion", "wheel") for key in _INERTIAS} <= set(body)
+    root, tip = (
+        7800.0 * math.pi / 4.0 * (diameter**2 - 0.04**2) * 0.04 for diameter in (0.106, 0.124)
+    )
+    assert root < body["gears.pinion.mass"] < tip
+    assert case.friction.law == "xu-2007"
+    assert case.backlash == 1e-4
+    result = td.run(case)  # A warning would be an error here.
+    assert result.warnings == ()
+    assert 0.03 < result.summary()["mean_friction_coefficient"] < 0.07
 
 
 def test_options_on_the_page_belong_to_their_models() -> None:

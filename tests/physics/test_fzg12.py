@@ -18,7 +18,7 @@ from tribodyn.dynamics import (
     natural_modes,
     steady_state,
 )
-from tribodyn.dynamics.structure.fzg12_mesh import BASE_RADIUS, RectangularMesh
+from tribodyn.dynamics.structure.fzg12 import BASE_RADIUS, RectangularMesh
 
 PERIOD, HARMONICS = 1.0 / FZG12_MESH_FREQUENCY, 6
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from known_marches import compile_newmark, march_newmark
 from known_systems import EVENTS, MESH_FREQUENCY, friction_vector, reference_system
 from plain.newmark import newmark_plain
 from tribodyn.analysis import mesh_harmonics
@@ -20,7 +21,6 @@ from tribodyn.dynamics import (
 )
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.time.newmark import compile_newmark, march_newmark
 from tribodyn.dynamics.time.response import build_response
 
 

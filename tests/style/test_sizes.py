@@ -18,9 +18,7 @@ FOLDERS = {
 FUNCTIONS = {
     "bifurcation": 10,
     "follow": 9,
-    "march": 13,
-    "march_adaptive": 10,
-    "march_newmark": 11,
+    "march": 12,
     "number": 11,
     "solved_films": 12,
 }

@@ -5,30 +5,32 @@ from tribodyn.nonlinear.basins_attractors import Attractor, Basins
 from tribodyn.nonlinear.bifurcation import Bifurcation, bifurcation
 from tribodyn.nonlinear.lyapunov import LyapunovExponents, lyapunov_exponents
 from tribodyn.nonlinear.parameter_map import ParameterMap, parameter_map
-from tribodyn.nonlinear.phase_portrait import PhasePortrait, phase_portrait
-from tribodyn.nonlinear.poincare import PoincareSection, poincare
+from tribodyn.nonlinear.poincare import PhasePortrait, PoincareSection, phase_portrait, poincare
 from tribodyn.signals.angular_resampling import AngularSignal, angular_resampling
 from tribodyn.signals.envelope import envelope, envelope_spectrum
-from tribodyn.signals.harmonics import Spectrum, amplitude_spectrum, mesh_harmonics
 from tribodyn.signals.indicators import (
+    Spectrum,
     alternating_rms,
+    amplitude_spectrum,
     crest_factor,
     direction_shares,
     dynamic_factor,
     extremes,
     line_of_action_indicator,
     mean,
+    mesh_harmonics,
     peak_to_peak,
     rms,
 )
 from tribodyn.signals.order_map import OrderCut, OrderMap, order_map
 from tribodyn.signals.run_up_orders import (
     OverallLevel,
+    RunUpResonance,
     order_cut,
     overall_level,
+    resonances,
     run_up_order_map,
 )
-from tribodyn.signals.run_up_resonances import RunUpResonance, resonances
 from tribodyn.signals.sidebands import Sidebands, sidebands
 from tribodyn.signals.spectrogram import Spectrogram, spectrogram
 from tribodyn.signals.spectrum import Peak, SignalSpectrum, spectrum, zoom_spectrum

@@ -70,7 +70,7 @@ def new(
     path: Path,
     /,
     *,
-    from_: Annotated[str, Parameter(name="--from")],
+    from_: Annotated[str | None, Parameter(name="--from")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -81,13 +81,15 @@ def new(
     path : Path
         File to write.
     from_ : str
-        Built-in case or case file to take the values from.
+        Built-in case or case file to take all values from; by default a short file of no
+        particular gears is written, to be filled in.
     force : bool
         Replace an existing file.
     json : bool
         Write one JSON object to stdout.
     """
     from tribodyn.cases.load import load_case
+    from tribodyn.study.case.reference import start_toml
     from tribodyn.study.pipeline.save import write_file
 
     if path.exists() and (path.is_dir() or not force):
@@ -95,7 +97,7 @@ def new(
         raise OutputExistsError(Problem("this exists already", str(path), "", remedy))
     if not path.parent.is_dir():
         raise InputError(Problem("there is no such directory", str(path.parent), "", "Create it"))
-    write_file(path, load_case(from_).to_toml())
+    write_file(path, load_case(from_).to_toml() if from_ else start_toml())
     if json:
         say_json({"path": str(path)})
     else:

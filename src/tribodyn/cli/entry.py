@@ -82,7 +82,7 @@ _EXAMPLES = {
     "check": "fzg-roughness",
     "sweep": 'fzg-roughness "operation.speed=400..3500 rpm:60"',
     "bifurcation": 'fzg-roughness "operation.speed=400..3500 rpm:300"',
-    "new": "my.toml --from fzg-roughness",
+    "new": "my.toml",
     "explain": "epsilon_alpha",
     "cite": "fzg-roughness",
 }

@@ -1,10 +1,8 @@
 """Lumped structures with time-varying contacts: steady states, transients, ensembles."""
 
-from tribodyn.dynamics.engines import ENGINES, Engine
-from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
-from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.equations.system import Contact, Entry, LoadFriction, System
 from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.linear.forced_response import ForcedResponse, forced_response
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
@@ -23,7 +21,7 @@ from tribodyn.dynamics.structure.fzg12 import (
     FZG12_NAMES,
     fzg12,
 )
-from tribodyn.dynamics.structure.load_friction import LoadFriction
+from tribodyn.dynamics.structure.gear_pair import SPUR6_NAMES, TORSIONAL_NAMES, spur6, torsional
 from tribodyn.dynamics.structure.shafts import (
     Body,
     GearMesh,
@@ -31,11 +29,10 @@ from tribodyn.dynamics.structure.shafts import (
     shaft_chain,
     torsional_stiffness,
 )
-from tribodyn.dynamics.structure.spur6 import SPUR6_NAMES, spur6
 from tribodyn.dynamics.structure.structures import STRUCTURES, Gearing, Structure
-from tribodyn.dynamics.structure.torsional import TORSIONAL_NAMES, torsional
 from tribodyn.dynamics.time.adaptive_solution import AdaptiveSolution, solve_adaptive
 from tribodyn.dynamics.time.energy import EnergyAudit, energy_audit
+from tribodyn.dynamics.time.engines import ENGINES, Engine
 from tribodyn.dynamics.time.ensemble import Ensemble, LaneStatistics, simulate_ensemble
 from tribodyn.dynamics.time.response import FineSamples, Response
 from tribodyn.dynamics.time.simulate import simulate

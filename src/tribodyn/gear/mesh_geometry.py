@@ -59,6 +59,10 @@ def operating_pressure_angle(
     return math.acos(cosine)
 
 
+#: Contact ratio by which a whole number may be missed, and play in modules that is rounding.
+_ROUNDING = 1e-9
+
+
 def zero_backlash_center_distance(
     teeth_sum: int, normal_module: float, normal_pressure_angle: float, shift_sum: float
 ) -> float:
@@ -205,7 +209,8 @@ class MeshGeometry:
         The pitch at the operating circle less both tooth thicknesses there, projected on the
         line of action: (p_w - s_w1 - s_w2) cos(alpha_wt).
         """
-        return max(self.geometric_backlash, 0.0)
+        play = self.geometric_backlash
+        return play if play > _ROUNDING * self.pinion.normal_module else 0.0
 
     @cached_property
     def geometric_backlash(self) -> float:
@@ -224,10 +229,6 @@ class MeshGeometry:
             self.pinion.profile_shift_coefficient + self.wheel.profile_shift_coefficient,
             self.center_distance,
         )
-
-
-#: Contact ratio by which a whole number may be missed.
-_ROUNDING = 1e-9
 
 
 class FlankRange(NamedTuple):

@@ -9,7 +9,6 @@ The public names stand on the page of :mod:`tribodyn.analysis`.
 | ``bifurcation``, ``bifurcation_sweep`` | how motions change over a parameter, up and down |
 | ``lyapunov``, ``lyapunov_tangent`` | how fast motions that begin side by side part |
 | ``parameter_map`` | how motions change over two parameters |
-| ``phase_portrait`` | how a motion looks in its phase plane |
-| ``poincare`` | after how many mesh cycles a motion repeats |
+| ``poincare`` | after how many mesh cycles a motion repeats, and its phase plane |
 | ``survey`` | how motions are marched, measured and judged by half the step |
 """

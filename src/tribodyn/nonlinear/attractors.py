@@ -101,7 +101,6 @@ class Motions:
     def march(self, index: Index, state: Array, cycles: int, force: Array, **options: Any) -> Array:
         """March lanes by whole mesh cycles."""
         if self.parameters:
-            options["any_step"] = True
             options["parameters"] = LaneParameters(
                 **{name: values[index] for name, values in self.parameters.items()}
             )

@@ -11,7 +11,7 @@ from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.basins_attractors import Attractor, Basins, Catalogue, multiplier_of
 from tribodyn.nonlinear.survey import Survey, signal_name, step_verdict
@@ -224,11 +224,9 @@ def _columns(system: System, names: tuple[str, str]) -> tuple[int, int]:
     known = [*system.names, *(name + _VELOCITY for name in system.names)]
     if len(names) != 2 or names[0] == names[1] or not set(names) <= set(known):
         raise InputError(
-            Problem(
-                what=f"coordinates = {names!r}",
-                where="argument coordinates",
-                why=f"Two different ones of {', '.join(known)}",
-            )
+            f"coordinates = {names!r}",
+            where="argument coordinates",
+            why=f"Two different ones of {', '.join(known)}",
         )
     return known.index(names[0]), known.index(names[1])
 
@@ -241,12 +239,10 @@ def _axes(
     wrong = ends.shape != (2, 2) or counts.shape != (2,)
     if wrong or not np.all(np.isfinite(ends)) or np.any(counts < 2) or cycles < 1:
         raise InputError(
-            Problem(
-                what=f"between = {between}, points = {points}, cycles = {cycles}",
-                where="argument between",
-                why="A plane has two ranges of at least two values, and needs a mesh cycle",
-                remedy="Write, for example, between=((-1e-4, 1e-4), (-0.1, 0.1))",
-            )
+            f"between = {between}, points = {points}, cycles = {cycles}",
+            where="argument between",
+            why="A plane has two ranges of at least two values, and needs a mesh cycle",
+            remedy="Write, for example, between=((-1e-4, 1e-4), (-0.1, 0.1))",
         )
     first, second = (
         np.linspace(float(low), float(high), int(n))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,6 @@ from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.survey import Survey, follow, measure
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
-
-if TYPE_CHECKING:
-    pass
 
 #: States of one motion differ by less than this part of the largest state.
 _SAME = 1e-3

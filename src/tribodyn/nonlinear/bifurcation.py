@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,23 +12,21 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
 from tribodyn.nonlinear.survey import (
     Outcomes,
     Points,
     Survey,
+    Surveyed,
     march_points,
     signal_name,
     step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Parts, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
-
-if TYPE_CHECKING:
-    pass
 
 Sweep = Literal["up", "down", "both", "independent"]
 
@@ -133,7 +131,7 @@ def bifurcation(
     ([[1, 1]], {'physical': 2})
     """
     if sweep not in _BRANCHES:
-        raise InputError(Problem(f'sweep = "{sweep}"', "argument sweep", f"One of {[*_BRANCHES]}"))
+        raise InputError(f'sweep = "{sweep}"', where="argument sweep", why=f"One of {[*_BRANCHES]}")
     values = _read_values(systems, mesh_frequency, steps)
     given = _read_parameter(parameter, values)
     name = signal_name(values.systems[0], signal)
@@ -210,7 +208,7 @@ def _read_parameter(parameter: ArrayLike | None, values: Points) -> Array:
     given = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
     if given.shape not in ((), (values.count,)):
         what = f"parameter has the shape {given.shape}, and there are {values.count} values"
-        raise InputError(Problem(what, "argument parameter"))
+        raise InputError(what, where="argument parameter")
     return np.broadcast_to(given, (values.count,)).copy()
 
 
@@ -224,16 +222,14 @@ def _read_values(
         (count,) = shapes
     except ValueError as error:
         raise InputError(
-            Problem(
-                f"{len(given)} systems, {np.shape(mesh_frequency)} mesh frequencies and "
-                f"{np.shape(steps)} steps",
-                "argument systems",
-                "Each is one, or one for each value of the parameter",
-            )
+            f"{len(given)} systems, {np.shape(mesh_frequency)} mesh frequencies and "
+            f"{np.shape(steps)} steps",
+            where="argument systems",
+            why="Each is one, or one for each value of the parameter",
         ) from error
     if not given or np.any(np.asarray(steps) < 1):
         what = "no system" if not given else f"steps = {np.min(np.asarray(steps))}"
-        raise InputError(Problem(what, "argument systems" if not given else "argument steps"))
+        raise InputError(what, where="argument systems" if not given else "argument steps")
     frequency = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (count,)).copy()
     whole = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
     return Points(given * count if len(given) == 1 else given, frequency, whole)
@@ -242,11 +238,9 @@ def _read_values(
 def _read_survey(survey: Survey) -> Survey:
     if not 2 <= survey.keep <= survey.cycles or survey.transient < 0:
         raise InputError(
-            Problem(
-                f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
-                "argument keep",
-                "At least two points are kept, of as many mesh cycles or more",
-            )
+            f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
+            where="argument keep",
+            why="At least two points are kept, of as many mesh cycles or more",
         )
     return survey
 
@@ -325,7 +319,7 @@ def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: 
 
 
 @record
-class Bifurcation(Record):
+class Bifurcation(Surveyed):
     """Motions over a parameter; the first axis of every result is the branch.
 
     Parameters
@@ -371,7 +365,7 @@ class Bifurcation(Record):
     parameter_name: str = fact()
     parameter_unit: str
     mesh_frequency: Array = quantity("value", unit="Hz")
-    branches: tuple[str, ...]
+    branches: tuple[str, ...] = quantity("branch", axis=True, name="branch")
     signal: str = fact()
     section: Array = quantity("branch", "value", "mesh_cycle", unit="m or rad")
     period: Index = quantity("branch", "value", unit="1")
@@ -386,41 +380,15 @@ class Bifurcation(Record):
     largest_exponent: Array = quantity("branch", "value", unit="1/s")
     finished: Mask = quantity("branch", "value")
 
-    @property
-    def complete(self) -> bool:
-        """Whether every motion is there."""
-        return bool(self.finished.all())
-
-    @property
-    def ran_away(self) -> Mask:
-        """Which motions grew beyond all bounds without the step's doing, (branches, points)."""
-        lost = self.finished & ~np.isfinite(self.rms)
-        return np.asarray(lost & (self.verdict != "step-limited"))
-
     def __repr__(self) -> str:
         """One line."""
         low, high = self.parameter.min(), self.parameter.max()
-        words = [f"{count} {word}" for word, count in self.verdicts().items()]
-        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
         return (
             f"Bifurcation({self.parameter.size} values of {self.parameter_name} from {low:.6g} to "
-            f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}"
-            f"{': ' if words else ''}{', '.join(words)}{'' if self.complete else ', interrupted'})"
+            f"{high:.6g} {self.parameter_unit}, {' and '.join(self.branches)}{self._ending()})"
         )
-
-    def verdicts(self) -> dict[str, int]:
-        """Count the verdicts.
-
-        Returns
-        -------
-        dict of str to int
-            Only those that occur.
-        """
-        words, counts = np.unique(self.verdict, return_counts=True)
-        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
 
     def _parts(self) -> Parts:
         parts = super()._parts()
-        parts.coordinates["branch"] = list(self.branches)
         parts.variables["parameter"] = ("value", self.parameter, {"units": self.parameter_unit})
         return parts

@@ -12,7 +12,6 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,16 +22,12 @@ from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    pass
-
 
 #: Numbers kept at a time while disturbances are carried.
 _ROOM = 6_000_000
@@ -203,16 +198,14 @@ def lyapunov_exponents(
     for name, value, least in (("cycles", cycles, 1), ("transient", transient, 0)):
         if int(value) != value or value < least:
             why = f"A whole number >= {least}"
-            raise InputError(Problem(f"{name} = {value}", f"argument {name}", why))
+            raise InputError(f"{name} = {value}", where=f"argument {name}", why=why)
     compiled = compile_for(system, mesh_frequency, steps)
     tables = TangentTables(compiled, mesh_frequency)
     if tables.size == 0:
         raise InputError(
-            Problem(
-                "no coordinate is held by a spring, a damper or a contact",
-                "System.stiffness",
-                "Nothing vibrates, so that every exponent is zero",
-            )
+            "no coordinate is held by a spring, a damper or a contact",
+            where="System.stiffness",
+            why="Nothing vibrates, so that every exponent is zero",
         )
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     state = static_start(compiled) if start is None else read_start(system, start)

@@ -20,19 +20,19 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import most_splits, unparted_step
+from tribodyn.dynamics.equations.load_friction import push_with_friction
 from tribodyn.dynamics.equations.motion import (
+    WithinSteps,
     clearance,
     compression,
     compression_rate,
-    forces,
     has_gap,
     quadratic,
     rows_within,
 )
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
-from tribodyn.dynamics.structure.load_friction import push_with_friction
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.types import Array, Index, Mask
 
 #: Terms of the exponential series of a matrix no larger than a quarter: exact to rounding.
@@ -112,14 +112,12 @@ def _with_friction(compiled: Compiled) -> Nodes:
     if np.any(coefficients[..., 1:]):
         bent = int(np.flatnonzero(np.any(coefficients[..., 1:], axis=(0, 1, 3)))[0])
         raise InputError(
-            Problem(
-                what=f"frictions[{bent}] has {coefficients.shape[-1]} coefficients",
-                where=f"System.frictions[{bent}].coefficients",
-                why="The tangent method carries disturbances with matrices that know only which "
-                "contacts carry, and a coefficient that follows the load changes with the motion",
-                remedy="Use a single coefficient, for example its value at the mean load, or look "
-                "at the Floquet multipliers of steady_state, which include the whole friction",
-            )
+            f"frictions[{bent}] has {coefficients.shape[-1]} coefficients",
+            where=f"System.frictions[{bent}].coefficients",
+            why="The tangent method carries disturbances with matrices that know only which "
+            "contacts carry, and a coefficient that follows the load changes with the motion",
+            remedy="Use a single coefficient, for example its value at the mean load, or look "
+            "at the Floquet multipliers of steady_state, which include the whole friction",
         )
     return nodes._replace(force_direction=push_with_friction(system, nodes, coefficients[..., 0]))
 
@@ -164,42 +162,20 @@ class _Lanes(NamedTuple):
         return _Lanes(self.steps[which], self.begin[which], self.state[which], self.side[which])
 
 
-class _Engine:
-    """The Runge-Kutta step in plain NumPy, for many parts of steps at once."""
-
-    def __init__(self, tables: TangentTables, extra_force: Array) -> None:
-        self.tables, self.extra = tables, extra_force
-        self.system, self.nodes = tables.compiled.system, tables.compiled.nodes
-        self.beat = tables.mesh_frequency
-
-    def slope(self, rows: Nodes, node: int, state: Array, side: Array) -> Array:
-        """Derivative of states (m, 2 n) with the rows of one of three nodes."""
-        q, v = np.split(state, 2, axis=1)
-        here = Nodes(*(part[:, node] for part in rows))
-        law = forces(self.system, here, self.beat, q, v, side, extra=self.extra)
-        return np.concatenate((v, law.acceleration), axis=1)
-
-    def advance(self, lanes: _Lanes, end: Array) -> tuple[_Lanes, Array, Array]:
-        """March every lane to a fraction of its step; also compressions and gaps there."""
-        taus = np.stack((lanes.begin, 0.5 * (lanes.begin + end), end), axis=1)
-        rows = rows_within(self.nodes, lanes.steps[:, None], taus)
-        h = (self.tables.width[lanes.steps] * (end - lanes.begin))[:, None]
-        y, side = lanes.state, lanes.side
-        k1 = self.slope(rows, 0, y, side)
-        k2 = self.slope(rows, 1, y + 0.5 * h * k1, side)
-        k3 = self.slope(rows, 1, y + 0.5 * h * k2, side)
-        k4 = self.slope(rows, 2, y + h * k3, side)
-        state = y + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
-        last = Nodes(*(part[:, 2] for part in rows))
-        place = compression(last, state[:, : self.extra.size])
-        return lanes._replace(begin=end, state=state), place, last.gap
+def _advance(engine: WithinSteps, lanes: _Lanes, end: Array) -> tuple[_Lanes, Array, Array]:
+    """March every lane to a fraction of its step; also compressions and gaps there."""
+    state = engine.advance(lanes.steps, lanes.begin, end, lanes.state, lanes.side)
+    place, gap = engine.contacts(lanes.steps, end, state[:, : engine.system.size])
+    return lanes._replace(begin=end, state=state), place, gap
 
 
 def carry_over_crossings(
     tables: TangentTables, extra_force: Array, steps: Index, state: Array, side: Array
 ) -> tuple[Array, Array]:
     """Matrices that carry a disturbance over steps in which contacts open or close."""
-    engine = _Engine(tables, extra_force)
+    compiled = tables.compiled
+    parts = compiled.system, compiled.nodes, compiled.grid
+    engine = WithinSteps(*parts, tables.mesh_frequency, extra_force)
     count = steps.size
     matrix = np.broadcast_to(np.eye(tables.size), (count, tables.size, tables.size)).copy()
     trace = np.zeros(count)
@@ -207,7 +183,7 @@ def carry_over_crossings(
     waiting = np.arange(count)
     most = most_splits(tables.dead.size)
     for number in range(most + 1):
-        _, place, gap = engine.advance(lanes, np.ones(waiting.size))
+        _, place, gap = _advance(engine, lanes, np.ones(waiting.size))
         leaving = np.where(place > 0.0, 1.0, -1.0)
         beyond = tables.dead & (clearance(place, gap, lanes.side, leaving) < 0.0)
         stop, contact = _first_crossing(engine, lanes, leaving, beyond)
@@ -222,7 +198,7 @@ def carry_over_crossings(
         if which.size == 0:
             break
         waiting = waiting[which]
-        lanes = engine.advance(lanes.take(which), stop[which])[0]
+        lanes = _advance(engine, lanes.take(which), stop[which])[0]
         jump = _saltation(tables, engine, lanes, contact[which])
         matrix[waiting] = jump @ matrix[waiting]
         row = np.arange(which.size)
@@ -238,7 +214,7 @@ def _unparted(tables: TangentTables, step: int, contact: int) -> ComputationErro
 
 
 def _first_crossing(
-    engine: _Engine, lanes: _Lanes, leaving: Array, beyond: Mask
+    engine: WithinSteps, lanes: _Lanes, leaving: Array, beyond: Mask
 ) -> tuple[Array, Index]:
     """Fraction at which the first contact leaves its side (2 if none does), and which it is."""
     found = np.full(beyond.shape, 2.0)
@@ -250,11 +226,11 @@ def _first_crossing(
     return np.asarray(np.min(found, axis=1)), first
 
 
-def _root(engine: _Engine, lanes: _Lanes, leaving: Array, contact: int) -> Array:
+def _root(engine: WithinSteps, lanes: _Lanes, leaving: Array, contact: int) -> Array:
     """Fraction at which one contact leaves its side, by the Illinois method."""
 
     def clear(tau: Array) -> Array:
-        _, place, gap = engine.advance(lanes, tau)
+        _, place, gap = _advance(engine, lanes, tau)
         return clearance(place, gap, lanes.side, leaving)[:, contact]
 
     high = np.ones(lanes.begin.size)
@@ -280,7 +256,7 @@ def _root(engine: _Engine, lanes: _Lanes, leaving: Array, contact: int) -> Array
     return np.where(never, lanes.begin, tau)
 
 
-def _saltation(tables: TangentTables, engine: _Engine, lanes: _Lanes, contact: Index) -> Array:
+def _saltation(tables: TangentTables, engine: WithinSteps, lanes: _Lanes, contact: Index) -> Array:
     """Matrix of the jump of a disturbance where a contact opens or closes."""
     row, at = np.arange(contact.size), lanes.begin[:, None]
     rows = rows_within(engine.nodes, lanes.steps, lanes.begin)
@@ -301,8 +277,8 @@ def _saltation(tables: TangentTables, engine: _Engine, lanes: _Lanes, contact: I
     return np.asarray(np.eye(tables.size) - jump)
 
 
-def _gap_rate(engine: _Engine, steps: Index, at: Array) -> Array:
+def _gap_rate(engine: WithinSteps, steps: Index, at: Array) -> Array:
     """Time derivative of the gaps within a step (m, contacts)."""
     left, middle, right = (engine.nodes.gap[steps, node] for node in range(3))
     slope = (4.0 * at - 3.0) * left + (4.0 - 8.0 * at) * middle + (4.0 * at - 1.0) * right
-    return np.asarray(slope / engine.tables.width[steps][:, None])
+    return np.asarray(slope / engine.duration(steps)[:, None])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,22 +13,20 @@ from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.nonlinear.survey import (
     Outcomes,
     Points,
     Survey,
+    Surveyed,
     comes_back,
     march_points,
     signal_name,
     step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Parts, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
-
-if TYPE_CHECKING:
-    pass
 
 #: Factors of the system that a lane can have of its own.
 SCALES = (
@@ -138,7 +135,9 @@ def parameter_map(
     axes = _read_axes(system, over, mesh_frequency, units)
     if transient < 0 or cycles < 2 or (steps is not None and steps < 1):
         what = f"transient = {transient}, cycles = {cycles}, steps = {steps}"
-        raise InputError(Problem(what, "argument cycles", "At least two mesh cycles are looked at"))
+        raise InputError(
+            what, where="argument cycles", why="At least two mesh cycles are looked at"
+        )
     systems = [system] if isinstance(system, System) else [system(float(v)) for v in axes.first]
     name = signal_name(systems[0], signal)
     begin = None if start is None else read_start(systems[0], start)
@@ -233,12 +232,10 @@ def _steps(number: Array, steps: int | None) -> Index:
     worst = float(number.max()) / steps
     if worst > LIMIT:
         raise InputError(
-            Problem(
-                what=f"omega_max*dt = {worst:.3f} with {steps} steps per mesh cycle",
-                where="argument steps",
-                why=f"The limit is {LIMIT}; beyond it the result is not physics",
-                remedy=f"Use at least {math.ceil(float(number.max()) / LIMIT)}, or leave it out",
-            )
+            f"omega_max*dt = {worst:.3f} with {steps} steps per mesh cycle",
+            where="argument steps",
+            why=f"The limit is {LIMIT}; beyond it the result is not physics",
+            remedy=f"Use at least {math.ceil(float(number.max()) / LIMIT)}, or leave it out",
         )
     return np.full(number.shape, int(steps))
 
@@ -254,25 +251,27 @@ def _read_axes(
         values = [np.atleast_1d(np.asarray(each, dtype=float)) for each in (first, second)]
     except (TypeError, ValueError) as error:
         remedy = 'Write over=(("mesh_frequency", values), ("force_scale", values))'
-        raise InputError(Problem(f"over = {over!r}", "argument over", "", remedy)) from error
+        raise InputError(
+            f"over = {over!r}", where="argument over", why="", remedy=remedy
+        ) from error
     known = ("mesh_frequency", *SCALES)
     own = not isinstance(system, System)
     if two not in known or (one not in known and not own) or one == two:
         why = f"Two different ones of {', '.join(known)}"
         remedy = "A system that depends on another value is given as a function of the first one"
-        raise InputError(Problem(f"over {one} and {two}", "argument over", why, remedy))
+        raise InputError(f"over {one} and {two}", where="argument over", why=why, remedy=remedy)
     if own and one in known:
         raise InputError(
-            Problem(f"{one} with a function", "argument over", "The function takes that value")
+            f"{one} with a function", where="argument over", why="The function takes that value"
         )
     if own and units is None:
-        raise InputError(Problem(f"{one} without its unit", "argument units"))
+        raise InputError(f"{one} without its unit", where="argument units")
     if any(each.ndim != 1 or not np.all(np.isfinite(each)) for each in values):
-        raise InputError(Problem("values that are no list of numbers", "argument over"))
+        raise InputError("values that are no list of numbers", where="argument over")
     if "mesh_frequency" in (one, two):
         require_positive("mesh_frequency", values[(one, two).index("mesh_frequency")], "Hz")
     elif mesh_frequency is None:
-        raise InputError(Problem("no mesh frequency", "argument mesh_frequency"))
+        raise InputError("no mesh frequency", where="argument mesh_frequency")
     else:
         require_positive("mesh_frequency", mesh_frequency, "Hz")
     return _Axes((one, two), values[0], values[1])
@@ -283,7 +282,7 @@ def _unit(name: str) -> str:
 
 
 @record
-class ParameterMap(Record):
+class ParameterMap(Surveyed):
     """Motions over two parameters; every array is (nx, ny) unless said otherwise.
 
     Parameters
@@ -323,36 +322,11 @@ class ParameterMap(Record):
     signal: str = fact()
     finished: Mask = quantity("first", "second")
 
-    @property
-    def complete(self) -> bool:
-        """Whether every motion is there."""
-        return bool(self.finished.all())
-
-    @property
-    def ran_away(self) -> Mask:
-        """Which motions grew beyond all bounds without the step's doing, (nx, ny)."""
-        lost = self.finished & ~np.isfinite(self.rms)
-        return np.asarray(lost & (self.verdict != "step-limited"))
-
-    def verdicts(self) -> dict[str, int]:
-        """Count the verdicts.
-
-        Returns
-        -------
-        dict of str to int
-            Only those that occur.
-        """
-        words, counts = np.unique(self.verdict, return_counts=True)
-        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
-
     def __repr__(self) -> str:
         """One line."""
-        words = [f"{count} {word}" for word, count in self.verdicts().items()]
-        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
         return (
             f"ParameterMap({self.first.size} values of {self.names[0]} x {self.second.size} of "
-            f"{self.names[1]}{': ' if words else ''}{', '.join(words)}"
-            f"{'' if self.complete else ', interrupted'})"
+            f"{self.names[1]}{self._ending()})"
         )
 
     def _parts(self) -> Parts:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,15 +16,11 @@ from tribodyn.dynamics.orbits.periods import closed_period, open_period
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.response import Response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.survey import Path, Verdict, follow, step_verdict
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    pass
-
 
 #: An rms below this share of the largest compression is that of a motion at rest: means of squares
 #: do not tell smaller ones.
@@ -58,7 +54,7 @@ class PoincareSection(Record):
     position: Array = quantity("mesh_cycle", "coordinate", unit="m or rad")
     velocity: Array = quantity("mesh_cycle", "coordinate", unit="m/s or rad/s")
     deflection: Array = quantity("mesh_cycle", "contact", unit="m")
-    names: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
     mesh_frequency: float = fact()
     period: int = fact()
     verdict: str = fact(default="")
@@ -86,11 +82,6 @@ class PoincareSection(Record):
         plotly.graph_objects.Figure
         """
         return draw(self, coordinate=coordinate, **options)
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        parts.coordinates["coordinate"] = list(self.names)
-        return parts
 
 
 def poincare(
@@ -153,7 +144,7 @@ def poincare(
     if mesh_frequency is None or cycles < 1 or transient < 0:
         what = f"mesh_frequency = {mesh_frequency}, cycles = {cycles}, transient = {transient}"
         why = "A system needs a mesh frequency, at least one mesh cycle and no negative transient"
-        raise InputError(Problem(what, "argument mesh_frequency", why))
+        raise InputError(what, where="argument mesh_frequency", why=why)
     compiled = compile_for(motion, mesh_frequency, steps)
     state = static_start(compiled) if start is None else read_start(motion, start)
     force = np.zeros(motion.size) if extra_force is None else np.asarray(extra_force, dtype=float)
@@ -281,4 +272,125 @@ def _section_of(response: Response, transient: int) -> PoincareSection:
         names=response.names,
         mesh_frequency=response.mesh_frequency,
         period=closed_period(place, size) if known else open_period(place),
+    )
+
+
+@record
+class PhasePortrait(Record):
+    """One coordinate, or the compression of a contact, in its phase plane.
+
+    Parameters
+    ----------
+    name : str
+        Name of the coordinate, or ``contact 0``.
+    position, velocity : (points,) array
+        The motion [m or rad, m/s or rad/s]; a motion that repeats is closed.
+    section_position, section_velocity : (cycles,) array
+        The same at the mesh phase 0.
+    period : int
+        Mesh cycles after which the motion repeats; 0 if it does not.
+    gap : float
+        Half of the backlash of the contact [m]; -1 for a coordinate.
+    mesh_frequency : float
+        Mesh frequency [Hz].
+    verdict : "physical", "step-limited", "undecided" or ""
+        What half the step says of it; empty where it was not asked.
+    """
+
+    name: str = fact()
+    position: Array = quantity("point", unit="m or rad")
+    velocity: Array = quantity("point", unit="m/s or rad/s")
+    section_position: Array = quantity("mesh_cycle", unit="m or rad")
+    section_velocity: Array = quantity("mesh_cycle", unit="m/s or rad/s")
+    period: int = fact()
+    gap: float
+    mesh_frequency: float = fact()
+    verdict: str = fact(default="")
+
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"PhasePortrait(name={self.name!r}, period={self.period!r}, "
+            f"mesh_frequency={self.mesh_frequency!r}, verdict={self.verdict!r})"
+        )
+
+
+def phase_portrait(
+    motion: Response,
+    of: int | str = 0,
+    *,
+    gap: float = -1.0,
+    transient: int = 0,
+    system: System | None = None,
+) -> PhasePortrait:
+    """Take one coordinate or one contact of a motion into its phase plane.
+
+    Parameters
+    ----------
+    motion : Response
+        From :func:`tribodyn.dynamics.steady_state` or :func:`tribodyn.dynamics.simulate`.
+    of : int or str
+        Number of a contact, whose compression is looked at, or name of a coordinate.
+    gap : float
+        Half of the backlash of the contact [m], which the figure then shows.
+    transient : int
+        First mesh cycles to leave out.
+    system : System, optional
+        That of the motion: it is then marched again with half the step, for the verdict.
+
+    Returns
+    -------
+    PhasePortrait
+
+    Raises
+    ------
+    InputError
+        If there is no such contact or coordinate, or nothing is left of the motion.
+
+    Notes
+    -----
+    The rate of a compression is taken by differences of second order over the rows, since a
+    Response holds no exact one.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import System, simulate
+    >>> free = System([[1.0]], [[0.0]], [[(2.0 * np.pi) ** 2]], [0.0])
+    >>> turn = phase_portrait(simulate(free, 1.0, 4, ([1.0], [0.0]), steps=256), "q0")
+    >>> turn.period, float(abs(turn.velocity).max().round(4))
+    (1, 6.2832)
+    """
+    cycles = motion.periods - transient
+    known = isinstance(of, str) and of in motion.names
+    contact = not isinstance(of, str) and 0 <= of < motion.deflection.shape[1]
+    if cycles < 1 or not (known or contact):
+        raise InputError(
+            f"{of!r} after {transient} of {motion.periods} mesh cycles",
+            where="argument of",
+            why=f"A contact from 0 to {motion.deflection.shape[1] - 1}, or one of "
+            f"{', '.join(motion.names)}, over at least one mesh cycle",
+        )
+    steps = len(motion.position) // motion.periods
+    rows = slice(transient * steps, None)
+    if isinstance(of, str):
+        column = motion.names.index(of)
+        place, speed = motion.position[rows, column], motion.velocity[rows, column]
+    else:
+        place = motion.deflection[rows, of]
+        speed = np.asarray(np.gradient(place, motion.time[rows]))
+    section = poincare(motion, transient=transient, system=system)
+    mark = slice(0, None, steps)
+    points = place[mark], speed[mark]
+    if motion.floquet_multipliers.size:
+        place, speed = np.append(place, place[0]), np.append(speed, speed[0])
+    return PhasePortrait(
+        name=of if isinstance(of, str) else f"contact {of}",
+        position=place,
+        velocity=speed,
+        section_position=points[0],
+        section_velocity=points[1],
+        period=section.period,
+        gap=max(gap, 0.0) if not isinstance(of, str) else -1.0,
+        mesh_frequency=motion.mesh_frequency,
+        verdict=section.verdict,
     )

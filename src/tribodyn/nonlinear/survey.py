@@ -13,18 +13,19 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tribodyn.dynamics._engine.blocks import Statistics
-from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.program import compile_system
-from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+from tribodyn.dynamics._engine.statistics import Statistics
+from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
+from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.periods import open_period
 from tribodyn.dynamics.orbits.start import static_start
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import in_threads
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Record
 from tribodyn.types import Array, Index, Mask
 
 Verdict = Literal["physical", "step-limited", "undecided"]
@@ -33,8 +34,6 @@ Verdict = Literal["physical", "step-limited", "undecided"]
 _PERIODIC, _IRREGULAR = 0.01, 0.1
 #: Distance of the motion of half the step at which both are the same, relative to the state.
 _AGREES = 5e-3
-#: Statistics of a signal without harmonics: mean, mean square, minimum, maximum, share off flank.
-_PLAIN = 5
 #: Fewer lanes than these are marched one by one.
 _FEW = 4
 
@@ -53,6 +52,38 @@ def step_verdict(
     return "physical" if agrees else "undecided"
 
 
+class Surveyed(Record):
+    """Motions over parameters, each with a verdict; some may be missing after an interruption."""
+
+    finished: Mask
+    rms: Array
+    verdict: NDArray[np.str_]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every motion is there."""
+        return bool(self.finished.all())
+
+    @property
+    def ran_away(self) -> Mask:
+        """Which motions grew beyond all bounds without the step's doing."""
+        lost = self.finished & ~np.isfinite(self.rms)
+        return np.asarray(lost & (self.verdict != "step-limited"))
+
+    def verdicts(self) -> dict[str, int]:
+        """Count the verdicts that occur."""
+        words, counts = np.unique(self.verdict, return_counts=True)
+        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
+
+    def _ending(self) -> str:
+        """Verdicts in words, for the end of a line."""
+        words = [f"{count} {word}" for word, count in self.verdicts().items()]
+        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
+        return (
+            f"{': ' if words else ''}{', '.join(words)}{'' if self.complete else ', interrupted'}"
+        )
+
+
 def signal_name(system: System, signal: int | str) -> str:
     """Name of what is looked at: a contact or a coordinate."""
     names = tuple(system.names)
@@ -63,19 +94,10 @@ def signal_name(system: System, signal: int | str) -> str:
     if signal == 0 and not system.contacts:
         return names[0]
     raise InputError(
-        Problem(
-            f"signal = {signal!r}",
-            "argument signal",
-            f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
-        )
+        f"signal = {signal!r}",
+        where="argument signal",
+        why=f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
     )
-
-
-def compile_unchecked(system: System, mesh_frequency: float, steps: int) -> Compiled:
-    """Compile a system without refusing a long step; whoever calls has to look at its number."""
-    grid, nodes, program = compile_system(system, steps)
-    number = largest_rate(system, nodes) * float(grid.width.max()) / mesh_frequency
-    return Compiled(system, grid, nodes, program, number)
 
 
 @dataclass(frozen=True)
@@ -138,7 +160,9 @@ class Points:
         """System of a group on its grid; notes ``omega_max * dt``."""
         slowest = float(self.mesh_frequency[group].min())
         first = int(group[0])
-        compiled = compile_unchecked(self.systems[first], slowest, int(self.steps[first]))
+        compiled = compile_lanes(
+            self.systems[first], slowest, int(self.steps[first]), any_step=True
+        )
         self.step_number[group] = compiled.step_number * slowest / self.mesh_frequency[group]
         return compiled
 
@@ -323,22 +347,22 @@ def follow(
     row = -1 if isinstance(signal, str) else signal
     flank = contacts + (signal if isinstance(signal, int) else 0)
     states, total, largest = np.empty((cycles, *state.shape)), np.zeros((3, lanes)), np.zeros(lanes)
-    waves = np.zeros((motions.compiled.grid.steps, 3, 0, 2))
+    fresh = Statistics.of(motions.compiled, outputs, lanes)
     for cycle in range(cycles):
         states[cycle] = state
-        moments = np.zeros((2 * contacts + size + 1, _PLAIN, lanes))
-        moments[:, 2], moments[:, 3] = np.inf, -np.inf
+        statistics = fresh._replace(moments=fresh.moments.copy())
         state = motions.march(
             index,
             state,
             1,
             motions.force[index],
-            statistics=Statistics(outputs, waves, moments.reshape(-1, lanes)),
+            statistics=statistics,
             width=1 if lanes < _FEW else 16,
             threads=os.cpu_count() or 1,
             elapsed=elapsed + cycle,
         )
         state = motions.coordinates.expand(motions.coordinates.reduce(state))
+        moments = statistics.figures
         total[:2] += moments[row, :2] / cycles
         largest = np.maximum(largest, np.abs(moments[row, 2:4]).max(axis=0))
         if contacts:

@@ -6,12 +6,10 @@ The public names stand on the page of :mod:`tribodyn.analysis`.
 |---|---|
 | ``angular_resampling`` | what a signal is over the rotation of a shaft |
 | ``envelope`` | how strong a signal is at each moment, and how that repeats |
-| ``harmonics`` | how strong each multiple of the mesh frequency is |
-| ``indicators`` | mean, rms, ranges, dynamic factor, direction of a motion |
+| ``indicators`` | mean, rms, ranges, dynamic factor, direction and harmonics of a motion |
 | ``order_map`` | how strong each multiple of the rotation is over the speed |
 | ``recorded_signal`` | whether a record is fit to be analysed |
-| ``run_up_orders`` | orders and levels of a run-up |
-| ``run_up_resonances`` | which natural mode each peak of a run-up belongs to |
+| ``run_up_orders`` | orders and levels of a run-up, and the natural modes of its peaks |
 | ``sidebands`` | how a mesh harmonic is modulated |
 | ``spectrogram`` | how a spectrum changes over time |
 | ``spectrum`` | how strong each frequency is |

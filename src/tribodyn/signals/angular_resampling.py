@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.signals.recorded_signal import (
     checked_rising,
     checked_signal,
@@ -49,11 +49,9 @@ def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
     """Rotation of a shaft, given as it is or by its speed."""
     if (rotation is None) == (speed is None):
         raise InputError(
-            Problem(
-                what="neither or both of rotation and speed are given",
-                where="arguments rotation and speed",
-                why="One of them is needed to follow the shaft",
-            )
+            "neither or both of rotation and speed are given",
+            where="arguments rotation and speed",
+            why="One of them is needed to follow the shaft",
         )
     if rotation is not None:
         return checked_rising(rotation, time.size, "rotation", "rad")
@@ -66,11 +64,9 @@ def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
     require_positive("speed", values, "rad/s", remedy="Cut the standstill off the record")
     if values.size != time.size:
         raise InputError(
-            Problem(
-                what=f"speed has {values.size} samples, time has {time.size}",
-                where="argument speed",
-                why="Each sample of the signal has its own speed",
-            )
+            f"speed has {values.size} samples, time has {time.size}",
+            where="argument speed",
+            why="Each sample of the signal has its own speed",
         )
     return np.asarray(CubicSpline(time, values).antiderivative()(time))
 
@@ -146,13 +142,11 @@ def angular_resampling(
     fine_samples = revolutions * factor * samples_per_revolution
     if fine_samples > _MOST:
         raise InputError(
-            Problem(
-                what=f"{fine_samples:.2g} samples over the rotation would be needed",
-                where="argument rotation",
-                why=f"The shaft turns as slowly as {slowest:.3g} revolutions per second, and "
-                f"sampled with {rate:.3g} Hz all of the signal must be kept there",
-                remedy="Cut the slow part off, or sample more slowly",
-            )
+            f"{fine_samples:.2g} samples over the rotation would be needed",
+            where="argument rotation",
+            why=f"The shaft turns as slowly as {slowest:.3g} revolutions per second, and "
+            f"sampled with {rate:.3g} Hz all of the signal must be kept there",
+            remedy="Cut the slow part off, or sample more slowly",
         )
     fine_time, fine_signal = _refined(moments, values, top * pace)
     spacing = 2.0 * np.pi / (factor * samples_per_revolution)

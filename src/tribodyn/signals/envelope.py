@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
 from tribodyn.signals.spectrum import SignalSpectrum, spectrum
 from tribodyn.types import Array
@@ -62,11 +62,9 @@ def envelope(
     refuse_above_half(high, sampling_rate, "The upper end of the band", "argument band")
     if not 0.0 < low < high:
         raise InputError(
-            Problem(
-                what=f"a band from {low:g} to {high:g} Hz",
-                where="argument band",
-                why="It must rise, from above zero",
-            )
+            f"a band from {low:g} to {high:g} Hz",
+            where="argument band",
+            why="It must rise, from above zero",
         )
     sections = butter(4, (low, high), btype="bandpass", fs=sampling_rate, output="sos")
     return np.asarray(np.abs(hilbert(sosfiltfilt(sections, values))))

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import angular_resampling, shaft_rotation
 from tribodyn.signals.recorded_signal import checked_rising, checked_signal, window_values
 from tribodyn.signals.spectrum import window_gain
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    pass
 
 
 def order_map(
@@ -98,12 +95,10 @@ def order_map(
     length = revolutions * per_turn
     if made.signal.size < length:
         raise InputError(
-            Problem(
-                what=f"the record holds {made.signal.size / per_turn:.3g} revolutions",
-                where="argument revolutions",
-                why=f"One block takes {revolutions}",
-                remedy="Take shorter blocks, or record longer",
-            )
+            f"the record holds {made.signal.size / per_turn:.3g} revolutions",
+            where="argument revolutions",
+            why=f"One block takes {revolutions}",
+            remedy="Take shorter blocks, or record longer",
         )
     hop = max(length - round(overlap * length), 1)
     starts = np.arange(0, made.signal.size - length + 1, hop)
@@ -232,12 +227,10 @@ class OrderMap(Record):
         """
         if not self.order[0] <= order <= self.order[-1]:
             raise InputError(
-                Problem(
-                    what=f"order {order:g} asked for",
-                    where="argument order",
-                    why=f"The map reaches from order {self.order[0]:g} to {self.order[-1]:g}",
-                    remedy="Make the map with a larger highest_order",
-                )
+                f"order {order:g} asked for",
+                where="argument order",
+                why=f"The map reaches from order {self.order[0]:g} to {self.order[-1]:g}",
+                remedy="Make the map with a larger highest_order",
             )
         line = int(np.argmin(np.abs(self.order - order)))
         away = (order - float(self.order[line])) * self.revolutions

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.errors import ComputationError, InputError, Problem, require_positive
+from tribodyn.errors import ComputationError, InputError, require_positive
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
 from tribodyn.types import Array, ComplexArray
-
-if TYPE_CHECKING:
-    pass
-
 
 #: Points over one period of the modulation.
 _POINTS = 1024
@@ -143,13 +139,11 @@ def sidebands(
     if carrier - count * modulation <= 0.0 or periods < 2.0:
         low = carrier - count * modulation
         raise InputError(
-            Problem(
-                what=f"sideband -{count} is at {low:.6g} Hz, the record holds {periods:.3g} "
-                "periods of the modulation",
-                where="arguments carrier, modulation and count",
-                why="All sidebands must lie above zero, and two periods are needed to part them",
-                remedy="Ask for fewer sidebands, or record longer",
-            )
+            f"sideband -{count} is at {low:.6g} Hz, the record holds {periods:.3g} "
+            "periods of the modulation",
+            where="arguments carrier, modulation and count",
+            why="All sidebands must lie above zero, and two periods are needed to part them",
+            remedy="Ask for fewer sidebands, or record longer",
         )
     number = np.arange(-count, count + 1)
     frequency = carrier + modulation * number.astype(np.float64)
@@ -157,11 +151,9 @@ def sidebands(
     size = np.abs(lines)
     if not size[count] > 1e-9 * max(float(size.max()), float(np.abs(values).max())):
         raise ComputationError(
-            Problem(
-                what=f"nothing vibrates at the carrier of {carrier:.6g} Hz",
-                why="Modulation is told over the amplitude of the carrier",
-                remedy="Check the carrier against the peaks of tribodyn.analysis.spectrum",
-            )
+            f"nothing vibrates at the carrier of {carrier:.6g} Hz",
+            why="Modulation is told over the amplitude of the carrier",
+            remedy="Check the carrier against the peaks of tribodyn.analysis.spectrum",
         )
     shape = lines / lines[count]
     over = np.exp(2j * np.pi * np.outer(np.arange(_POINTS) / _POINTS, number)) @ shape

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.recorded_signal import (
     checked_signal,
@@ -16,9 +16,6 @@ from tribodyn.signals.recorded_signal import (
     window_values,
 )
 from tribodyn.types import Array, ComplexArray, Mask
-
-if TYPE_CHECKING:
-    pass
 
 _SCALINGS = ("amplitude", "power", "density")
 #: Long windows have the transform of this one, as a function of the distance in bins.
@@ -90,11 +87,9 @@ def spectrum(
     require_positive("sampling_rate", sampling_rate, "Hz")
     if scaling not in _SCALINGS:
         raise InputError(
-            Problem(
-                what=f"there is no scaling {scaling!r}",
-                where="argument scaling",
-                remedy=f"Take one of {', '.join(_SCALINGS)}",
-            )
+            f"there is no scaling {scaling!r}",
+            where="argument scaling",
+            remedy=f"Take one of {', '.join(_SCALINGS)}",
         )
     length = values.size if block_length is None else block_length
     require_between("block_length", length, 8, values.size, "samples")
@@ -288,12 +283,10 @@ class SignalSpectrum(Record):
         require_positive("count", count)
         if self.scaling != "amplitude" or not self.window_length:
             raise InputError(
-                Problem(
-                    what=f"peaks of a spectrum with the scaling {self.scaling}",
-                    where="SignalSpectrum.peaks",
-                    why="They are interpolated on amplitudes over the lines of a whole block",
-                    remedy='Use scaling="amplitude" of tribodyn.analysis.spectrum',
-                )
+                f"peaks of a spectrum with the scaling {self.scaling}",
+                where="SignalSpectrum.peaks",
+                why="They are interpolated on amplitudes over the lines of a whole block",
+                remedy='Use scaling="amplitude" of tribodyn.analysis.spectrum',
             )
         return interpolated_peaks(
             self.frequency, self.amplitude, self.phase, self.window, self.window_length, count
@@ -357,11 +350,9 @@ def zoom_spectrum(
     refuse_above_half(highest, sampling_rate, "The upper end of the band", "argument highest")
     if not 0.0 < lowest < highest or points < 2:
         raise InputError(
-            Problem(
-                what=f"a band from {lowest:g} to {highest:g} Hz on {points} lines",
-                where="arguments lowest, highest and points",
-                why="It must rise from above zero and have two lines or more",
-            )
+            f"a band from {lowest:g} to {highest:g} Hz on {points} lines",
+            where="arguments lowest, highest and points",
+            why="It must rise from above zero and have two lines or more",
         )
     weights = window_values(window, values.size)
     lines = zoom_fft(weights * values, [lowest, highest], m=points, fs=sampling_rate, endpoint=True)

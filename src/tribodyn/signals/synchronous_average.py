@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, Problem, require_positive
+from tribodyn.errors import ComputationError, InputError, require_positive
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import angular_resampling, shaft_rotation
 from tribodyn.signals.recorded_signal import checked_rising, checked_signal
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    pass
 
 
 @record
@@ -192,12 +189,10 @@ def time_synchronous_average(
     count = made.signal.size // per_turn
     if count < 2:
         raise InputError(
-            Problem(
-                what=f"the record holds {made.signal.size / per_turn:.3g} revolutions",
-                where="argument rotation",
-                why="An average needs two whole ones",
-                remedy="Record longer",
-            )
+            f"the record holds {made.signal.size / per_turn:.3g} revolutions",
+            where="argument rotation",
+            why="An average needs two whole ones",
+            remedy="Record longer",
         )
     turns = made.signal[: count * per_turn].reshape(count, per_turn)
     return SynchronousAverage(
@@ -271,10 +266,8 @@ def kurtosis(signal: Any) -> float:
     second = float(np.mean(away**2))
     if second <= (1e-14 * float(np.abs(values).max())) ** 2:
         raise ComputationError(
-            Problem(
-                what="the kurtosis of a signal that does not change",
-                why="It is a moment over the variance, which is zero",
-            )
+            "the kurtosis of a signal that does not change",
+            why="It is a moment over the variance, which is zero",
         )
     return float(np.mean(away**4)) / second**2
 
@@ -329,12 +322,10 @@ def condition_indicators(
     least = 1e-12 * rms
     if rms == 0.0 or mesh <= least or min(residual.std(), difference.std()) <= least:
         raise ComputationError(
-            Problem(
-                what="the mean revolution has "
-                + ("no mesh harmonics" if mesh <= least else "nothing but mesh harmonics"),
-                why="The indicators compare what is left over with the mesh harmonics",
-                remedy="Check the number of teeth, and that the shaft is the one measured",
-            )
+            "the mean revolution has "
+            + ("no mesh harmonics" if mesh <= least else "nothing but mesh harmonics"),
+            why="The indicators compare what is left over with the mesh harmonics",
+            remedy="Check the number of teeth, and that the shaft is the one measured",
         )
     seconds = [np.var(one.residual()) for one in (*earlier, average)]
     fourth = float(np.mean((residual - residual.mean()) ** 4))

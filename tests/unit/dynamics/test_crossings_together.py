@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from known_marches import march_newmark
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics._engine.blocks import LaneBlock, _Run, march
 from tribodyn.dynamics._engine.marching import UNPARTED
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.time.newmark import march_newmark
 from tribodyn.errors import ComputationError
 
 FREQUENCY, MASS, DAMPING, STIFFNESS = 2400.0, 0.2, 300.0, 3e7

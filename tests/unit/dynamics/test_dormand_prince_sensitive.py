@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from known_marches import march_adaptive
 from tribodyn.dynamics import Contact, System, solve_adaptive
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.time.engines import march_adaptive
 from tribodyn.errors import ComputationError
 
 GRID, FINER = 64, 1024

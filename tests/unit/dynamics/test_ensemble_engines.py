@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from known_marches import march_adaptive, march_newmark
 from known_systems import hysteresis_system, reference_system
 from tribodyn.dynamics import (
     Contact,
@@ -13,8 +14,8 @@ from tribodyn.dynamics import (
     simulate_ensemble,
 )
 from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.statistics import RecordedLanes, Statistics
 from tribodyn.dynamics.equations.compiled import Member, compile_for, compile_lanes
-from tribodyn.dynamics.time.recorded import RecordedLanes, add_moments
 from tribodyn.errors import ComputationError, InputError
 
 FREQUENCY = 0.4
@@ -90,8 +91,6 @@ def test_statistics_of_a_record_are_those_of_the_kernel():
     many = simulate_ensemble(systems, FREQUENCY, 1, START, extra_force=extra, **options)
     assert many.contact_loss_share.max() > 0.1
     compiled = compile_lanes(systems, np.full(6, FREQUENCY), steps, parameters)
-    angle = 2 * np.pi * compiled.nodes.phase[:, :, None] * np.arange(1, 4)
-    waves = np.stack((np.cos(angle), np.sin(angle)), axis=-1)
     for member in compiled.members:
         lane = int(member.lanes[1])
         own = compile_lanes(member.system, [FREQUENCY], steps, any_step=True)
@@ -100,15 +99,13 @@ def test_statistics_of_a_record_are_those_of_the_kernel():
         state, period = np.concatenate(START)[None], np.array([1.0 / FREQUENCY])
         march(own, period, state, 1, extra_force=extra[lane : lane + 1], parameters=single,
               record=record)  # fmt: skip
-        moments = np.zeros((6 * 11 + 5 * 5, 1))
-        for at in (*range(0, 66, 11), *range(66, 91, 5)):
-            moments[at + 2], moments[at + 3] = np.inf, -np.inf
+        gathered = Statistics.of(own, outputs, 1, 3)
         lanes = RecordedLanes(
             Member(member.system, own.nodes, np.arange(1)), own.grid, period,
             extra[lane : lane + 1], single.table(1), record,
         )  # fmt: skip
-        add_moments(lanes, outputs, waves, 1.0, moments)
-        rows = moments[:66, 0].reshape(6, 11)
+        gathered.add(lanes, 1.0)
+        rows = gathered.of_contacts[:, :, 0]
         for name, part in (("deflection", rows[:3]), ("contact_force", rows[3:])):
             found = getattr(many, name)
             assert part[:, 0] == pytest.approx(found.mean[lane], abs=limit)
@@ -118,7 +115,7 @@ def test_statistics_of_a_record_are_those_of_the_kernel():
             waved = 2.0 * (part[:, 5::2] - 1j * part[:, 6::2])
             assert np.abs(waved - found.harmonics[lane]).max() < limit
         assert rows[3:, 4] == pytest.approx(many.contact_loss_share[lane], abs=limit)
-        short = moments[66:, 0].reshape(5, 5)
+        short = gathered.others[:, :, 0]
         assert short[:3, 0] == pytest.approx(many.acceleration.mean[lane], abs=limit)
         assert np.sqrt(short[:3, 1]) == pytest.approx(many.acceleration.rms[lane], rel=limit)
         assert short[3:, 3] == pytest.approx(many.output.maximum[lane], rel=limit)
@@ -236,9 +233,6 @@ def test_wrong_options_and_failures_name_the_lane():
 
 
 def test_a_system_of_its_own_in_march_newmark_and_march_adaptive():
-    from tribodyn.dynamics.time.engines import march_adaptive
-    from tribodyn.dynamics.time.newmark import march_newmark
-
     systems = [_build(), _build(0.7), _build()]
     compiled = compile_lanes(systems, np.full(3, FREQUENCY), 256)
     state = np.tile(np.concatenate(START), (3, 1))

@@ -12,7 +12,6 @@ from tribodyn.dynamics import (
     simulate,
     simulate_ensemble,
 )
-from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import InputError
 
@@ -152,9 +151,6 @@ def test_a_step_too_long_for_one_lane_is_refused_by_its_name():
     parameters = LaneParameters(stiffness_scale=scale)
     simulate_ensemble(system, 240.0, 1, (np.zeros(6), np.zeros(6)), steps=needed,
                       parameters=parameters)  # fmt: skip
-    compiled = compile_for(system, 240.0, 256)
-    with pytest.raises(InputError, match="lane 1"):
-        march(compiled, np.full(3, 1 / 240.0), np.zeros((3, 12)), 1, parameters=parameters)
     # The stiffest lane may be fast enough: its cycle is shorter.
     beat = np.array([240.0, 240.0 * 7.0, 340.0])
     assert compile_for(system, beat, 256, parameters).step_number <= 2.7

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from known_marches import compile_newmark, march_newmark
 from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
 from plain.newmark import newmark_plain
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.time.newmark import NEWMARK_PRESETS, compile_newmark, march_newmark
+from tribodyn.dynamics.time.newmark import NEWMARK_PRESETS
 from tribodyn.errors import ComputationError, InputError
 
 RATE = 3.0

@@ -59,7 +59,7 @@ def test_impossible_gears_are_told_along_with_faults_elsewhere() -> None:
 
 @pytest.mark.parametrize("text", ["", "# nothing yet\n"])
 def test_a_file_without_values_names_where_to_start(text: str) -> None:
-    with pytest.raises(InputError, match=r"tribodyn new my\.toml --from fzg-roughness"):
+    with pytest.raises(InputError, match=r"tribodyn new my\.toml"):
         read_case(text, "pair.toml")
 
 

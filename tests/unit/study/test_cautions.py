@@ -10,6 +10,7 @@ from broken import SOUND
 
 import tribodyn as td
 from tribodyn.study import read_case
+from tribodyn.study.case.provenance import derived_values
 from tribodyn.study.pipeline.assembly import system_of
 from tribodyn.study.pipeline.cautions import case_cautions
 from tribodyn.study.pipeline.damping import damping_of
@@ -47,8 +48,18 @@ def test_inertias_far_from_the_solid_are_told(case: Any, key: str, value: str) -
 
 
 def test_inertias_near_the_solid_are_not(case: Any) -> None:
-    near = case.replace({"gears.pinion.mass": "0.9 kg", "gears.wheel.mass": "1.1 kg"})
+    near = case.replace({"gears.pinion.mass": "0.7 kg", "gears.wheel.mass": "1.1 kg"})
     assert "mass-unlikely" not in _codes(near)
+
+
+def test_a_printed_inertia_has_more_room_than_one_of_the_user() -> None:
+    case = td.load_case("fzg-roughness")
+    key = "gears.pinion.moment_of_inertia"
+    assert case.gears.pinion.moment_of_inertia == pytest.approx(407e-6)
+    solid = derived_values(case.replace({key: None}))[key]
+    assert 407e-6 / solid == pytest.approx(0.706, abs=1e-3)
+    assert "mass-unlikely" not in _codes(case)
+    assert "mass-unlikely" in _codes(case.replace({key: "408 kg*mm^2"}))
 
 
 def test_a_pressure_beyond_steel_is_told(case: Any) -> None:

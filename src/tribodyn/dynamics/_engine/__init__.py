@@ -8,11 +8,11 @@
 | `runge_kutta`, `newmark` | How does one step of the method go? |
 | `dormand_prince` | How does one adaptive step go, how wrong is it, what is between its ends? |
 | `crossing` | When within a step does a contact open or close? |
-| `moments` | What statistics are gathered while marching? |
+| `statistics` | What is gathered of lanes, and the same sums of recorded motions? |
+| `moments` | How is it gathered while marching? |
 | `marching` | How does a block of lanes march in the steps of the grid? |
 | `adaptive` | How does it march in steps of its own length? |
 | `blocks` | How are lanes spread over blocks and threads, and what is said of a failure? |
-| `adaptive_engine` | The same for adaptive steps: their tolerances, blocks and failures. |
-| `tolerance` | How wrong may a state be, and each step? |
+| `adaptive_engine` | The same for adaptive steps: tolerances, blocks and failures. |
 | `phase_table` | What are the entries between events, as polynomials of the mesh phase? |
 """

@@ -3,44 +3,93 @@
 from __future__ import annotations
 
 import math
-import os
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import BlockRecord, LaneBlock, lane_blocks
+from tribodyn.dynamics._engine.blocks import LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.phase_table import PhaseTable, build_table
-from tribodyn.dynamics._engine.tolerance import (
-    SMALL,
-    Tolerance,
-    read_atol,
-    static_scale,
-    step_share,
-)
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import adaptive_failure
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import compile_system, lane_load
-from tribodyn.dynamics.equations.step_limit import largest_rate
+from tribodyn.dynamics.equations.step_limit import largest_rate, state_roots
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem, require_between
-from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
+from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.errors import InputError, require_between
+from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
+#: An absolute tolerance: one number, one for positions and one for velocities, or one per state.
+Tolerance = float | Sequence[float] | ArrayLike
+
+#: Default absolute tolerance, over the relative one and the size of the static state.
+SMALL = 1e-3
+#: Error of a step over the tolerance asked for, and the same times the memory of the motion [rad].
+#: Errors of steps add up over the memory; so their sum stayed below half of the tolerance in all
+#: reference cases, up to a hundred undamped periods. Impacts spread neighbouring motions, hence the
+#: smaller share of steps where flanks can part: with it the error of two masses that spread small
+#: differences 450-fold equals the tolerance.
+_SHARE, _SHARE_WITH_GAP, _BUDGET, _LEAST = 0.015, 0.001, 3.0, 1e-5
+
+
+def read_atol(atol: Tolerance, size: int) -> Array:
+    """Absolute tolerance of each state."""
+    values = np.atleast_1d(np.asarray(atol, dtype=float))
+    if values.shape == (2,):
+        values = np.repeat(values, size)
+    if values.shape not in ((1,), (2 * size,)) or not np.all(np.isfinite(values) & (values > 0.0)):
+        raise InputError(
+            f"atol = {atol!r}",
+            where="argument atol",
+            why="One positive number, one for positions and one for velocities, or one for "
+            f"each of the {2 * size} states",
+        )
+    return np.array(np.broadcast_to(values, (2 * size,)))
+
+
+def static_scale(compiled: Compiled, mesh_frequency: float) -> Array:
+    """Sizes of positions and velocities in the static state, in the metric of the mass."""
+    system, nodes = compiled.system, compiled.nodes
+    mass = np.sqrt(np.diag(np.asarray(system.mass)))
+    position = static_start(compiled)[: system.size]
+    size = float(np.max(mass * np.abs(position)))
+    if not size > 0.0:
+        inside = [np.abs(item).max(initial=0.0) for item in (nodes.error, nodes.gap)]
+        size = float(mass.max() * (max(inside) or 1e-6))
+    load = np.tensordot(nodes.weight, nodes.force, axes=2)
+    speed = math.sqrt(max(float(load @ position), 0.0)) or 2.0 * math.pi * mesh_frequency * size
+    return np.concatenate((size / mass, speed / mass))
+
+
+def step_share(
+    compiled: Compiled, duration: float, stiffness_scale: float = 1.0, damping_scale: float = 1.0
+) -> float:
+    """Error of a step over the tolerance of the motion."""
+    system, nodes = compiled.system, compiled.nodes
+    inverse = np.linalg.inv(np.asarray(system.mass))
+    longest = 0.0
+    pairs = (
+        (stiffness_scale * nodes.stiffness, system.stiffness),
+        (damping_scale * nodes.damping, system.damping),
+    )
+    for share in (0.0, 1.0):
+        parts = []
+        for values, own in pairs:
+            contact = np.einsum(
+                "rs,rsj,rsji,rsjk->ik", nodes.weight, values, nodes.direction, nodes.direction
+            )
+            parts.append(inverse @ (np.asarray(own) + share * contact))
+        roots = state_roots(*parts)
+        time = np.minimum(duration, 1.0 / np.maximum(-roots.real, 1e-3 / duration))
+        longest = max(longest, float((np.abs(roots.imag) * time).max(initial=0.0)))
+    share = _SHARE_WITH_GAP if np.any(nodes.gap > 0.0) else _SHARE
+    return max(min(share, _BUDGET / max(longest, 1.0)), _LEAST)
+
+
 _SAMPLE = 64
-
-
-class AdaptiveRun(NamedTuple):
-    """What a march gives."""
-
-    state: Array  #: position and velocity at the end
-    steps: int
-    rejections: int
-    crossings: int
-    widest: float  #: widest step in mesh phase [-]
-    trail: Array
 
 
 @dataclass(frozen=True)
@@ -54,11 +103,6 @@ class AdaptiveEngine:
     rate: float  #: fastest motion of the system [rad/s]
     safety: float  #: error of a step over the tolerance [-]
 
-    def march(self, period: Array, state: Array, cycles: int, **options: Any) -> AdaptiveRun:
-        """March lanes by whole mesh cycles, with the options of :class:`AdaptiveLanes`."""
-        facts = {name: options.pop(name) for name in ("extra_force", "scales") if name in options}
-        return AdaptiveLanes(self, period, **facts).march(state, cycles, **options)
-
 
 class AdaptiveLanes:
     """Lanes of one system that march on from call to call, block by block."""
@@ -67,15 +111,13 @@ class AdaptiveLanes:
         self,
         engine: AdaptiveEngine,
         period: Array,
-        *,
-        extra_force: Array | None = None,
+        extra_force: Array,
         scales: Array | None = None,
         numbers: Index | None = None,
     ) -> None:
         lanes, n = period.size, engine.system.size
-        extra = np.zeros((lanes, n)) if extra_force is None else extra_force
         factors = np.ones((lanes, 6)) if scales is None else scales
-        steady = lane_load(engine.table.program, engine.system, extra, factors[:, 5])
+        steady = lane_load(engine.table.program, engine.system, extra_force, factors[:, 5])
         self.engine, self.period = engine, np.asarray(period, dtype=float)
         self.load, self.numbers = np.hstack((steady, factors)), numbers
         self.blocks = lane_blocks(lanes)
@@ -85,39 +127,6 @@ class AdaptiveLanes:
         rate = max(engine.rate * float(np.max(period)), 1e-9)
         self.memory[:, 0] = min(0.1 * engine.rtol**0.2 / rate, 0.1)
         self.memory[:, 1] = 1.0
-
-    def march(
-        self,
-        state: Array,
-        cycles: int,
-        *,
-        points: Array | None = None,
-        record: Array | None = None,
-        room: int = 0,
-        threads: int | None = None,
-        elapsed: int = 0,
-    ) -> AdaptiveRun:
-        """March all lanes by whole mesh cycles, after ``elapsed`` others."""
-        new = np.empty_like(state)
-        trail = np.zeros((room, 2 + 3 * state.shape[1]))
-        grid = np.zeros(1) if points is None else np.ascontiguousarray(points)
-
-        def march_lanes(place: int) -> Array:
-            block = self.blocks[place]
-            part = np.ascontiguousarray(state[block.index])
-            kept = BlockRecord(record, block.lanes, block.index.size)
-            report = self.march_block(place, part, cycles, grid, kept.states, trail, elapsed)
-            kept.put()
-            new[block.lanes] = part[: block.count]
-            return report
-
-        count = threads or os.cpu_count() or 1
-        reports = np.array(in_threads(march_lanes, range(len(self.blocks)), count))
-        total = reports.sum(axis=0)
-        return AdaptiveRun(
-            new, int(total[0]), int(total[1]), int(total[2]), float(reports[:, 3].max()),
-            trail[: int(reports[0, 8])],
-        )  # fmt: skip
 
     def march_block(
         self,
@@ -176,13 +185,11 @@ def adaptive_engine(
     table = build_table(system, scaled=scaled, split=split) if table is None else table
     if table.error > rtol:
         raise InputError(
-            Problem(
-                what=f"rtol = {rtol:.1e}, and the entries of the system are known over the mesh "
-                f"phase to {table.error:.1e}",
-                where="argument rtol",
-                why="Their kinks or noise cannot be followed any closer",
-                remedy=f"Give rtol of at least {table.error:.0e}, or smoother entries",
-            )
+            f"rtol = {rtol:.1e}, and the entries of the system are known over the mesh "
+            f"phase to {table.error:.1e}",
+            where="argument rtol",
+            why="Their kinks or noise cannot be followed any closer",
+            remedy=f"Give rtol of at least {table.error:.0e}, or smoother entries",
         )
     grid, nodes, program = compile_system(system, max(_SAMPLE, 2 * table.events.size))
     compiled = Compiled(system, grid, nodes, program, math.nan)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
+from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import (
     Failed,
@@ -18,7 +18,6 @@ from tribodyn.dynamics.equations.divergence import (
 )
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import lane_load
-from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
@@ -30,14 +29,6 @@ _WIDTHS = (1, 16)
 _OWN_ROWS = 4
 #: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
 _BRIEF = 200_000
-
-
-class Statistics(NamedTuple):
-    """What is gathered while marching, so that no time series is stored."""
-
-    outputs: Array  #: linear outputs of the state (m, 2 n)
-    waves: Array  #: cosine and sine of harmonics, (steps, 3, harmonics, 2)
-    moments: Array  #: (numbers, lanes); overwritten
 
 
 @dataclass(frozen=True)
@@ -98,13 +89,11 @@ def march(
     statistics: Statistics | None = None,
     width: int | None = None,
     threads: int | None = None,
-    any_step: bool = False,
     elapsed: int = 0,
 ) -> Array:
     """March lanes by whole mesh cycles, after ``elapsed`` others; returns their new state."""
+    # Whoever gives parameters has looked whether the steps are short enough for them.
     lanes = state.shape[0]
-    if isinstance(method, RungeKutta4) and not any_step:
-        _refuse_scaled(compiled, 1.0 / period, parameters)
     run = _Run(compiled, method, parameters, period, state, extra_force)
     new = np.empty_like(state)
 
@@ -122,15 +111,6 @@ def march(
     if max(codes) >= 0:
         run.report(blocks[int(np.argmax(codes))], max(codes), elapsed)
     return new
-
-
-def _refuse_scaled(compiled: Compiled, beat: Array, parameters: LaneParameters | None) -> None:
-    if parameters is None or parameters is compiled.parameters:
-        return
-    for member in compiled.each(beat.size):
-        refuse_unstable_lanes(
-            member.system, member.nodes, compiled.grid, beat, parameters, lanes=member.lanes
-        )
 
 
 class _Run:

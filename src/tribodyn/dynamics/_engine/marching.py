@@ -34,8 +34,8 @@ from tribodyn.types import Array, Index
 
 #: Every file whose code ends up in the compiled kernel.
 _SOURCES = (
-    "lanes", "contact_forces", "method", "runge_kutta", "newmark", "crossing", "moments",
-    "marching", "../equations/program", "../equations/motion", "../equations/divergence",
+    "lanes", "contact_forces", "method", "runge_kutta", "newmark", "crossing", "statistics",
+    "moments", "marching", "../equations/program", "../equations/motion", "../equations/divergence",
 )  # fmt: skip
 #: What :func:`march_block` returns from here on tells of a step that comes to no end, and of one
 #: whose forces were not found.

@@ -2,9 +2,8 @@
 
 Each step contributes with Simpson's rule: both ends and the middle, where the state is the cubic
 Hermite interpolant of the two ends. A lane in which a contact opens or closes within the step
-contributes with every part of it by itself, as the damping force jumps there. Signals are, in this
-order: compression of every contact, force of every contact, acceleration of every coordinate, and
-linear outputs of the state.
+contributes with every part of it by itself, as the damping force jumps there. The signals and their
+order are those of :mod:`tribodyn.dynamics._engine.statistics`.
 """
 
 from __future__ import annotations
@@ -28,14 +27,12 @@ from tribodyn.dynamics._engine.contact_forces import (
 )
 from tribodyn.dynamics._engine.crossing import row_within
 from tribodyn.dynamics._engine.lanes import greatest, least, load, store
+from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array
 
 cubic_middle = nb.njit(**INNER)(motion.cubic_middle)
 
-#: Per signal: mean, mean square, minimum, maximum, share of the time off the driving flank.
-#: Signals of the contacts are followed by a cosine and a sine part per harmonic.
-PLAIN_MOMENTS = 5
 #: Shorter parts of a step are left out: their rate of change would be nothing but rounding.
 _SHORTEST = 1e-7
 

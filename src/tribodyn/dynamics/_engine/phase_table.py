@@ -17,7 +17,7 @@ from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program, build_program, compile_on
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
 
 #: Highest degree of a polynomial.
@@ -152,12 +152,10 @@ def build_table(system: System, *, scaled: bool = False, split: bool = False) ->
             rows.scale = np.abs(rows.program.rows.reshape(-1, columns)).max(axis=0)
             rows.noise = _noise(system, rows.nodes, rows.program)
     raise InputError(
-        Problem(
-            what="entries of the system are zero at most mesh phases and not at some",
-            where="argument system",
-            why="No sample of the mesh cycle shows which terms there are",
-            remedy="Declare the phases where an entry begins and ends as events",
-        )
+        "entries of the system are zero at most mesh phases and not at some",
+        where="argument system",
+        why="No sample of the mesh cycle shows which terms there are",
+        remedy="Declare the phases where an entry begins and ends as events",
     )
 
 
@@ -246,12 +244,10 @@ def _refuse_jump(deviation: Array, phase: Array) -> None:
         at = np.unique(np.round(phase[jumping], 9))
         listed = ", ".join(f"{item:.9g}" for item in at[:4])
         raise InputError(
-            Problem(
-                what=f"an entry jumps at the mesh phase {listed}, which is not an event",
-                where="argument system",
-                why="A step across a jump loses its order, and steps end at events only",
-                remedy="Give these phases to Contact(events=...)",
-            )
+            f"an entry jumps at the mesh phase {listed}, which is not an event",
+            where="argument system",
+            why="A step across a jump loses its order, and steps end at events only",
+            remedy="Give these phases to Contact(events=...)",
         )
 
 

@@ -2,8 +2,8 @@
 
 | module | what it answers |
 |---|---|
-| `entry` | What may a part of a contact be given as? |
-| `system` | What is a structure with its contacts? |
+| `system` | What is a structure with its contacts and frictions? |
+| `load_friction` | What does friction that follows the load do? |
 | `grid` | How is the mesh cycle divided so that no step spans a jump? |
 | `nodes` | What are the entries at both ends and in the middle of every step? |
 | `motion` | What forces and accelerations follow from a motion? The law, readable. |

@@ -14,13 +14,17 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.load_friction import coefficient_count
 from tribodyn.dynamics.equations.motion import has_gap
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
-from tribodyn.dynamics.equations.step_limit import refuse_unstable_lanes, refuse_unstable_step
+from tribodyn.dynamics.equations.step_limit import (
+    largest_rate,
+    refuse_unstable_lanes,
+    refuse_unstable_step,
+)
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import coefficient_count
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Index, Mask
 
 
@@ -78,9 +82,7 @@ class Compiled:
 def require_steps(steps: int) -> None:
     """Refuse steps that are no whole number of at least one."""
     if int(steps) != steps or steps < 1:
-        raise InputError(
-            Problem(what=f"steps = {steps}", where="argument steps", why="A whole number >= 1")
-        )
+        raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
 
 
 def compile_for(
@@ -109,7 +111,7 @@ def compile_lanes(
     *,
     any_step: bool = False,
 ) -> Compiled:
-    """Compile the systems of all lanes on one grid with the events of all."""
+    """Compile the systems of all lanes on one grid; ``any_step``: however long the steps are."""
     given = [systems] if isinstance(systems, System) else list(systems)
     distinct = list({id(one): one for one in given}.values())
     if len(distinct) == 1 and not any_step:
@@ -118,8 +120,10 @@ def compile_lanes(
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     require_steps(steps)
     if len(distinct) == 1:
-        parts = compile_system(distinct[0], int(steps))
-        return Compiled(distinct[0], *parts, step_number=float("nan"), parameters=parameters)
+        system, (grid, nodes, program) = distinct[0], compile_system(distinct[0], int(steps))
+        rate = largest_rate(system, nodes) if parameters is None else float("nan")
+        number = rate * float(grid.width.max() / np.min(mesh_frequency))
+        return Compiled(system, grid, nodes, program, number, parameters=parameters)
     beat = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (len(given),))
     events = system_events(*distinct)
     places = {id(one): number for number, one in enumerate(distinct)}
@@ -155,10 +159,8 @@ def _refuse_different(systems: list[System]) -> None:
 
     if not systems or not all(isinstance(one, System) for one in systems):
         raise InputError(
-            Problem(
-                what="systems is neither a System nor a sequence of one System for each lane",
-                where="argument systems",
-            )
+            "systems is neither a System nor a sequence of one System for each lane",
+            where="argument systems",
         )
     known = {id(systems[0]): facts(systems[0])}
     first = known[id(systems[0])]
@@ -169,14 +171,12 @@ def _refuse_different(systems: list[System]) -> None:
         for name, value in own.items():
             if value != first[name]:
                 raise InputError(
-                    Problem(
-                        what=f"the system of lane {lane} has {value} {name}, that of lane 0 has "
-                        f"{first[name]}",
-                        where="argument systems",
-                        why="Lanes march side by side and have the same structure, with values of "
-                        "their own",
-                        remedy="March different structures in separate ensembles",
-                    )
+                    f"the system of lane {lane} has {value} {name}, that of lane 0 has "
+                    f"{first[name]}",
+                    where="argument systems",
+                    why="Lanes march side by side and have the same structure, with values of "
+                    "their own",
+                    remedy="March different structures in separate ensembles",
                 )
 
 
@@ -186,12 +186,10 @@ def _refuse_mixed_gaps(members: list[Member]) -> None:
         apart = np.flatnonzero(own != dead[0])
         if apart.size:
             raise InputError(
-                Problem(
-                    what=f"contact {apart[0]} has a dead zone in lane "
-                    f"{(one if own[apart[0]] else members[0]).lanes[0]} and none in lane "
-                    f"{(members[0] if own[apart[0]] else one).lanes[0]}",
-                    where="argument systems",
-                    why="A contact without a dead zone also pulls, which is another force law",
-                    remedy="Give it a gap in every lane, however small, or in none",
-                )
+                f"contact {apart[0]} has a dead zone in lane "
+                f"{(one if own[apart[0]] else members[0]).lanes[0]} and none in lane "
+                f"{(members[0] if own[apart[0]] else one).lanes[0]}",
+                where="argument systems",
+                why="A contact without a dead zone also pulls, which is another force law",
+                remedy="Give it a gap in every lane, however small, or in none",
             )

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, system_events
+from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import friction_tangent, push_with_friction
-from tribodyn.errors import ComputationError, Problem
+from tribodyn.errors import ComputationError
 from tribodyn.types import Array
 
 #: ``omega_max * dt`` above which the step itself is a suspect.
@@ -65,15 +65,13 @@ def runaway(failed: Failed) -> ComputationError:
     body = name.rpartition("_")[0]
     causes, remedy = probable_cause(failed.system, failed.nodes, failed.step_number, failed.factors)
     return ComputationError(
-        Problem(
-            what=f"the motion grew beyond all bounds after {phase:.4g} mesh cycles, at the time "
-            f"{phase * failed.period:.6g} s" + (f",{failed.who}" if failed.who else ""),
-            where=f"coordinate {name}" + (f" of the body {body}" if body else "") + ", first of all"
-            if failed.system.size > 1
-            else f"coordinate {name}",
-            why=f"{causes}. omega_max*dt = {failed.step_number:.3g}, limit 2.7 of the integrator",
-            remedy=remedy,
-        )
+        f"the motion grew beyond all bounds after {phase:.4g} mesh cycles, at the time "
+        f"{phase * failed.period:.6g} s" + (f",{failed.who}" if failed.who else ""),
+        where=f"coordinate {name}" + (f" of the body {body}" if body else "") + ", first of all"
+        if failed.system.size > 1
+        else f"coordinate {name}",
+        why=f"{causes}. omega_max*dt = {failed.step_number:.3g}, limit 2.7 of the integrator",
+        remedy=remedy,
     )
 
 
@@ -90,25 +88,20 @@ def newmark_failure(
     number = f" at omega_max*dt = {reached:.3g}" if np.isfinite(reached) else ""
     if unfound and small:
         return ComputationError(
-            Problem(
-                what=f"the contact forces of the step that ends at {time:.6g} s were not "
-                f"found{failed.who}",
-                why="Newton's method did not come below the tolerance of "
-                f"{law[2]:.0e} within 25 passes{number}",
-                remedy="Take more steps per mesh cycle or a larger tolerance, and look for a "
-                "contact stiffness or damping below zero, which can make the equations of a step "
-                "singular",
-            )
+            f"the contact forces of the step that ends at {time:.6g} s were not found{failed.who}",
+            why="Newton's method did not come below the tolerance of "
+            f"{law[2]:.0e} within 25 passes{number}",
+            remedy="Take more steps per mesh cycle or a larger tolerance, and look for a "
+            "contact stiffness or damping below zero, which can make the equations of a step "
+            "singular",
         )
     cause, remedy = probable_cause(failed.system, failed.nodes, 0.0, failed.factors)
     return ComputationError(
-        Problem(
-            what=f"the motion grew beyond all bounds at about {time:.6g} s{failed.who}, most of "
-            f"all {failed.fastest(max(step - 1, 0))}",
-            why=f"{cause}. gamma = {law[0]:g}, beta = {law[1]:g} are stable{number}, so "
-            "the step is not to blame",
-            remedy=remedy,
-        )
+        f"the motion grew beyond all bounds at about {time:.6g} s{failed.who}, most of "
+        f"all {failed.fastest(max(step - 1, 0))}",
+        why=f"{cause}. gamma = {law[0]:g}, beta = {law[1]:g} are stable{number}, so "
+        "the step is not to blame",
+        remedy=remedy,
     )
 
 
@@ -123,16 +116,13 @@ def unparted_step(
     """Error of a step that cannot be parted; ``phase`` counts mesh cycles [1], ``time`` is in s."""
     who = "" if lane is None else f", in lane {lane}"
     return ComputationError(
-        Problem(
-            what=f"the contacts open and close more than {most_splits(contacts)} times within one "
-            "step",
-            where=f"contacts[{contact}], mesh phase {phase % 1.0:.6g} of mesh cycle "
-            f"{int(phase) + 1}, time {time:.6g} s{who}",
-            why="The flanks chatter at the boundary of the dead zone, where the damping force "
-            "jumps: the step cannot be marched in parts with one force law each",
-            remedy="Take more steps per mesh cycle, or damping that does not vanish in the gap; "
-            "look for an error or a gap that changes fast at that mesh phase",
-        )
+        f"the contacts open and close more than {most_splits(contacts)} times within one step",
+        where=f"contacts[{contact}], mesh phase {phase % 1.0:.6g} of mesh cycle "
+        f"{int(phase) + 1}, time {time:.6g} s{who}",
+        why="The flanks chatter at the boundary of the dead zone, where the damping force "
+        "jumps: the step cannot be marched in parts with one force law each",
+        remedy="Take more steps per mesh cycle, or damping that does not vanish in the gap; "
+        "look for an error or a gap that changes fast at that mesh phase",
     )
 
 
@@ -251,15 +241,13 @@ def adaptive_failure(
     where += f", trajectory {lane}" if lane is not None else ""
     if report[4] == 2.0:
         return ComputationError(
-            Problem(
-                what=f"contact {int(report[7])} opens and closes more than 64 times within a "
-                "millionth of a mesh cycle",
-                where=where,
-                why="It chatters: its damping, error or direction throws it back at once, or its "
-                "flanks are far too hard or too near each other",
-                remedy="Look for negative damping, and for an error or a gap that jumps "
-                "at a phase that is not an event",
-            )
+            f"contact {int(report[7])} opens and closes more than 64 times within a "
+            "millionth of a mesh cycle",
+            where=where,
+            why="It chatters: its damping, error or direction throws it back at once, or its "
+            "flanks are far too hard or too near each other",
+            remedy="Look for negative damping, and for an error or a gap that jumps "
+            "at a phase that is not an event",
         )
     size = np.abs(state) / np.maximum(scale, 1e-300)
     worst = int(np.argmax(np.where(np.isfinite(state), size, np.inf)))
@@ -270,20 +258,14 @@ def adaptive_failure(
         _, nodes, _ = compile_system(system, steps)
         cause, remedy = probable_cause(system, nodes, 0.0, factors)
         return ComputationError(
-            Problem(
-                what=f"the motion grew beyond all bounds: the {kind} of {name} is "
-                f"{state[worst]:.3g}",
-                where=where,
-                why=f"{cause}. Steps are as short as accuracy needs, so it is not they",
-                remedy=remedy,
-            )
+            f"the motion grew beyond all bounds: the {kind} of {name} is {state[worst]:.3g}",
+            where=where,
+            why=f"{cause}. Steps are as short as accuracy needs, so it is not they",
+            remedy=remedy,
         )
     return ComputationError(
-        Problem(
-            what=f"no step meets the tolerance: {name} moves fastest, its {kind} is "
-            f"{state[worst]:.3g}",
-            where=where,
-            why="An entry is not smooth there, or rounding exceeds the tolerance",
-            remedy="Give the phase as an event, or a larger rtol or atol",
-        )
+        f"no step meets the tolerance: {name} moves fastest, its {kind} is {state[worst]:.3g}",
+        where=where,
+        why="An entry is not smooth there, or rounding exceeds the tolerance",
+        remedy="Give the phase as an event, or a larger rtol or atol",
     )

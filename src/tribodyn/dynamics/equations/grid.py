@@ -14,9 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem
+from tribodyn.dynamics.equations.system import Entry, System
+from tribodyn.errors import InputError
 from tribodyn.types import Array, Index, Mask
 
 #: Events nearer than this are one event.
@@ -60,13 +59,11 @@ def build_grid(events: tuple[float, ...], steps: int) -> Grid:
     edges = np.array([*events, 1.0])
     if steps < 2 * len(events):
         raise InputError(
-            Problem(
-                what=f"steps = {steps}",
-                where="argument steps",
-                why=f"The mesh cycle has {len(events)} segments between events and needs at "
-                "least two steps in each",
-                remedy=f"Use at least {max(64, 2 * len(events))} steps",
-            )
+            f"steps = {steps}",
+            where="argument steps",
+            why=f"The mesh cycle has {len(events)} segments between events and needs at "
+            "least two steps in each",
+            remedy=f"Use at least {max(64, 2 * len(events))} steps",
         )
     counts = _shares(np.diff(edges), steps)
     left = [
@@ -118,11 +115,9 @@ class RowEvaluator:
         if not np.all(np.isfinite(values)):
             at = flat[np.flatnonzero(~np.isfinite(values).all(axis=1))[0]]
             raise InputError(
-                Problem(
-                    what=f"{where} is NaN or infinite at the mesh phase {at:.6g}",
-                    where=where,
-                    remedy="Check the table or function there; declare jumps as events",
-                )
+                f"{where} is NaN or infinite at the mesh phase {at:.6g}",
+                where=where,
+                remedy="Check the table or function there; declare jumps as events",
             )
         return values.reshape(*phases.shape, size)
 
@@ -176,11 +171,9 @@ def _constant(where: str, entry: Any, phases: Array, size: int) -> Array:
     value = np.asarray(entry, dtype=float)
     if value.ndim > 1 or (value.ndim == 1 and value.size != size):
         raise InputError(
-            Problem(
-                what=f"{where} has the shape {value.shape}",
-                where=where,
-                why=f"It must be a number or have the shape ({size},)",
-            )
+            f"{where} has the shape {value.shape}",
+            where=where,
+            why=f"It must be a number or have the shape ({size},)",
         )
     return np.broadcast_to(value, (phases.size, size)).astype(float)
 
@@ -188,11 +181,9 @@ def _constant(where: str, entry: Any, phases: Array, size: int) -> Array:
 def _broadcast(where: str, values: Array, count: int, size: int) -> Array:
     if values.shape != (count, size):
         raise InputError(
-            Problem(
-                what=f"{where} gives the shape {values.shape}",
-                where=where,
-                why=f"It must be ({count}, {size}) for {count} mesh phases",
-            )
+            f"{where} gives the shape {values.shape}",
+            where=where,
+            why=f"It must be ({count}, {size}) for {count} mesh phases",
         )
     return values
 
@@ -205,12 +196,10 @@ def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size:
         values = np.asarray(function(probe), dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what=f"{where} is not a vectorized function of the mesh phase: {error}",
-                where=where,
-                why="It is called with an array of phases and returns an array",
-                remedy="Use numpy.where instead of if, and functions that take arrays",
-            )
+            f"{where} is not a vectorized function of the mesh phase: {error}",
+            where=where,
+            why="It is called with an array of phases and returns an array",
+            remedy="Use numpy.where instead of if, and functions that take arrays",
         ) from error
     if values.ndim == 0:
         values = np.full((probe.size, 1), float(values))

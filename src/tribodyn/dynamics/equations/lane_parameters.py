@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 
@@ -57,22 +57,18 @@ class LaneParameters:
             values = np.array(getattr(self, name), dtype=float)
             if values.ndim > 1 or not np.all(np.isfinite(values)):
                 raise InputError(
-                    Problem(
-                        what=f"{name} has the shape {values.shape}"
-                        if values.ndim > 1
-                        else f"{name} holds NaN or infinity",
-                        where=f"LaneParameters.{name}",
-                        why="A factor is one number, or one number per lane",
-                    )
+                    f"{name} has the shape {values.shape}"
+                    if values.ndim > 1
+                    else f"{name} holds NaN or infinity",
+                    where=f"LaneParameters.{name}",
+                    why="A factor is one number, or one number per lane",
                 )
             if name in _NOT_NEGATIVE and np.any(values < 0.0):
                 worst = int(np.argmin(values))
                 raise InputError(
-                    Problem(
-                        what=f"{name} = {values.reshape(-1)[worst]:g} in lane {worst}",
-                        where=f"LaneParameters.{name}",
-                        why="The factor cannot be negative",
-                    )
+                    f"{name} = {values.reshape(-1)[worst]:g} in lane {worst}",
+                    where=f"LaneParameters.{name}",
+                    why="The factor cannot be negative",
                 )
             if values.ndim:
                 lengths[values.size] = name
@@ -80,11 +76,9 @@ class LaneParameters:
         if len(lengths) > 1:
             (one, first), (two, second), *_ = lengths.items()
             raise InputError(
-                Problem(
-                    what=f"{first} holds {one} factors and {second} holds {two}",
-                    where="LaneParameters",
-                    why="Every array has one factor for each lane",
-                )
+                f"{first} holds {one} factors and {second} holds {two}",
+                where="LaneParameters",
+                why="Every array has one factor for each lane",
             )
 
     def __repr__(self) -> str:
@@ -137,11 +131,9 @@ class LaneParameters:
             values = np.asarray(getattr(self, name))
             if values.ndim and values.size != lanes:
                 raise InputError(
-                    Problem(
-                        what=f"{name} holds {values.size} factors for {lanes} lanes",
-                        where=f"LaneParameters.{name}",
-                        why="One number, or one for each lane",
-                    )
+                    f"{name} holds {values.size} factors for {lanes} lanes",
+                    where=f"LaneParameters.{name}",
+                    why="One number, or one for each lane",
                 )
             columns.append(np.broadcast_to(values, (lanes,)))
         return np.stack(columns, axis=1)

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.load_friction import friction_force
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import friction_force
 from tribodyn.types import Array, Index, Mask
 
 
@@ -149,3 +149,48 @@ def within_steps(grid: Grid, cycle: Index, phase: Array) -> tuple[Index, Array]:
     inner = own + np.array([1e-12, 0.0, -1e-12])
     number = np.clip(np.searchsorted(edges, inner, side="right") - 1, 0, grid.steps - 1)
     return number, np.clip((own - grid.left[number]) / grid.width[number], 0.0, 1.0)
+
+
+class WithinSteps:
+    """Motions within steps of the grid, each with the sides of its contacts held."""
+
+    def __init__(self, system: System, nodes: Nodes, grid: Grid, beat: float, extra: Array) -> None:
+        self.system, self.nodes, self.grid = system, nodes, grid
+        self.beat, self.extra = beat, extra
+
+    def duration(self, step: Index) -> Array:
+        """Time of whole steps [s]."""
+        return self.grid.width[step % self.grid.steps] / self.beat
+
+    def forces(self, step: Index, tau: Array, q: Array, v: Array, side: Array) -> Forces:
+        """Forces and accelerations at fractions of steps."""
+        rows = rows_within(self.nodes, step, tau)
+        return forces(self.system, rows, self.beat, q, v, side, extra=self.extra)
+
+    def contacts(
+        self, step: Index, tau: Array, q: Array, which: slice = slice(None)
+    ) -> tuple[Array, Array]:
+        """Compressions and gaps of some contacts at fractions of steps."""
+        direction, error, gap = (
+            quadratic(rows[:, :, which], step, tau)
+            for rows in (self.nodes.direction, self.nodes.error, self.nodes.gap)
+        )
+        return compression(self.nodes._replace(direction=direction, error=error), q), gap
+
+    def advance(self, step: Index, begin: Array, end: Array, y: Array, side: Array) -> Array:
+        """March states (m, 2 n) over parts of steps by one Runge-Kutta step each."""
+        taus = np.stack((begin, 0.5 * (begin + end), end), axis=1)
+        rows = rows_within(self.nodes, step[:, None], taus)
+        h = (self.duration(step) * (end - begin))[:, None]
+
+        def slope(node: int, y: Array) -> Array:
+            q, v = np.split(y, 2, axis=1)
+            here = Nodes(*(part[:, node] for part in rows))
+            law = forces(self.system, here, self.beat, q, v, side, extra=self.extra)
+            return np.concatenate((v, law.acceleration), axis=1)
+
+        k1 = slope(0, y)
+        k2 = slope(1, y + 0.5 * h * k1)
+        k3 = slope(1, y + 0.5 * h * k2)
+        k4 = slope(2, y + h * k3)
+        return np.asarray(y + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4))

@@ -11,13 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
+from tribodyn.dynamics.equations.load_friction import friction_coefficients, friction_directions
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import (
-    friction_coefficients,
-    friction_directions,
-)
-from tribodyn.errors import InputError, Problem
-from tribodyn.types import Array
+from tribodyn.errors import InputError
+from tribodyn.types import Array, Index, Mask
 
 #: Sums of stiffnesses below zero by less than this part of the largest are rounding.
 _ROUNDING = 1e-9
@@ -66,12 +63,10 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     gap = scalar("gap", rows.values)
     if np.any(gap < 0.0):
         raise InputError(
-            Problem(
-                what=f"gap = {gap.min():.6g} m",
-                where="Contact.gap",
-                why="The gap is half the dead zone and cannot be negative",
-                remedy="Use `error` for an interference",
-            )
+            f"gap = {gap.min():.6g} m",
+            where="Contact.gap",
+            why="The gap is half the dead zone and cannot be negative",
+            remedy="Use `error` for an interference",
         )
     nodes = Nodes(
         phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
@@ -111,13 +106,34 @@ def refuse_falling_force(
         if total.min() < floor:
             at = np.unravel_index(int(np.argmin(total)), total.shape)
             raise InputError(
-                Problem(
-                    what=f"the force falls by {-total[at]:.4g} N per m of compression beyond "
-                    f"{1e6 * gap[(*at, j)]:.4g} um, at the mesh phase {phase[at]:.4g}",
-                    where=f"contacts[{j}].stiffness",
-                    why="A contact that is pressed together pushes back more: a force law that "
-                    "falls has several compressions for one load",
-                    remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
-                    "to any other, is not negative",
-                )
+                f"the force falls by {-total[at]:.4g} N per m of compression beyond "
+                f"{1e6 * gap[(*at, j)]:.4g} um, at the mesh phase {phase[at]:.4g}",
+                where=f"contacts[{j}].stiffness",
+                why="A contact that is pressed together pushes back more: a force law that "
+                "falls has several compressions for one load",
+                remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
+                "to any other, is not negative",
             )
+
+
+def force_laws(nodes: Nodes) -> Index:
+    """Number of the force law of each contact: one direction and error belong to one law."""
+    numbers = np.arange(nodes.stiffness.shape[2])
+    for j in numbers:
+        for i in range(j):
+            rows = (nodes.direction, nodes.error)
+            if all(np.array_equal(part[:, :, i], part[:, :, j]) for part in rows):
+                numbers[j] = numbers[i]
+                break
+    return numbers
+
+
+def lowest_of_each_law(nodes: Nodes) -> Mask:
+    """Tell which contacts do not share their compression with a spring that begins lower."""
+    laws, places = force_laws(nodes), np.einsum("rs,rsj->j", nodes.weight, nodes.gap)
+    stiff = nodes.stiffness.any(axis=(0, 1))
+    kept = np.ones(places.size, dtype=bool)
+    for j in range(places.size):
+        for i in np.flatnonzero(stiff & (laws == laws[j])):
+            kept[j] &= (places[i], i) >= (places[j], j)
+    return kept

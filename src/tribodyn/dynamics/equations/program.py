@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
+from tribodyn.dynamics.equations.load_friction import coefficient_count
 from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import coefficient_count
 from tribodyn.types import Array, Index, Mask
 
 

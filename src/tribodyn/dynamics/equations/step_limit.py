@@ -13,11 +13,11 @@ import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import friction_tangent, push_with_friction
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.
@@ -116,14 +116,12 @@ def refuse_unstable_step(
     if number > LIMIT:
         needed = int(np.ceil(grid.steps * number / LIMIT / 64.0)) * 64
         raise InputError(
-            Problem(
-                what=f"omega_max*dt = {number:.3f} with {grid.steps} steps per mesh cycle at "
-                f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
-                where="argument steps",
-                why=f"The limit is {LIMIT}; above 2.83 the Runge-Kutta scheme is unstable and "
-                "its result is not physics",
-                remedy=f"Use at least {needed} steps per mesh cycle",
-            )
+            f"omega_max*dt = {number:.3f} with {grid.steps} steps per mesh cycle at "
+            f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
+            where="argument steps",
+            why=f"The limit is {LIMIT}; above 2.83 the Runge-Kutta scheme is unstable and "
+            "its result is not physics",
+            remedy=f"Use at least {needed} steps per mesh cycle",
         )
     return number
 

@@ -9,17 +9,33 @@ already carries the sign of sliding, the friction coefficients and the load shar
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.entry import Entry, read_events
-from tribodyn.dynamics.structure.load_friction import LoadFriction
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array
+
+#: A constant, or a vectorized function of the mesh phase in [0, 1).
+Entry = float | ArrayLike | Callable[[Array], Any]
+
+
+def read_events(given: Any, where: str) -> tuple[float, ...]:
+    """Check mesh phases at which an entry jumps."""
+    events = tuple(float(event) for event in given)
+    bad = [event for event in events if not 0.0 <= event < 1.0]
+    if bad:
+        raise InputError(
+            f"events holds {bad[0]:g}",
+            where=where,
+            why="Events are mesh phases and lie in [0, 1)",
+            remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
+        )
+    return events
 
 
 @dataclass(frozen=True)
@@ -79,18 +95,81 @@ class Contact:
         return f"Contact(stiffness={stiffness}, gap={gap}, events={self.events})"
 
 
+@dataclass(frozen=True)
+class LoadFriction:
+    """Friction whose coefficient follows the contact force.
+
+    Parameters
+    ----------
+    direction : (n,) array or function
+        Generalized force against which one newton of friction acts [1 or m]; a function takes
+        mesh phases (p,) and returns (p, n).
+    coefficients : float, (m,) array or function
+        ``c_0, c_1, ...`` of ``F/N = sum_k c_k x^k``, with the sign of sliding [1]; a function
+        returns (p, m).
+    load : float
+        Contact force at which ``x = 1`` [N].
+    contacts : tuple of int
+        Contacts whose forces add up to N; the ramps of one force law belong together.
+    limit : float
+        Largest ``x``: beyond it the coefficient stays as it is there [1].
+    events : tuple of float
+        Mesh phases at which an entry jumps, beside those of the contacts.
+
+    Raises
+    ------
+    InputError
+        If load or limit is not positive, no contact is named, or an event lies outside [0, 1).
+
+    Notes
+    -----
+    ``x = min(|N|/load, limit)``. The friction keeps the sign of N: while the back flank carries,
+    or a damper pulls, N is negative and the friction turns round with it, as that of
+    :class:`Contact` does.
+
+    Examples
+    --------
+    >>> LoadFriction(direction=[1.0, -1.0], coefficients=[0.05, 0.01, -0.002], load=1000.0)
+    LoadFriction(load=1000.0, contacts=(0,))
+    """
+
+    direction: Entry
+    coefficients: Entry
+    load: float
+    contacts: tuple[int, ...] = (0,)
+    limit: float = 4.0
+    events: tuple[float, ...] = (0.0,)
+
+    def __post_init__(self) -> None:
+        require_positive("load", self.load, "N")
+        require_positive("limit", self.limit, "")
+        object.__setattr__(self, "events", read_events(self.events, "LoadFriction.events"))
+        contacts = (self.contacts,) if isinstance(self.contacts, int) else self.contacts
+        numbers = tuple(int(contact) for contact in contacts)
+        if not numbers or min(numbers) < 0:
+            raise InputError(
+                f"contacts = {numbers}",
+                where="LoadFriction.contacts",
+                why="The friction follows the force of one contact or of several",
+                remedy="Name them by their place in System.contacts, counted from 0",
+            )
+        object.__setattr__(self, "contacts", numbers)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"LoadFriction(load={self.load}, contacts={self.contacts})"
+
+
 def _matrix(name: str, value: ArrayLike) -> Array:
     matrix = np.array(value, dtype=float, ndmin=2)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise InputError(
-            Problem(
-                what=f"{name} has the shape {matrix.shape}",
-                where=f"System.{name}",
-                why="It must be a square (n, n) matrix",
-            )
+            f"{name} has the shape {matrix.shape}",
+            where=f"System.{name}",
+            why="It must be a square (n, n) matrix",
         )
     if not np.all(np.isfinite(matrix)):
-        raise InputError(Problem(what=f"{name} holds NaN or infinity", where=f"System.{name}"))
+        raise InputError(f"{name} holds NaN or infinity", where=f"System.{name}")
     return matrix
 
 
@@ -143,11 +222,9 @@ class System:
         for name, matrix in matrices.items():
             if matrix.shape != (size, size):
                 raise InputError(
-                    Problem(
-                        what=f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
-                        where=f"System.{name}",
-                        why="All three matrices belong to the same coordinates",
-                    )
+                    f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
+                    where=f"System.{name}",
+                    why="All three matrices belong to the same coordinates",
                 )
             object.__setattr__(self, name, matrix)
         contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
@@ -156,9 +233,7 @@ class System:
         object.__setattr__(self, "frictions", (self.frictions,) if one else tuple(self.frictions))
         names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
         if len(names) != size:
-            raise InputError(
-                Problem(what=f"{len(names)} names for {size} coordinates", where="System.names")
-            )
+            raise InputError(f"{len(names)} names for {size} coordinates", where="System.names")
         object.__setattr__(self, "names", names)
         _refuse_singular(matrices["mass"], names)
         _refuse_missing_contacts(self)
@@ -166,10 +241,7 @@ class System:
             balance = np.asarray(self.balance, dtype=float)
             if balance.shape != (size,):
                 raise InputError(
-                    Problem(
-                        what=f"balance has the shape {balance.shape}, not ({size},)",
-                        where="System.balance",
-                    )
+                    f"balance has the shape {balance.shape}, not ({size},)", where="System.balance"
                 )
             object.__setattr__(self, "balance", balance)
 
@@ -194,24 +266,20 @@ def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:
         at = int(empty[0]) if empty.size else 0
         detail = f"coordinate {at} has no inertia ({names[at]})"
         raise InputError(
-            Problem(
-                what="the mass matrix cannot be inverted: "
-                + (detail if empty.size else f"it is singular{_without_inertia(mass, names)}"),
-                where="System.mass",
-                why="Every coordinate needs an inertia of its own",
-                remedy="Remove the coordinate, or give it a mass or moment of inertia",
-            )
+            "the mass matrix cannot be inverted: "
+            + (detail if empty.size else f"it is singular{_without_inertia(mass, names)}"),
+            where="System.mass",
+            why="Every coordinate needs an inertia of its own",
+            remedy="Remove the coordinate, or give it a mass or moment of inertia",
         )
     even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
     if not even or np.linalg.eigvalsh(mass / np.outer(scale, scale))[0] <= 0.0:
         raise InputError(
-            Problem(
-                what="the mass matrix is not symmetric and positive definite"
-                + ("" if not even else _without_inertia(mass, names)),
-                where="System.mass",
-                why="Every motion has a kinetic energy greater than zero",
-                remedy="Look for a wrong sign or place in the matrix",
-            )
+            "the mass matrix is not symmetric and positive definite"
+            + ("" if not even else _without_inertia(mass, names)),
+            where="System.mass",
+            why="Every motion has a kinetic energy greater than zero",
+            remedy="Look for a wrong sign or place in the matrix",
         )
 
 
@@ -229,10 +297,8 @@ def _refuse_missing_contacts(system: System) -> None:
         if max(friction.contacts) >= len(system.contacts):
             count = len(system.contacts)
             raise InputError(
-                Problem(
-                    what=f"friction {f} follows contact {max(friction.contacts)}, and there "
-                    + (f"are {count} contacts" if count != 1 else "is 1 contact"),
-                    where=f"System.frictions[{f}].contacts",
-                    why="Contacts are counted from 0 in the order of System.contacts",
-                )
+                f"friction {f} follows contact {max(friction.contacts)}, and there "
+                + (f"are {count} contacts" if count != 1 else "is 1 contact"),
+                where=f"System.frictions[{f}].contacts",
+                why="Contacts are counted from 0 in the order of System.contacts",
             )

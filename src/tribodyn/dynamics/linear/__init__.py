@@ -6,7 +6,6 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 |---|---|
 | ``natural_modes`` | natural frequencies, modes and where their energy sits |
 | ``natural_modes_linear`` | matrices with the contacts in touch |
-| ``natural_modes_elements`` | the springs of which a stiffness matrix is made |
 | ``forced_response`` | what a harmonic transmission error does |
 | ``campbell`` | at which speeds mesh orders meet natural frequencies |
 """

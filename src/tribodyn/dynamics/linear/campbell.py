@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import natural_modes
 from tribodyn.dynamics.linear.natural_modes_linear import ModePhase
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array
 
@@ -156,7 +156,7 @@ def campbell(
     """
     lines = tuple(int(order) for order in orders)
     if not lines:
-        raise InputError(Problem(what="no order is asked for", where="argument orders"))
+        raise InputError("no order is asked for", where="argument orders")
     require_positive("teeth", teeth, "")
     require_positive("orders", np.asarray(lines), "")
     speeds = _rising(speed)
@@ -195,12 +195,10 @@ def _rising(speed: ArrayLike) -> Array:
     require_positive("speed", speeds, "rad/s")
     if speeds.size < 2 or np.any(np.diff(speeds) <= 0.0):
         raise InputError(
-            Problem(
-                what="the speeds do not rise" if speeds.size > 1 else "one speed only",
-                where="argument speed",
-                why="The diagram spans a range of speeds",
-                remedy="Give at least two rising speeds",
-            )
+            "the speeds do not rise" if speeds.size > 1 else "one speed only",
+            where="argument speed",
+            why="The diagram spans a range of speeds",
+            remedy="Give at least two rising speeds",
         )
     return speeds
 

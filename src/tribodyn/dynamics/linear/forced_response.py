@@ -11,8 +11,8 @@ from tribodyn.dynamics.linear.natural_modes_linear import (
     ModePhase,
     linear_system,
 )
-from tribodyn.errors import InputError, Problem, require_positive
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.errors import InputError, require_positive
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
 
 
@@ -52,7 +52,7 @@ class ForcedResponse(Record):
     ForcedResponse(2 frequencies, largest mesh force 99804.6 N at 1591.5 Hz)
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
     frequency: Array = quantity("frequency", unit="Hz", axis=True)
     error: float = fact()
     contact: tuple[int, ...]
@@ -87,11 +87,6 @@ class ForcedResponse(Record):
             f"ForcedResponse({self.frequency.size} frequencies, largest mesh force "
             f"{size[top]:.6g} N at {self.frequency[top]:.6g} Hz)"
         )
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        parts.coordinates["coordinate"] = list(self.names)
-        return parts
 
 
 def forced_response(
@@ -150,11 +145,9 @@ def forced_response(
     count = linear.spring.size
     if not 0 <= contact < count:
         raise InputError(
-            Problem(
-                what=f"contact = {contact}",
-                where="argument contact",
-                why=f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0",
-            )
+            f"contact = {contact}",
+            where="argument contact",
+            why=f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0",
         )
     members = np.flatnonzero(linear.bundle == linear.bundle[contact])
     given = np.where(np.isin(np.arange(count), members), float(error), 0.0)
@@ -189,11 +182,9 @@ def _solve(linear: LinearSystem, omega: Array, given: Array, friction: bool) -> 
         solved = np.linalg.solve(scaled, (scale * force)[:, :, None])[:, :, 0]
     except np.linalg.LinAlgError as error:
         raise InputError(
-            Problem(
-                what="an undamped mode lies exactly at one of the frequencies",
-                where="argument frequency",
-                why="Its motion grows without end",
-                remedy="Give the structure or the contact some damping",
-            )
+            "an undamped mode lies exactly at one of the frequencies",
+            where="argument frequency",
+            why="Its motion grows without end",
+            remedy="Give the structure or the contact some damping",
         ) from error
     return np.asarray(scale * solved)

@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.linear.natural_modes_elements import structure_elements
 from tribodyn.dynamics.linear.natural_modes_linear import (
     LinearSystem,
     ModePhase,
     linear_system,
 )
-from tribodyn.errors import InputError, Problem
-from tribodyn.record import Parts, Record, quantity, record
+from tribodyn.errors import InputError
+from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, ComplexArray
 
 #: Squared frequencies below this share of the largest are rounding: the mode is rigid.
@@ -61,12 +60,12 @@ class NaturalModes(Record):
     NaturalModes(1 coordinates, 0 rigid, first 0.31831 Hz)
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
     frequency: Array = quantity("mode", unit="Hz")
     shape: Array = quantity("mode", "coordinate", unit="kg^-1/2 or kg^-1/2/m")
     damping_ratio: Array = quantity("mode", unit="1")
     kinetic_share: Array = quantity("mode", "coordinate", unit="1")
-    elements: tuple[str, ...]
+    elements: tuple[str, ...] = quantity("element", axis=True, name="element")
     strain_share: Array = quantity("mode", "element", unit="1")
     contacts: int
     eigenvalues: ComplexArray
@@ -134,12 +133,6 @@ class NaturalModes(Record):
         elastic = self.frequency[self.rigid :]
         first = f"first {elastic[0]:.6g} Hz" if elastic.size else "no elastic mode"
         return f"NaturalModes({len(self.names)} coordinates, {self.rigid} rigid, {first})"
-
-    def _parts(self) -> Parts:
-        parts = super()._parts()
-        parts.coordinates["coordinate"] = list(self.names)
-        parts.coordinates["element"] = list(self.elements)
-        return parts
 
 
 def natural_modes(
@@ -211,37 +204,21 @@ def natural_modes(
 
 
 def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
-    inverse = np.linalg.inv(_factor(mass))
+    inverse = np.linalg.inv(np.linalg.cholesky(mass))
     matrix = inverse @ stiffness @ inverse.T
     squares, columns = np.linalg.eigh(0.5 * (matrix + matrix.T))
     rigid = np.abs(squares) <= _RIGID * np.abs(squares).max(initial=0.0)
     if np.any(squares[~rigid] < 0.0):
         raise InputError(
-            Problem(
-                what="the system falls over at rest: a stiffness is negative",
-                where="System.stiffness",
-                why="A motion runs away from the static load without any swing",
-                remedy="Look for a wrong sign in the stiffness matrix or of a contact",
-            )
+            "the system falls over at rest: a stiffness is negative",
+            where="System.stiffness",
+            why="A motion runs away from the static load without any swing",
+            remedy="Look for a wrong sign in the stiffness matrix or of a contact",
         )
     frequency = np.sqrt(np.where(rigid, 0.0, squares)) / (2.0 * np.pi)
     shape = (inverse.T @ columns).T
     largest = np.take_along_axis(shape, np.abs(shape).argmax(axis=1)[:, None], axis=1)
     return frequency, shape * np.sign(largest)
-
-
-def _factor(mass: Array) -> Array:
-    """Cholesky factor of a mass matrix, which must be that of a kinetic energy."""
-    even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
-    if not even or np.linalg.eigvalsh(mass)[0] <= 0.0:
-        raise InputError(
-            Problem(
-                what="the mass matrix is not symmetric and positive definite",
-                where="System.mass",
-                why="Every motion has a kinetic energy greater than zero",
-            )
-        )
-    return np.asarray(np.linalg.cholesky(mass), dtype=float)
 
 
 def _damping_ratio(damping: Array, frequency: Array, shape: Array) -> Array:
@@ -281,3 +258,55 @@ def _damped(
     top = np.take_along_axis(moved, np.abs(moved).argmax(axis=1)[:, None], axis=1)
     shapes = np.asarray(moved / np.where(top == 0.0, 1.0, top), dtype=complex)
     return np.asarray(values[order], dtype=complex), shapes
+
+
+#: Entries below this share of the row's largest are rounding of the sums.
+_ROUNDING = 1e-12
+
+
+def structure_elements(
+    system: System, elements: Mapping[str, ArrayLike] | None = None
+) -> dict[str, Array]:
+    """Name the springs of the structure."""
+    matrix = np.asarray(system.stiffness)
+    size = float(np.abs(matrix).max(initial=0.0))
+    if np.abs(matrix - matrix.T).max(initial=0.0) > 1e-9 * size:
+        raise InputError(
+            "the stiffness matrix is not symmetric",
+            where="System.stiffness",
+            why="Only a symmetric matrix stores energy",
+            remedy="Give friction as the friction of a contact",
+        )
+    if elements is None:
+        return _springs(matrix, tuple(system.names))
+    given = {name: np.asarray(element, dtype=float) for name, element in elements.items()}
+    wrong = [name for name, element in given.items() if element.shape != matrix.shape]
+    if wrong or np.abs(sum(given.values()) - matrix).max() > 1e-9 * size:
+        what = f'"{wrong[0]}" is no {matrix.shape} matrix' if wrong else "they do not add up"
+        raise InputError(
+            what,
+            where="argument elements",
+            why="The springs together are the stiffness matrix of the structure",
+        )
+    return given
+
+
+def _springs(matrix: Array, names: tuple[str, ...]) -> dict[str, Array]:
+    count = len(names)
+    found: dict[str, Array] = {}
+    for i in range(count):
+        ground = float(matrix[i].sum())
+        if abs(ground) > _ROUNDING * np.abs(matrix[i]).sum():
+            found[names[i]] = _spring(count, i, None, ground)
+        for k in range(i + 1, count):
+            if matrix[i, k] != 0.0:
+                found[f"{names[i]} - {names[k]}"] = _spring(count, i, k, -float(matrix[i, k]))
+    return found
+
+
+def _spring(count: int, i: int, k: int | None, stiffness: float) -> Array:
+    along = np.zeros(count)
+    along[i] = 1.0
+    if k is not None:
+        along[k] = -1.0
+    return np.asarray(stiffness * np.outer(along, along))

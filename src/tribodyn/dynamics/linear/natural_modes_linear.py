@@ -12,16 +12,16 @@ from typing import Literal
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import system_events
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import compile_system
-from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import (
+from tribodyn.dynamics.equations.load_friction import (
     carried_load,
     friction_secant,
     friction_tangent,
     push_with_friction,
 )
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.dynamics.equations.nodes import Nodes, force_laws, lowest_of_each_law
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.system import System
+from tribodyn.errors import InputError, require_between
 from tribodyn.types import Array, Index, Mask
 
 ModePhase = Literal["mean"] | float
@@ -74,7 +74,7 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
         push=np.einsum("rs,rsji->ji", weight, push),
         spring=spring.sum(axis=(0, 1)),
         damper=damper.sum(axis=(0, 1)),
-        bundle=_bundles(nodes),
+        bundle=force_laws(nodes),
     )
 
 
@@ -85,11 +85,7 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
         return nodes, nodes.weight
     if isinstance(phase, str):
         raise InputError(
-            Problem(
-                what=f'phase = "{phase}"',
-                where="argument phase",
-                why='"mean" or a mesh phase in [0, 1)',
-            )
+            f'phase = "{phase}"', where="argument phase", why='"mean" or a mesh phase in [0, 1)'
         )
     at = float(phase)
     require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")
@@ -103,7 +99,7 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
 
 def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
     """Contacts that carry at rest, and what a further newton of each pushes, friction included."""
-    kept = np.broadcast_to(_lowest(nodes), nodes.stiffness.shape)
+    kept = np.broadcast_to(lowest_of_each_law(nodes), nodes.stiffness.shape)
     push = nodes.force_direction
     if kept.all() and not system.frictions:
         return np.array(kept), push
@@ -128,20 +124,6 @@ def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
     return closed, push_with_friction(system, nodes, tangent)
 
 
-def _lowest(nodes: Nodes) -> Mask:
-    """Tell which contacts begin lowest in their force law; they stay closed."""
-    places, bundle = nodes.gap.mean(axis=(0, 1)), _bundles(nodes)
-    stiff: Mask = np.asarray(nodes.stiffness.any(axis=(0, 1)))
-    kept = np.zeros(places.size, dtype=bool)
-    for number in np.unique(bundle):
-        members = np.flatnonzero(bundle == number)
-        carrying = members[stiff[members]]
-        kept[members[~stiff[members]]] = True
-        if carrying.size:
-            kept[carrying[np.argmin(places[carrying])]] = True
-    return kept
-
-
 def _equilibrium(system: System, nodes: Nodes, carrying: Array, push: Array) -> Array:
     """Position at rest at every phase, (rows, stages, n); free motions get no displacement."""
     outer = np.einsum("rsji,rsjk->rsjik", push, nodes.direction)
@@ -151,16 +133,3 @@ def _equilibrium(system: System, nodes: Nodes, carrying: Array, push: Array) -> 
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
     inverse = np.linalg.pinv(stiffness * np.outer(scale, scale), rcond=1e-12)
     return np.asarray(scale * np.einsum("rsik,rsk->rsi", inverse, scale * force))
-
-
-def _bundles(nodes: Nodes) -> Index:
-    """Number the force laws: contacts with the same direction and error belong to one."""
-    count = nodes.stiffness.shape[2]
-    numbers = np.arange(count)
-    for j in range(count):
-        for i in range(j):
-            pairs = (nodes.direction[:, :, (i, j)], nodes.error[:, :, (i, j)])
-            if all(np.array_equal(both[:, :, 0], both[:, :, 1]) for both in pairs):
-                numbers[j] = numbers[i]
-                break
-    return numbers

@@ -9,10 +9,9 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 | ``coordinates`` | in which coordinates a motion closes |
 | ``orbit_map`` | where states are after one period, and which of them close |
 | ``periods`` | after how many mesh cycles a motion repeats |
-| ``search`` | which orbit a start comes to |
+| ``search`` | which orbit a start comes to, and whether it stays in touch on the way |
 | ``solution_branch`` | what a branch of orbits holds |
 | ``speed_sweep``, ``speed_sweep_follow`` | what a slow sweep of the speed meets, up and down |
 | ``start`` | where a search begins |
 | ``steady_state`` | the orbit at one speed, with a certified error |
-| ``touch`` | whether a motion keeps its flanks in touch |
 """

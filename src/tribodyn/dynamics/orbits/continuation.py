@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.equations.nodes import lowest_of_each_law
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.continuation_path import (
     BranchPoint,
@@ -30,11 +31,11 @@ from tribodyn.dynamics.orbits.continuation_path import (
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
-from tribodyn.dynamics.orbits.start import _lowest_of_each_law, static_start
+from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, Problem, warn
+from tribodyn.errors import ComputationError, InputError, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -167,7 +168,7 @@ def _check(between: tuple[float, float], periods: int, longest: float, points: i
         problem, where = f"points = {points}", "a whole number >= 2"
     if problem:
         name = problem.partition(" ")[0]
-        raise InputError(Problem(what=problem, where=f"argument {name}", why=f"It is {where}"))
+        raise InputError(problem, where=f"argument {name}", why=f"It is {where}")
 
 
 def _first(
@@ -196,12 +197,10 @@ def _first(
     orbit = find_orbit(mapping, y, TOLERANCE)
     if not orbit.error <= TOLERANCE:
         raise ComputationError(
-            Problem(
-                what=f"no orbit of {function.periods} mesh cycle(s) was found at {between[0]:g}: "
-                f"certified error {orbit.error:.2e}",
-                why=f"The limit is {TOLERANCE:.0e}",
-                remedy="Begin elsewhere, give a start, or take periods = 2, 3, 4",
-            )
+            f"no orbit of {function.periods} mesh cycle(s) was found at {between[0]:g}: "
+            f"certified error {orbit.error:.2e}",
+            why=f"The limit is {TOLERANCE:.0e}",
+            remedy="Begin elsewhere, give a start, or take periods = 2, 3, 4",
         )
     function.size = _motion(mapping, orbit.point)
     x = np.append(orbit.point / function.size, 0.0)
@@ -217,11 +216,9 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
     """First point of the branch of twice the period, beside the point where it begins."""
     if not 0.0 <= (start.parameter - function.origin) / function.range <= 1.0:
         raise InputError(
-            Problem(
-                what=f"start lies at {start.parameter:.8g}",
-                where="argument start",
-                why=f"The range is {function.origin:g} to {function.origin + function.range:g}",
-            )
+            f"start lies at {start.parameter:.8g}",
+            where="argument start",
+            why=f"The range is {function.origin:g} to {function.origin + function.range:g}",
         )
     mapping = function.at(start.parameter)
     y = mapping.start(np.concatenate((start.position, start.velocity)))
@@ -247,11 +244,9 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
                 point.effort,
             )
     raise ComputationError(
-        Problem(
-            what=f"no branch of {function.periods} mesh cycles was found at {start.parameter:.8g}",
-            why=f"A {start.kind} of period {start.period} was given",
-            remedy="Only a period-doubling has such a branch, and a linear system has none",
-        )
+        f"no branch of {function.periods} mesh cycles was found at {start.parameter:.8g}",
+        why=f"A {start.kind} of period {start.period} was given",
+        remedy="Only a period-doubling has such a branch, and a linear system has none",
     )
 
 
@@ -354,11 +349,9 @@ def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...
     for name in wanted:
         if name not in (*known, *system.names):
             raise InputError(
-                Problem(
-                    what=f'no signal is called "{name}"',
-                    where="argument signals",
-                    why=f"Known: {', '.join((*known, *system.names))}",
-                )
+                f'no signal is called "{name}"',
+                where="argument signals",
+                why=f"Known: {', '.join((*known, *system.names))}",
             )
     return tuple(wanted)
 
@@ -394,7 +387,7 @@ def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures
     beyond = fine.deflection - gap.reshape(fine.deflection.shape)
     dead = np.any(nodes.gap > 0.0, axis=(0, 1))
     clearance = _extremes(beyond)[0] if count else np.zeros(0)
-    able = dead & _lowest_of_each_law(nodes) if count else dead
+    able = dead & lowest_of_each_law(nodes) if count else dead
     return OrbitFigures(
         mesh_frequency=frequency,
         position=states[0, : response.position.shape[1]].copy(),

@@ -19,7 +19,7 @@ from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.progress import Progress
 from tribodyn.types import Array, ComplexArray
 
@@ -70,12 +70,10 @@ class Family:
         system, frequency = result if isinstance(result, tuple) else (result, self._frequency)
         if not isinstance(system, System) or frequency is None:
             raise InputError(
-                Problem(
-                    what=f"the function of the parameter returned {type(result).__name__}"
-                    + ("" if frequency is not None else " and no mesh frequency was given"),
-                    where="argument make_system",
-                    why="A System with mesh_frequency given, or a tuple (System, mesh frequency)",
-                )
+                f"the function of the parameter returned {type(result).__name__}"
+                + ("" if frequency is not None else " and no mesh frequency was given"),
+                where="argument make_system",
+                why="A System with mesh_frequency given, or a tuple (System, mesh frequency)",
             )
         return compile_for(system, float(frequency), self._steps), float(frequency)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 _RANK = 1e-9
@@ -80,14 +80,12 @@ def refuse_disconnected(compiled: Compiled) -> None:
     names = [system.names[int(i)] for i in np.flatnonzero(~held)]
     many = len(names) > 1
     raise InputError(
-        Problem(
-            what=f"the coordinate{'s' if many else ''} {', '.join(names)} "
-            f"{'are' if many else 'is'} connected to nothing",
-            where="System.stiffness",
-            why="No spring, damper or contact reaches it, so that it moves freely and has no "
-            "periodic orbit",
-            remedy="Add the missing shaft, bearing or contact, or remove the coordinate",
-        )
+        f"the coordinate{'s' if many else ''} {', '.join(names)} "
+        f"{'are' if many else 'is'} connected to nothing",
+        where="System.stiffness",
+        why="No spring, damper or contact reaches it, so that it moves freely and has no "
+        "periodic orbit",
+        remedy="Add the missing shaft, bearing or contact, or remove the coordinate",
     )
 
 

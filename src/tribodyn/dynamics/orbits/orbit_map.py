@@ -20,7 +20,7 @@ from tribodyn.dynamics.orbits.coordinates import (
     orbit_coordinates,
     refuse_disconnected,
 )
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 
 #: Lanes that are marched at a time: more do not fit beside each other in the memory near a core.
@@ -51,12 +51,10 @@ class Balance(NamedTuple):
         strength = float(np.linalg.norm(push))
         if strength < 1e-12 * float(np.linalg.norm(np.linalg.solve(coordinates.lower, force))):
             raise InputError(
-                Problem(
-                    what="balance does not drive any free motion",
-                    where="System.balance",
-                    why="The structure holds the drive in place, so no torque needs balancing",
-                    remedy="Leave balance out",
-                )
+                "balance does not drive any free motion",
+                where="System.balance",
+                why="The structure holds the drive in place, so no torque needs balancing",
+                remedy="Leave balance out",
             )
         return cls(push / strength, force / strength, strength)
 
@@ -118,12 +116,10 @@ class OrbitMap:
         y = self.coordinates.reduce(state)
         if y.size == 0:
             raise InputError(
-                Problem(
-                    what="no coordinate is held by a spring, a damper or a contact",
-                    where="System.stiffness",
-                    why="Nothing vibrates, so that no periodic orbit exists",
-                    remedy="Use simulate for a free motion",
-                )
+                "no coordinate is held by a spring, a damper or a contact",
+                where="System.stiffness",
+                why="Nothing vibrates, so that no periodic orbit exists",
+                remedy="Use simulate for a free motion",
             )
         return y if self.balance is None else np.append(y, 0.0)
 

@@ -7,10 +7,72 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tribodyn.dynamics.equations.nodes import force_laws
 from tribodyn.dynamics.orbits.anderson import anderson
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
-from tribodyn.dynamics.orbits.touch import FlankWatch
 from tribodyn.types import Array, ComplexArray
+
+#: Periods looked ahead at most, and the part of the distance at which there is nothing to fear.
+_HORIZON, _GONE = 2000, 1e-3
+
+
+class FlankWatch:
+    """Compressions beyond the play of the meshes that have one."""
+
+    def __init__(self, mapping: OrbitMap) -> None:
+        nodes = mapping.compiled.nodes
+        dead = np.any(nodes.gap > 0.0, axis=(0, 1))
+        laws = force_laws(nodes)
+        meshes = [np.flatnonzero(laws == number) for number in np.unique(laws)]
+        kept = [mesh for mesh in meshes if dead[mesh].all()]
+        first = [mesh[0] for mesh in kept]
+        self._direction = nodes.direction[:, ::2][:, :, first]
+        self._error = nodes.error[:, ::2][:, :, first]
+        gaps = [nodes.gap[:, ::2, mesh].min(axis=2) for mesh in kept]
+        self._gap = np.stack(gaps, axis=-1) if gaps else np.zeros((*self._error.shape[:2], 0))
+        self._steps = mapping.compiled.grid.steps
+        self._size = mapping.compiled.system.size
+
+    def compression(self, states: Array) -> Array:
+        """Compression of each mesh at both ends of every step, (periods, steps, 2, meshes)."""
+        q = states[:, : self._size]
+        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(-1, self._steps, 2, self._size)
+        return np.asarray(np.einsum("rsji,crsi->crsj", self._direction, ends) - self._error)
+
+    def clearance(self, compression: Array) -> Array:
+        """Distance of each mesh from parting, on the flank on which it begins."""
+        return self.flank(compression) * compression - self._gap
+
+    @staticmethod
+    def flank(compression: Array) -> Array:
+        """Side of the play on which each mesh begins, (meshes,): 1 or -1."""
+        return np.where(compression[0, 0, 0] < 0.0, -1.0, 1.0)
+
+    def in_touch(self, states: Array) -> bool:
+        """Whether no mesh parts on the way."""
+        return bool(np.all(self.clearance(self.compression(states)) > 0.0))
+
+    def stays(self, states: Array, slopes: Array, matrix: Array, distance: Array) -> bool:
+        """Whether a motion beside an orbit reaches it without parting."""
+        compression = self.compression(states)
+        room = self.clearance(compression).reshape(-1)
+        if np.any(room <= 0.0):
+            return False
+        still = self.compression(np.zeros_like(states))
+        flank = self.flank(compression)
+        rates = np.stack(
+            [(flank * (self.compression(slope) - still)).reshape(-1) for slope in slopes], axis=1
+        )
+        first = float(np.abs(rates @ distance).max(initial=0.0))
+        for _ in range(_HORIZON):
+            moved = rates @ distance
+            if np.any(room + moved <= 0.0):
+                return False
+            if float(np.abs(moved).max(initial=0.0)) <= _GONE * first:
+                break
+            distance = matrix @ distance
+        return True
+
 
 #: Plain periods with dead zones at most, if the flanks part: they keep a start in its own basin
 #: of attraction. A linear system has one orbit and needs none.

@@ -95,8 +95,8 @@ class Branch(Record):
     period: int = fact()
     position: Array = quantity("point", "coordinate", unit="m or rad")
     velocity: Array = quantity("point", "coordinate", unit="m/s or rad/s")
-    names: tuple[str, ...]
-    signals: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
+    signals: tuple[str, ...] = quantity("signal", axis=True, name="signal")
     mean: Array = quantity("point", "signal", unit="m or rad")
     rms: Array = quantity("point", "signal", unit="m or rad")
     peak_to_peak: Array = quantity("point", "signal", unit="m or rad")
@@ -163,5 +163,4 @@ class Branch(Record):
         special = "special_point", self.special_points
         variables["special_parameter"] = (special[0], [point.parameter for point in special[1]])
         coordinates["special_kind"] = (special[0], [point.kind for point in special[1]])
-        coordinates["coordinate"], coordinates["signal"] = list(self.names), list(self.signals)
         return parts

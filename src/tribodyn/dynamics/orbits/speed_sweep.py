@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,14 +15,11 @@ from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, Follower, Spee
 from tribodyn.dynamics.running_up.run_up import read_outputs
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray, Index, Mask
-
-if TYPE_CHECKING:
-    pass
 
 #: Mesh cycles of the figures of a motion that does not repeat.
 _IRREGULAR = 64
@@ -109,15 +106,13 @@ def speed_sweep(
     require_positive("mesh_frequency", frequency, "Hz")
     if frequency.ndim != 1 or np.any(np.diff(frequency) <= 0.0):
         raise InputError(
-            Problem(
-                what="the mesh frequencies do not rise",
-                where="argument mesh_frequency",
-                remedy="Sort them; the direction is the matter of directions",
-            )
+            "the mesh frequencies do not rise",
+            where="argument mesh_frequency",
+            remedy="Sort them; the direction is the matter of directions",
         )
     if not directions or any(each not in ("up", "down") for each in directions):
         raise InputError(
-            Problem(f"directions = {directions}", "argument directions", '"up", "down" or both')
+            f"directions = {directions}", where="argument directions", why='"up", "down" or both'
         )
     require_positive("teeth", teeth)
     require_positive("patience", patience)
@@ -328,9 +323,9 @@ class SpeedSweep(Record):
 
     mesh_frequency: Array = quantity("mesh_frequency", unit="Hz", axis=True)
     teeth: int = fact()
-    directions: tuple[str, ...]
-    signals: tuple[str, ...]
-    units: tuple[str, ...]
+    directions: tuple[str, ...] = quantity("direction", axis=True, name="direction")
+    signals: tuple[str, ...] = quantity("signal", axis=True, name="signal")
+    units: tuple[str, ...] = quantity("signal", axis=True, name="unit")
     mean: Array = quantity("direction", "mesh_frequency", "signal")
     rms: Array = quantity("direction", "mesh_frequency", "signal")
     peak_to_peak: Array = quantity("direction", "mesh_frequency", "signal")
@@ -344,7 +339,7 @@ class SpeedSweep(Record):
     velocity: Array = quantity("direction", "mesh_frequency", "coordinate", unit="m/s or rad/s")
     extra_force: Array = quantity("direction", "mesh_frequency", "coordinate", unit="N or N*m")
     jumps: tuple[Jump, ...]
-    names: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
     step_number: float
 
     @property
@@ -379,11 +374,9 @@ class SpeedSweep(Record):
         """
         if signal not in self.signals:
             raise InputError(
-                Problem(
-                    what=f'no signal "{signal}"',
-                    where="argument signal",
-                    why=f"There are {', '.join(self.signals)}",
-                )
+                f'no signal "{signal}"',
+                where="argument signal",
+                why=f"There are {', '.join(self.signals)}",
             )
         return self.signals.index(signal)
 
@@ -408,8 +401,5 @@ class SpeedSweep(Record):
         both = ("direction", "mesh_frequency", "multiplier")
         variables["multiplier_real"] = (both, self.floquet_multipliers.real, {"units": "1"})
         variables["multiplier_imaginary"] = (both, self.floquet_multipliers.imag, {"units": "1"})
-        coordinates["direction"] = list(self.directions)
         coordinates["speed"] = ("mesh_frequency", self.speed, {"units": "rad/s"})
-        coordinates["signal"], coordinates["coordinate"] = list(self.signals), list(self.names)
-        coordinates["unit"] = ("signal", list(self.units))
         return parts

@@ -6,14 +6,14 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import Statistics, march
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, Orbits, newton
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
-from tribodyn.dynamics.time.ensemble import fresh_moments
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
@@ -116,17 +116,12 @@ class SpeedFamily:
             for length in np.unique(periods[inside]):
                 lanes = np.flatnonzero(inside & (periods == length))
                 compiled, beat = self.compiled(int(group[0])), self.frequency[number[lanes]]
-                moments = fresh_moments(contacts, others, 0, lanes.size)
-                waves = np.zeros((compiled.grid.steps, 3, 0, 2))
+                statistics = Statistics.of(compiled, outputs, lanes.size)
                 march(
-                    compiled,
-                    1.0 / beat,
-                    state[lanes],
-                    int(length) or cycles,
-                    extra_force=extra[lanes],
-                    statistics=Statistics(outputs, waves, moments),
-                )
-                figures[:, :, lanes] = moments.reshape(-1, 5, lanes.size)
+                    compiled, 1.0 / beat, state[lanes], int(length) or cycles,
+                    extra_force=extra[lanes], statistics=statistics,
+                )  # fmt: skip
+                figures[:, :, lanes] = statistics.figures
         return figures
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.motion import compression
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.structure.load_friction import (
+from tribodyn.dynamics.equations.load_friction import (
     carried_load,
     friction_secant,
     push_with_friction,
 )
-from tribodyn.types import Array, Mask
+from tribodyn.dynamics.equations.motion import compression
+from tribodyn.dynamics.equations.nodes import lowest_of_each_law
+from tribodyn.types import Array
 
 #: Rounds in which the ramps of a force law open and close; each round goes down the law.
 #: The same number of rounds is enough for the friction that goes with the load.
@@ -22,7 +22,7 @@ _ROUNDS = 50
 def static_start(compiled: Compiled) -> Array:
     """State at rest under the mean loads, every contact on its driving flank."""
     nodes = compiled.nodes
-    kept = _lowest_of_each_law(nodes)
+    kept = lowest_of_each_law(nodes)
     carrying = nodes.stiffness
     position = _equilibrium(compiled, carrying)
     for _ in range(0 if kept.all() else _ROUNDS):
@@ -64,21 +64,3 @@ def _balance(compiled: Compiled, carrying: Array, push: Array) -> Array:
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
     matrix = stiffness * np.outer(scale, scale)
     return np.asarray(scale * np.linalg.lstsq(matrix, scale * force, rcond=1e-12)[0])
-
-
-def _lowest_of_each_law(nodes: Nodes) -> Mask:
-    """Tell which contacts do not share their compression with one that begins lower."""
-    count = nodes.stiffness.shape[2]
-    places = np.einsum("rs,rsj->j", nodes.weight, nodes.gap)
-    kept = np.ones(count, dtype=bool)
-    for j in range(count):
-        for i in range(count):
-            lower = (places[i], i) < (places[j], j)
-            if lower and nodes.stiffness[:, :, i].any() and _same_compression(nodes, i, j):
-                kept[j] = False
-    return kept
-
-
-def _same_compression(nodes: Nodes, i: int, j: int) -> bool:
-    pairs = (nodes.direction[:, :, (i, j)], nodes.error[:, :, (i, j)])
-    return all(np.array_equal(both[:, :, 0], both[:, :, 1]) for both in pairs)

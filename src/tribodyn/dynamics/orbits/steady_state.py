@@ -23,7 +23,7 @@ from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, Problem, warn
+from tribodyn.errors import InputError, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -112,11 +112,7 @@ def _whole_periods(periods: int | str) -> int | None:
         return None
     if isinstance(periods, str) or int(periods) != periods or periods < 1:
         raise InputError(
-            Problem(
-                what=f"periods = {periods!r}",
-                where="argument periods",
-                why='A whole number >= 1, or "auto"',
-            )
+            f"periods = {periods!r}", where="argument periods", why='A whole number >= 1, or "auto"'
         )
     return int(periods)
 

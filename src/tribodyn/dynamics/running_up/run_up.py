@@ -9,20 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
-from tribodyn.dynamics.running_up.run_up_march import CycleMarcher, Pace
+from tribodyn.dynamics.running_up.run_up_march import CycleMarcher, Pace, Samples
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, read_profile
 from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
-from tribodyn.dynamics.running_up.run_up_samples import Samples
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
-from tribodyn.dynamics.time.ensemble import LaneStatistics
+from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import (
     ComputationError,
     InputError,
-    Problem,
     quiet,
     require_positive,
 )
@@ -31,8 +30,6 @@ from tribodyn.types import Array
 
 #: Mesh cycles whose pace is found at a time.
 _CHUNK = 64
-#: Mean, mean square, minimum, maximum, share off the driving flank.
-_PLAIN = 5
 
 
 def run_up(
@@ -117,7 +114,7 @@ def run_up(
     path = read_profile(profile, duration)
     require_positive("teeth", teeth)
     if int(samples) != samples or samples < 2:
-        raise InputError(Problem(f"samples = {samples}", "argument samples", "Whole number >= 2"))
+        raise InputError(f"samples = {samples}", where="argument samples", why="Whole number >= 2")
     frequency, systems = systems_by_frequency(system)
     first = systems[0]
     tables = Tables(systems, int(samples), path.lowest, steps)
@@ -189,11 +186,9 @@ def read_outputs(outputs: Mapping[str, ArrayLike] | None, system: System) -> Arr
     for name, row in zip(outputs or {}, rows, strict=True):
         if row.shape != (2 * system.size,):
             raise InputError(
-                Problem(
-                    what=f"the output {name} has the shape {row.shape}",
-                    where="argument outputs",
-                    why=f"It is a row over positions and velocities, ({2 * system.size},)",
-                )
+                f"the output {name} has the shape {row.shape}",
+                where="argument outputs",
+                why=f"It is a row over positions and velocities, ({2 * system.size},)",
             )
     return np.array(rows) if rows else np.zeros((0, 2 * system.size))
 
@@ -205,10 +200,8 @@ def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
     turning = np.asarray(rotation, dtype=float)
     if turning.shape != (system.size,):
         raise InputError(
-            Problem(
-                what=f"rotation has the shape {turning.shape}, not ({system.size},)",
-                where="argument rotation",
-            )
+            f"rotation has the shape {turning.shape}, not ({system.size},)",
+            where="argument rotation",
         )
     return np.asarray(-np.asarray(system.mass) @ turning * (2.0 * np.pi / teeth))
 
@@ -266,22 +259,17 @@ def _statistics(
 ) -> CycleStatistics:
     time = path.time_at(np.arange(count + 1))
     period = np.diff(time)
-    rows = moments.reshape(-1, _PLAIN, count)
+    rows = moments.reshape(-1, PLAIN_MOMENTS, count)
     contacts, size = len(system.contacts), system.size
-
-    def figures(part: Array) -> LaneStatistics:
-        none = np.zeros((count, part.shape[0], 0), dtype=complex)
-        mean, square, low, high = (part[:, k].T for k in range(4))
-        return LaneStatistics(mean, np.sqrt(np.maximum(square, 0.0)), low, high, none)
 
     return CycleStatistics(
         time=0.5 * (time[1:] + time[:-1]),
         mesh_frequency=1.0 / period,
         rate=np.diff(path.frequency_at(time)) / period,
-        deflection=figures(rows[:contacts]),
-        contact_force=figures(rows[contacts : 2 * contacts]),
-        acceleration=figures(rows[2 * contacts : 2 * contacts + size]),
-        output=figures(rows[2 * contacts + size :]),
+        deflection=lane_statistics(rows[:contacts]),
+        contact_force=lane_statistics(rows[contacts : 2 * contacts]),
+        acceleration=lane_statistics(rows[2 * contacts : 2 * contacts + size]),
+        output=lane_statistics(rows[2 * contacts + size :]),
         contact_loss_share=rows[contacts : 2 * contacts, 4].T,
         extra_force=extras,
         steps=np.array(steps, dtype=np.int64),

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from tribodyn.dynamics._engine.method import RungeKutta4
+from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import unparted_step
+from tribodyn.dynamics.equations.motion import compression, forces, has_gap, sides
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
-from tribodyn.dynamics.time.ensemble import fresh_moments
-from tribodyn.errors import ComputationError, Problem
+from tribodyn.errors import ComputationError
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array
 
@@ -76,7 +80,7 @@ class CycleMarcher:
         self._rows: Array = np.zeros(0)
         #: Steps, number of a system, and by how much the rows of the next one differ.
         self._between: tuple[int, int, Array] = (0, 0, self._rows)
-        self._fresh = fresh_moments(self.contacts, self.size + len(outputs), 0, 1)[:, 0]
+        self._fresh = Statistics.of(first, outputs, 1).moments[:, 0]
 
     def weights(self, frequency: float) -> tuple[int, float]:
         """Which two neighbouring systems there are at a speed, and the part of the second."""
@@ -157,14 +161,11 @@ class CycleMarcher:
                 speed = np.nan_to_num(np.abs(record[last, self.size :, 0]) * weight, nan=np.inf)
             name = self.systems[0].names[int(np.argmax(speed))]
             raise ComputationError(
-                Problem(
-                    what=f"the motion grew beyond all bounds after {self.time:.5g} s, at "
-                    f"{1.0 / period:.5g} Hz, first of all {name}",
-                    why="The step is within the stability limit of the integrator, so the system "
-                    "itself is unstable there",
-                    remedy="Look for negative stiffness or damping, or friction that feeds energy "
-                    "in",
-                )
+                f"the motion grew beyond all bounds after {self.time:.5g} s, at "
+                f"{1.0 / period:.5g} Hz, first of all {name}",
+                why="The step is within the stability limit of the integrator, so the system "
+                "itself is unstable there",
+                remedy="Look for negative stiffness or damping, or friction that feeds energy in",
             )
         new = lane[0]
         if self.balance is not None:
@@ -174,3 +175,69 @@ class CycleMarcher:
             part = max(_SERVO, 1.0 / self.count)
             self.torque = self.torque - part * gained / period * force
         return new, moments, extra
+
+
+class Samples:
+    """Collects the samples of all mesh cycles."""
+
+    def __init__(
+        self, systems: Sequence[System], frequency: Array, cycles: int, samples: int
+    ) -> None:
+        system = systems[0]
+        self.system, self.size, self.several = system, system.size, frequency.size > 1
+        shape = (cycles, samples)
+        self.time, self.beat = np.empty(shape), np.empty(shape)
+        self.state = np.empty((*shape, 2 * system.size))
+        self.acceleration = np.empty((*shape, system.size))
+        self.deflection = np.empty((*shape, len(system.contacts)))
+        self.force = np.empty((*shape, len(system.contacts)))
+
+    def add(
+        self,
+        table: Table,
+        first: int,
+        time: Array,
+        frequency: Array,
+        states: Array,
+        weights: Sequence[tuple[int, float]],
+        extra: Sequence[Array],
+    ) -> None:
+        """Add some mesh cycles."""
+        part = slice(first, first + len(weights))
+        q, v = states[..., : self.size], states[..., self.size :]
+
+        rows = Nodes(*(self._rows(table, name, weights) for name in Nodes._fields))
+        dead = np.any([has_gap(node) for node in table.nodes], axis=0)
+        beat, pulled = frequency[..., None], np.array(extra)[:, None]
+        d = compression(rows, q)
+        moved = forces(self.system, rows, beat, q, v, side=sides(d, rows.gap, dead), extra=pulled)
+        self.time[part], self.beat[part], self.state[part] = time, frequency, states
+        self.acceleration[part] = moved.acceleration
+        self.deflection[part], self.force[part] = d, moved.contact
+
+    def _rows(self, table: Table, name: str, weights: Sequence[tuple[int, float]]) -> Array:
+        """Values at the samples, (cycles or 1, samples, ...)."""
+        own = [getattr(node, name)[table.kept, 0] for node in table.nodes]
+        if not self.several:
+            return np.asarray(own[0][None])
+        stacked = np.array(own)
+        left = np.array([number for number, _ in weights])
+        part = np.array([share for _, share in weights])
+        part = part.reshape(-1, *(1,) * (stacked.ndim - 1))
+        return np.asarray((1.0 - part) * stacked[left] + part * stacked[left + 1])
+
+    def series(self, outputs: Array) -> dict[str, Array]:
+        """Everything as series over time."""
+        cycles, samples = self.time.shape
+        flat = self.state.reshape(cycles * samples, -1)
+        return {
+            "time": self.time.reshape(-1),
+            "phase": np.arange(cycles * samples) / samples,
+            "mesh_frequency": self.beat.reshape(-1),
+            "position": flat[:, : self.size],
+            "velocity": flat[:, self.size :],
+            "acceleration": self.acceleration.reshape(-1, self.size),
+            "deflection": self.deflection.reshape(cycles * samples, -1),
+            "contact_force": self.force.reshape(cycles * samples, -1),
+            "output": flat @ outputs.T,
+        }

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array
 
 #: Pieces of a straight line that stand for a function of time.
@@ -54,13 +54,11 @@ class SpeedProfile:
         frequency = np.atleast_1d(np.asarray(self.mesh_frequency, dtype=float))
         if time.ndim != 1 or time.shape != frequency.shape or time.size < 2:
             raise InputError(
-                Problem(
-                    what=f"times of the shape {time.shape} and mesh frequencies of the shape "
-                    f"{frequency.shape}",
-                    where="argument profile",
-                    why="A profile has at least two corners, each with its time and frequency",
-                    remedy="For example ([0.0, 10.0], [100.0, 800.0])",
-                )
+                f"times of the shape {time.shape} and mesh frequencies of the shape "
+                f"{frequency.shape}",
+                where="argument profile",
+                why="A profile has at least two corners, each with its time and frequency",
+                remedy="For example ([0.0, 10.0], [100.0, 800.0])",
             )
         require_positive(
             "mesh_frequency", frequency, "Hz",
@@ -68,12 +66,10 @@ class SpeedProfile:
         )  # fmt: skip
         if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
             raise InputError(
-                Problem(
-                    what="the times of the profile do not rise",
-                    where="argument profile",
-                    why="Each corner comes after the one before",
-                    remedy="Give a sudden change of the speed a short time of its own",
-                )
+                "the times of the profile do not rise",
+                where="argument profile",
+                why="Each corner comes after the one before",
+                remedy="Give a sudden change of the speed a short time of its own",
             )
         time = time - time[0]
         mean = 0.5 * (frequency[1:] + frequency[:-1])
@@ -203,7 +199,7 @@ def speed_ramp(
     """
     require_positive("duration", duration, "s")
     if hold < 0.0:
-        raise InputError(Problem(f"hold = {hold:g} s", "argument hold", "A time is not negative"))
+        raise InputError(f"hold = {hold:g} s", where="argument hold", why="A time is not negative")
     corners = [(0.0, low), (duration, high)]
     if hold > 0.0:
         corners.append((duration + hold, high))
@@ -223,12 +219,10 @@ def read_profile(
     if callable(profile):
         if duration is None:
             raise InputError(
-                Problem(
-                    what="a function of time without its length",
-                    where="argument duration",
-                    why="A function does not tell when the run ends",
-                    remedy="Give duration in seconds",
-                )
+                "a function of time without its length",
+                where="argument duration",
+                why="A function does not tell when the run ends",
+                remedy="Give duration in seconds",
             )
         require_positive("duration", duration, "s")
         time = np.linspace(0.0, duration, _PIECES + 1)
@@ -237,10 +231,8 @@ def read_profile(
         corners, frequency = profile
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what="the profile is not a pair (time, mesh_frequency)",
-                where="argument profile",
-                remedy="Give ([0.0, 10.0], [100.0, 800.0]) or speed_ramp(100.0, 800.0, 10.0)",
-            )
+            "the profile is not a pair (time, mesh_frequency)",
+            where="argument profile",
+            remedy="Give ([0.0, 10.0], [100.0, 800.0]) or speed_ramp(100.0, 800.0, 10.0)",
         ) from error
     return SpeedProfile(np.asarray(corners, float), np.asarray(frequency, float))

@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.drawing import draw
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
 from tribodyn.dynamics.time.ensemble import LaneStatistics
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
@@ -83,8 +83,8 @@ class RunUp(Record):
     deflection: Array = quantity("time", "contact", unit="m")
     contact_force: Array = quantity("time", "contact", unit="N")
     output: Array = quantity("time", "output_name", unit="@output_unit")
-    names: tuple[str, ...]
-    output_names: tuple[str, ...]
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
+    output_names: tuple[str, ...] = quantity("output_name", axis=True, name="output_name")
     output_unit: str
     samples: int = fact()
     teeth: int = fact()
@@ -133,11 +133,7 @@ class RunUp(Record):
             return self.output[:, self.output_names.index(name)], self.output_unit
         known = ("deflection", "contact_force", *self.names, *self.output_names)
         raise InputError(
-            Problem(
-                what=f'no signal "{name}"',
-                where="argument signal",
-                why=f"There are {', '.join(known)}",
-            )
+            f'no signal "{name}"', where="argument signal", why=f"There are {', '.join(known)}"
         )
 
     def __repr__(self) -> str:
@@ -175,8 +171,6 @@ class RunUp(Record):
         variables["contact_loss_share"] = ((cycle, "contact"), loss, {"units": "1"})
         variables["extra_force"] = ((cycle, "coordinate"), force, {"units": "N or N*m"})
         coordinates["speed"] = ("time", self.speed, {"units": "rad/s"})
-        coordinates["coordinate"] = list(self.names)
-        coordinates["output_name"] = list(self.output_names)
         coordinates["cycle_time"] = (cycle, cycles.time, {"units": "s"})
         coordinates["cycle_mesh_frequency"] = (cycle, cycles.mesh_frequency, {"units": "Hz"})
         return parts

@@ -23,7 +23,7 @@ from tribodyn.dynamics.equations.program import (
 )
 from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array, Index
 
 #: ``omega_max * dt`` of the chosen steps; the damping that the integrator adds is then below 4e-5.
@@ -50,7 +50,7 @@ def systems_by_frequency(
     if isinstance(system, System):
         return np.zeros(1), (system,)
     if not system:
-        raise InputError(Problem(what="no system", where="argument system"))
+        raise InputError("no system", where="argument system")
     frequency = np.array(sorted(system), dtype=float)
     require_positive("mesh_frequency", frequency, "Hz")
     found = tuple(system[each] for each in sorted(system))
@@ -64,12 +64,10 @@ def systems_by_frequency(
         )
         if not same or (other.balance is None) != (first.balance is None):
             raise InputError(
-                Problem(
-                    what=f"the system at {at:g} Hz is another structure",
-                    where="argument system",
-                    why="Contacts, friction and loads may change with the speed; matrices, "
-                    "coordinates, the number of contacts and the balanced torque stay",
-                )
+                f"the system at {at:g} Hz is another structure",
+                where="argument system",
+                why="Contacts, friction and loads may change with the speed; matrices, "
+                "coordinates, the number of contacts and the balanced torque stay",
             )
     return frequency, found
 
@@ -121,27 +119,23 @@ class Tables:
         steps = self.fixed
         needed = self.rate / (LIMIT * lowest)
         if steps is not None and (steps < 1 or int(steps) != steps):
-            raise InputError(Problem(f"steps = {steps}", "argument steps", "A whole number >= 1"))
+            raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
         if steps is not None and needed > steps:
             raise InputError(
-                Problem(
-                    what=f"omega_max*dt = {LIMIT * needed / steps:.3f} with {steps} steps per mesh "
-                    f"cycle at {lowest:g} Hz and a fastest motion of {self.rate:.4g} rad/s",
-                    where="argument steps",
-                    why=f"The limit is {LIMIT}, and the lowest speed has the longest steps",
-                    remedy=f"Use at least {64 * int(np.ceil(needed / 64))} steps, or leave steps "
-                    "out: each speed then gets as many as it needs",
-                )
+                f"omega_max*dt = {LIMIT * needed / steps:.3f} with {steps} steps per mesh "
+                f"cycle at {lowest:g} Hz and a fastest motion of {self.rate:.4g} rad/s",
+                where="argument steps",
+                why=f"The limit is {LIMIT}, and the lowest speed has the longest steps",
+                remedy=f"Use at least {64 * int(np.ceil(needed / 64))} steps, or leave steps "
+                "out: each speed then gets as many as it needs",
             )
         if needed > _MOST:
             raise InputError(
-                Problem(
-                    what=f"{lowest:g} Hz needs {needed:.3g} steps per mesh cycle",
-                    where="argument profile",
-                    why=f"The fastest motion is {self.rate:.4g} rad/s; {_MOST} steps are the most",
-                    remedy=f"Begin at {self.rate / (LIMIT * _MOST):.3g} Hz or above; below it the "
-                    "load is carried statically",
-                )
+                f"{lowest:g} Hz needs {needed:.3g} steps per mesh cycle",
+                where="argument profile",
+                why=f"The fastest motion is {self.rate:.4g} rad/s; {_MOST} steps are the most",
+                remedy=f"Begin at {self.rate / (LIMIT * _MOST):.3g} Hz or above; below it the "
+                "load is carried statically",
             )
 
     def steps_at(self, frequency: float) -> int:
@@ -172,13 +166,11 @@ class Tables:
             )
         if any(not np.array_equal(each.code, programs[0].code) for each in programs):
             raise InputError(
-                Problem(
-                    what="the systems differ in which terms there are",
-                    where="argument system",
-                    why="Rows of neighbouring speeds are blended term by term",
-                    remedy="Give every speed the same kinds of contacts: a gap everywhere or "
-                    "nowhere, loads that vary over the mesh cycle everywhere or nowhere",
-                )
+                "the systems differ in which terms there are",
+                where="argument system",
+                why="Rows of neighbouring speeds are blended term by term",
+                remedy="Give every speed the same kinds of contacts: a gap everywhere or "
+                "nowhere, loads that vary over the mesh cycle everywhere or nowhere",
             )
         marks = np.arange(self.samples) / self.samples
         kept = np.abs(grid.left[:, None] - marks).argmin(axis=0)

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.structure.load_friction import LoadFriction
-from tribodyn.errors import InputError, Problem
+from tribodyn.dynamics.equations.system import LoadFriction, System
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -87,12 +86,10 @@ def _directions(names: tuple[str, ...]) -> dict[str, Array]:
     missing = [name for name in ("pinion_theta", "wheel_theta") if name not in names]
     if missing:
         raise InputError(
-            Problem(
-                what=f"no coordinate is named {missing[0]}",
-                where="argument system",
-                why=f"Friction has to find the gears among {', '.join(names)}",
-                remedy="Name the coordinates, or give LoadFriction to the system yourself",
-            )
+            f"no coordinate is named {missing[0]}",
+            where="argument system",
+            why=f"Friction has to find the gears among {', '.join(names)}",
+            remedy="Name the coordinates, or give LoadFriction to the system yourself",
         )
     unit = dict(zip(names, np.eye(len(names)), strict=True))
     nothing = np.zeros(len(names))

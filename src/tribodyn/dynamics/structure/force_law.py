@@ -14,25 +14,16 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import Contact
-from tribodyn.dynamics.structure.gear_pair import gear_contact
-from tribodyn.errors import InputError, Problem
+from tribodyn.dynamics.equations.system import Contact, Entry
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import MeshForceLaw, MeshFunctions
+    from tribodyn.mesh import MeshForceLaw
 
 
 T = TypeVar("T")
 MeshForce = Literal["stiffness", "tangent", "force-law"]
-
-
-def gear_contacts(
-    mesh: MeshFunctions, *, mesh_force: MeshForce = "stiffness", **options: Any
-) -> tuple[Contact, ...]:
-    """Build the contacts of one gear pair; all have the same compression."""
-    return carried(gear_contact(mesh, **options), mesh, mesh_force)
 
 
 def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ...]:
@@ -41,33 +32,31 @@ def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ..
         return (one,)
     if mesh_force == "tangent":
         tangent = _needed(getattr(mesh, "tangent_stiffness", None), "tangent stiffness")
-        spring = replace(one, stiffness=tangent, error=_sum_of(one.error, mesh.tangent_error))
+        spring = replace(one, stiffness=tangent, error=sum_of(one.error, mesh.tangent_error))
         return (replace(one, stiffness=0.0), replace(spring, damping=0.0))
     if mesh_force == "force-law":
         return law_contacts(one, _needed(getattr(mesh, "force_law", None), "force law"))
     raise InputError(
-        Problem(
-            what=f'mesh_force = "{mesh_force}"',
-            where="argument mesh_force",
-            why='"stiffness", "tangent" or "force-law"',
-        )
+        f'mesh_force = "{mesh_force}"',
+        where="argument mesh_force",
+        why='"stiffness", "tangent" or "force-law"',
     )
 
 
 def _needed(value: T | None, name: str) -> T:
     if value is None:
         raise InputError(
-            Problem(
-                what=f"this mesh has no {name}",
-                where="argument mesh_force",
-                why="It comes from a loaded tooth contact",
-                remedy='Take such a stiffness model, or mesh_force = "stiffness"',
-            )
+            f"this mesh has no {name}",
+            where="argument mesh_force",
+            why="It comes from a loaded tooth contact",
+            remedy='Take such a stiffness model, or mesh_force = "stiffness"',
         )
     return value
 
 
-def _sum_of(first: Entry, second: Callable[[Array], Array]) -> Callable[[Array], Array]:
+def sum_of(first: Entry, second: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    """Sum of an entry and a function of the mesh phase."""
+
     def both(phase: Array) -> Array:
         given = first(phase) if callable(first) else first
         return np.asarray(np.asarray(given, dtype=float) + second(phase))
@@ -111,24 +100,20 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     """
     if callable(contact.gap) or np.ndim(contact.gap):
         raise InputError(
-            Problem(
-                what="gap is no constant",
-                where="argument contact",
-                why="It is half of the play; the law says where each ramp begins",
-                remedy="Put what varies into the law",
-            )
+            "gap is no constant",
+            where="argument contact",
+            why="It is half of the play; the law says where each ramp begins",
+            remedy="Put what varies into the law",
         )
     half = float(np.asarray(contact.gap))
     first = float(law.knot_first_touch.min())
     if half + first < 0.0:
         raise InputError(
-            Problem(
-                what=f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
-                f"of the play is {1e6 * half:.4g} um",
-                where="argument backlash",
-                why="The teeth would be clamped between both flanks",
-                remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
-            )
+            f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
+            f"of the play is {1e6 * half:.4g} um",
+            where="argument backlash",
+            why="The teeth would be clamped between both flanks",
+            remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
         )
     lowest = law.lowest
     ramps = [

@@ -3,30 +3,93 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.equations.system import Entry, System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried
-from tribodyn.dynamics.structure.fzg12_mesh import BASE_RADIUS, RectangularMesh
 from tribodyn.dynamics.structure.gear_pair import (
     Driver,
     TorqueBalance,
     balance_direction,
+    row_of,
     torques,
     with_error_of,
 )
-from tribodyn.dynamics.structure.shafts import Body, GearMesh, assemble, row_of, shaft_chain
-from tribodyn.errors import InputError, Problem, require_between
+from tribodyn.dynamics.structure.shafts import Body, GearMesh, assemble, shaft_chain
+from tribodyn.errors import InputError, require_between
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
+
+
+_MODULE, _TEETH = 4.5e-3, (16, 24)
+_COSINE = float(np.cos(np.radians(20.0)))
+#: Base radii (pinion, wheel) of the test gears type A [m].
+BASE_RADIUS = tuple(0.5 * _MODULE * teeth * _COSINE for teeth in _TEETH)
+_PITCH = float(np.pi) * _MODULE * _COSINE
+_ANGLE = float(np.arccos(sum(BASE_RADIUS) / 91.5e-3))
+_LINE = 91.5e-3 * float(np.sin(_ANGLE))
+_PITCH_POINT = BASE_RADIUS[0] * float(np.tan(_ANGLE))
+#: Radius of curvature of the pinion where the path of contact begins on its side [m]: the tip
+#: circle of the wheel is that of centre distance 91.5 mm with shortened addendum.
+_BEGIN = 0.324239 * BASE_RADIUS[0]
+
+
+@dataclass(frozen=True)
+class RectangularMesh:
+    """Stiffness of one value while two pairs touch and of another while one does."""
+
+    single: float  #: [N/m]
+    double: float  #: [N/m]
+    duty: float = 1.0 / 3.0  #: part of the mesh cycle with two pairs [1]
+    friction_coefficient: float = 0.0  #: constant friction coefficient [1]
+    driver: Driver = "pinion"  #: which gear drives: contacts run away from its base tangent point
+
+    @property
+    def event_phases(self) -> tuple[float, ...]:
+        """Phases at which a pair enters, leaves or passes the pitch point."""
+        return tuple(sorted({0.0, self.duty, self._travelled(_PITCH_POINT) % 1.0}))
+
+    def stiffness(self, phase: Array) -> Array:
+        """Mesh stiffness."""
+        return np.where(np.asarray(phase) < self.duty, self.double, self.single)
+
+    def friction_sum(self, phase: Array) -> Array:
+        """Directed friction coefficient of all pairs, each with its share of the load."""
+        return np.asarray(sum(pull for pull, _ in self._pairs(phase)))
+
+    def friction_moment_pinion(self, phase: Array) -> Array:
+        """Friction moment on the pinion over the normal force."""
+        return np.asarray(sum(pull * lever for pull, lever in self._pairs(phase)))
+
+    def friction_moment_wheel(self, phase: Array) -> Array:
+        """Friction moment on the wheel over the normal force."""
+        return np.asarray(sum(pull * (_LINE - lever) for pull, lever in self._pairs(phase)))
+
+    def _travelled(self, lever: float) -> float:
+        """Base pitches that a contact has travelled when it is at a lever of the pinion."""
+        forward = (lever - _BEGIN) / _PITCH
+        return forward if self.driver == "pinion" else 1.0 + self.duty - forward
+
+    def _pairs(self, phase: Array) -> list[tuple[Array, Array]]:
+        """Pull and lever on the pinion of the pair that came last and of the one before."""
+        phases = np.asarray(phase, dtype=float)
+        both = phases < self.duty
+        found = []
+        for age in (0.0, 1.0):
+            travelled = phases + age
+            path = travelled if self.driver == "pinion" else 1.0 + self.duty - travelled
+            lever = _BEGIN + path * _PITCH
+            share = np.where(both, 0.5, 1.0 - age)
+            sense = np.sign(lever - _PITCH_POINT)
+            found.append((self.friction_coefficient * share * sense, lever))
+        return found
 
 
 _BODIES = ("shaft1", "wheel", "pinion", "shaft2")
@@ -102,18 +165,10 @@ def fzg12(
         Damping along the line of action [N*s/m].
     friction_coefficient : float
         Constant coefficient of friction; unused with a mesh [1].
-    backlash : float
-        Total play along the line of action [m]. Zero keeps the flanks together.
-    error : float or function
-        Displacement error taken off the compression [m].
-    driver : "pinion" or "wheel"
-        Which gear drives; shaft 1 with the wheel carries the motor.
-    torque_balance : "drive", "load" or "both"
-        Which torque is held when friction acts; the other one is found by the steady state.
-    damping_in_gap : bool
-        Keep the mesh damping in free flight.
+    backlash, error, driver, torque_balance, damping_in_gap
+        As :func:`spur6` takes them [m]; shaft 1 with the wheel carries the motor.
     mesh_force : "stiffness", "tangent" or "force-law"
-        How the teeth of a mesh carry, as in :func:`spur6`.
+        How the teeth of a mesh carry.
 
     Returns
     -------
@@ -214,10 +269,8 @@ def _refuse_directions(mesh: Any) -> None:
     """Refuse a mesh whose contacts have directions of their own."""
     if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
         raise InputError(
-            Problem(
-                what="the mesh has contact directions of its own",
-                where="argument mesh",
-                why="The shafts of this structure move in one plane, with levers of base circles",
-                remedy="Take spur6, or a mesh with base radii",
-            )
+            "the mesh has contact directions of its own",
+            where="argument mesh",
+            why="The shafts of this structure move in one plane, with levers of base circles",
+            remedy="Take spur6, or a mesh with base radii",
         )

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.structure.gear_pair import Driver
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.dynamics.equations.system import Contact, Entry, System
+from tribodyn.dynamics.structure.gear_pair import Driver, row_of
+from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
 
@@ -195,24 +194,6 @@ def shaft_chain(
     )
 
 
-def row_of(name: str, value: ArrayLike, count: int, unit: str, *, positive: bool = True) -> Array:
-    """Read one value for all discs, or one for each."""
-    array = np.asarray(value, dtype=float)
-    if array.shape not in ((), (count,)):
-        raise InputError(
-            Problem(
-                what=f"{name} has the shape {array.shape}",
-                where=f"argument {name}",
-                why=f"Give one value, or {count} of them",
-            )
-        )
-    if positive:
-        require_positive(name, array, unit)
-    else:
-        require_between(name, array, 0.0, np.inf, unit)
-    return np.broadcast_to(array, (count,)).astype(float)
-
-
 def _chain(springs: Array) -> Array:
     out = np.zeros((springs.size + 1, springs.size + 1))
     for i, spring in enumerate(springs):
@@ -264,11 +245,9 @@ def assemble(
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:
         raise InputError(
-            Problem(
-                what=f'two bodies have a coordinate "{doubled[0]}"',
-                where="argument bodies",
-                why="Each disc needs a name of its own",
-            )
+            f'two bodies have a coordinate "{doubled[0]}"',
+            where="argument bodies",
+            why="Each disc needs a name of its own",
         )
     force = np.zeros(len(names))
     for disc, value in torque.items():
@@ -300,9 +279,7 @@ def _diagonal(blocks: Sequence[Array]) -> Array:
 def _column(names: tuple[str, ...], disc: str, where: str) -> int:
     if f"{disc}_theta" not in names:
         known = ", ".join(name.removesuffix("_theta") for name in names if name.endswith("_theta"))
-        raise InputError(
-            Problem(what=f'there is no disc "{disc}"', where=where, remedy=f"Known: {known}")
-        )
+        raise InputError(f'there is no disc "{disc}"', where=where, remedy=f"Known: {known}")
     return names.index(f"{disc}_theta")
 
 
@@ -321,16 +298,10 @@ def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
     require_between("backlash", mesh.backlash, 0.0, np.inf, "m")
     require_between("lag", mesh.lag, 0.0, 1.0, "")
     if int(mesh.cycles) != mesh.cycles or mesh.cycles < 1:
-        raise InputError(
-            Problem(what=f"cycles = {mesh.cycles}", where="GearMesh.cycles", why="A whole number")
-        )
+        raise InputError(f"cycles = {mesh.cycles}", where="GearMesh.cycles", why="A whole number")
     if mesh.driver not in ("pinion", "wheel"):
         raise InputError(
-            Problem(
-                what=f'driver = "{mesh.driver}"',
-                where="GearMesh.driver",
-                why='"pinion" or "wheel"',
-            )
+            f'driver = "{mesh.driver}"', where="GearMesh.driver", why='"pinion" or "wheel"'
         )
     radii = row_of("base_radius", mesh.base_radius, 2, "m")
     along = np.array([np.cos(mesh.line_angle), np.sin(mesh.line_angle)])

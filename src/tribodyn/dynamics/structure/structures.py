@@ -12,8 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.dynamics.structure.fzg12 import fzg12
-from tribodyn.dynamics.structure.spur6 import spur6
-from tribodyn.dynamics.structure.torsional import torsional
+from tribodyn.dynamics.structure.gear_pair import spur6, torsional
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
 
 if TYPE_CHECKING:

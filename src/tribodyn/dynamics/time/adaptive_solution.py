@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, adaptive_engine
-from tribodyn.dynamics._engine.tolerance import Tolerance
+from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start, require_cycles
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
+from tribodyn.interrupt import in_threads
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
-
-if TYPE_CHECKING:
-    import xarray
-
 
 #: Steps of a mesh cycle for which room is made at first.
 _ROOM = 4096
 
 
-@dataclass(frozen=True)
-class AdaptiveSolution:
+@record
+class AdaptiveSolution(Record):
     """Motion of a system in accepted steps; call it with times for the motion between.
 
     Steps end at events of the mesh cycle and where a contact changes its side.
@@ -53,15 +49,15 @@ class AdaptiveSolution:
         Mean deviation of the entries between events from their polynomials, over their size [-].
     """
 
-    time: Array
-    phase: Array
+    time: Array = quantity("time", unit="s", axis=True)
+    phase: Array = quantity("time", unit="1", axis=True)
     state: Array
-    names: tuple[str, ...]
-    mesh_frequency: float
-    rtol: float
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
+    mesh_frequency: float = fact()
+    rtol: float = fact()
     atol: Array
-    rejections: int
-    crossings: int
+    rejections: int = fact()
+    crossings: int = fact()
     table_error: float
     _trail: Array = field(repr=False)
 
@@ -102,11 +98,9 @@ class AdaptiveSolution:
         outside = ~((given >= -1e-12 * self.time[-1]) & (given <= (1.0 + 1e-12) * self.time[-1]))
         if np.any(outside):
             raise InputError(
-                Problem(
-                    what=f"time = {given[outside].flat[0]:.6g} s",
-                    where="argument time",
-                    why=f"The motion goes from 0 to {self.time[-1]:.6g} s",
-                )
+                f"time = {given[outside].flat[0]:.6g} s",
+                where="argument time",
+                why=f"The motion goes from 0 to {self.time[-1]:.6g} s",
             )
         phase = given.reshape(-1) * self.mesh_frequency
         step = np.clip(np.searchsorted(self.phase, phase, side="right") - 1, 0, self.steps - 1)
@@ -124,33 +118,11 @@ class AdaptiveSolution:
             f"{self.crossings} crossings, rtol {self.rtol:.1e})"
         )
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the accepted steps as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``time`` and ``coordinate``.
-        """
-        import xarray
-
-        both = ("time", "coordinate")
-        data: dict[str, Any] = {
-            "position": (both, self.position, {"units": "m or rad"}),
-            "velocity": (both, self.velocity, {"units": "m/s or rad/s"}),
-        }
-        coords: dict[str, Any] = {
-            "time": ("time", self.time, {"units": "s"}),
-            "phase": ("time", self.phase, {"units": "1"}),
-            "coordinate": list(self.names),
-        }
-        attributes = {
-            "mesh_frequency": self.mesh_frequency,
-            "rtol": self.rtol,
-            "rejections": self.rejections,
-            "crossings": self.crossings,
-        }
-        return xarray.Dataset(data, coords, attributes)
+    def _parts(self) -> Parts:
+        parts, both = super()._parts(), ("time", "coordinate")
+        parts.variables["position"] = (both, self.position, {"units": "m or rad"})
+        parts.variables["velocity"] = (both, self.velocity, {"units": "m/s or rad/s"})
+        return parts
 
 
 def _hermite(parts: Array, h: Array, theta: Array) -> Array:
@@ -230,20 +202,28 @@ def solve_adaptive(
     engine = adaptive_engine(system, mesh_frequency, cycles, rtol=rtol, atol=atol)
     state = read_start(system, start)[None, :]
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
-    lane = AdaptiveLanes(engine, np.array([1.0 / mesh_frequency]), extra_force=extra[None, :])
+    n = system.size
+    lane = AdaptiveLanes(engine, np.array([1.0 / mesh_frequency]), extra[None, :])
+
+    def march(task: tuple[Array, Array, int]) -> Array:
+        state, trail, elapsed = task
+        return lane.march_block(0, state, 1, np.zeros(1), None, trail, elapsed)
+
     trails, room, counts = [], _ROOM, np.zeros(2, dtype=np.int64)
     for cycle in range(cycles):
-        memory = lane.memory.copy()
-        run = lane.march(state, 1, room=room, elapsed=cycle)
-        while run.steps > room:
-            room, lane.memory = 2 * run.steps, memory.copy()
-            run = lane.march(state, 1, room=room, elapsed=cycle)
-        run.trail[:, 0] += cycle
-        trails.append(run.trail)
-        counts += (run.rejections, run.crossings)
-        state = run.state
+        memory, begin = lane.memory.copy(), state
+        while True:
+            trail, state = np.zeros((room, 2 + 6 * n)), begin.copy()
+            # In a thread, so that an interruption ends it.
+            (report,) = in_threads(march, [(state, trail, cycle)], 1)
+            steps = int(report[8])
+            if steps <= room:
+                break
+            room, lane.memory = 2 * steps, memory.copy()
+        trail[:, 0] += cycle
+        trails.append(trail[:steps])
+        counts += report[1:3].astype(np.int64)
     trail = np.concatenate(trails)
-    n = system.size
     phase = np.append(trail[:, 0], float(cycles))
     return AdaptiveSolution(
         time=phase / mesh_frequency,

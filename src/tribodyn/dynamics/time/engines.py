@@ -1,30 +1,25 @@
-"""The engines by name: what they need to begin, and how they march lanes on.
-
-``ENGINES`` holds them under the names of case files; :func:`engine_of` also knows the shorter
-``method`` of :func:`~tribodyn.dynamics.simulate`.
-"""
+"""Engines by name: their options, what they need to begin, and how they march lanes on."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from types import MappingProxyType
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
-from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, adaptive_engine
-from tribodyn.dynamics._engine.blocks import BlockRecord, Statistics, march
+from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
+from tribodyn.dynamics._engine.blocks import BlockRecord, march
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
-from tribodyn.dynamics._engine.tolerance import Tolerance
+from tribodyn.dynamics._engine.statistics import RecordedLanes, Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, Member, compile_lanes
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.newmark import compile_newmark, newmark_law, newmark_method
-from tribodyn.dynamics.time.recorded import RecordedLanes, add_moments
-from tribodyn.errors import InputError, Problem
+from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
+from tribodyn.errors import InputError
 from tribodyn.interrupt import in_threads
+from tribodyn.model import Model, Registry, number
 from tribodyn.types import Array, Index
 
 #: Ways to march over time.
@@ -150,21 +145,13 @@ class AdaptiveMarcher:
     def _gather(
         self, member: Member, lanes: Index, record: Array, statistics: Statistics, cycles: int
     ) -> None:
-        setting, moments = self.setting, statistics.moments[:, lanes]
+        setting, moments = self.setting, np.ascontiguousarray(statistics.moments[:, lanes])
         recorded = RecordedLanes(
             member, self._compiled.grid, 1.0 / setting.frequency[lanes],
             setting.extra_force[lanes], self.scales[lanes], record,
         )  # fmt: skip
-        add_moments(recorded, statistics.outputs, statistics.waves, 1.0 / cycles, moments)
+        statistics._replace(moments=moments).add(recorded, 1.0 / cycles)
         statistics.moments[:, lanes] = moments
-
-
-class Engine(NamedTuple):
-    """One way to march over time."""
-
-    method: Method  #: its name as an argument
-    options: tuple[str, ...]  #: arguments that belong to it alone
-    prepare: Callable[..., Marcher]  #: of a :class:`Setting` and the options
 
 
 def _runge_kutta(setting: Setting) -> Marcher:
@@ -186,12 +173,7 @@ def _newmark(
     preset: str | None = None,
 ) -> Marcher:
     gamma, beta = newmark_law(gamma, beta, preset)
-    if isinstance(setting.systems, System) and setting.frequency.size == 1:
-        compiled = compile_newmark(
-            setting.systems, setting.frequency, setting.steps, gamma=gamma, beta=beta
-        )
-    else:
-        compiled = _any_step(setting)
+    compiled = _any_step(setting)
     period, parameters = 1.0 / setting.frequency, setting.parameters
     method = newmark_method(compiled, period, gamma, beta, parameters=parameters)
     return FixedMarcher(setting, compiled, method)
@@ -203,58 +185,121 @@ def _any_step(setting: Setting) -> Compiled:
     )
 
 
-#: Engines under their names in case files.
-ENGINES: Mapping[str, Engine] = MappingProxyType(
-    {
-        "runge-kutta-4": Engine("rk4", (), _runge_kutta),
-        "dormand-prince": Engine("dormand-prince", ("rtol", "atol"), _dormand_prince),
-        "newmark": Engine("newmark", ("gamma", "beta", "preset"), _newmark),
-    }
-)
+#: How each method begins, from a :class:`Setting` and the options that belong to it alone.
+_BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
+    "rk4": (_runge_kutta, ()),
+    "dormand-prince": (_dormand_prince, ("rtol", "atol")),
+    "newmark": (_newmark, ("gamma", "beta", "preset")),
+}
 
 
 def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
-    """Begin to march with the engine called ``method``; options of another are refused."""
-    engine = next((each for name, each in ENGINES.items() if method in (name, each.method)), None)
-    if engine is None:
+    """Begin to march with a method, or an engine of a case file; options of another are refused."""
+    name = ENGINES[method].method if method in ENGINES else method
+    if name not in _BEGIN:
         raise InputError(
-            Problem(
-                what=f'method = "{method}"',
-                where="argument method",
-                why="It is one of " + ", ".join(f'"{each.method}"' for each in ENGINES.values()),
-            )
+            f'method = "{method}"',
+            where="argument method",
+            why="It is one of " + ", ".join(f'"{each}"' for each in _BEGIN),
         )
-    given = {name: value for name, value in options.items() if value is not None}
-    for name in given:
-        owner = next(each.method for each in ENGINES.values() if name in each.options)
-        if owner != engine.method:
-            raise InputError(
-                Problem(
-                    what=f'{name} = {given[name]} with method = "{method}"',
-                    where=f"argument {name}",
-                    why=f'It belongs to "{owner}"',
-                    remedy=f'Leave it out, or give method = "{owner}"',
-                )
-            )
-    return engine.prepare(setting, **given)
+    begin, own = _BEGIN[name]
+    given = {option: value for option, value in options.items() if value is not None}
+    for option in (each for each in given if each not in own):
+        owner = next(each for each, (_, others) in _BEGIN.items() if option in others)
+        raise InputError(
+            f'{option} = {given[option]} with method = "{method}"',
+            where=f"argument {option}",
+            why=f'It belongs to "{owner}"',
+            remedy=f'Leave it out, or give method = "{owner}"',
+        )
+    return begin(setting, **given)
 
 
-def march_adaptive(
-    compiled: Compiled,
-    period: Array,
-    state: Array,
-    cycles: int,
-    *,
-    rtol: float = 1e-6,
-    atol: Tolerance | None = None,
-    extra_force: Array | None = None,
-    parameters: LaneParameters | None = None,
-    record: Array | None = None,
-    threads: int | None = None,
-) -> Array:
-    """March lanes of a compiled system in adaptive steps; returns their new state."""
-    frequency = 1.0 / np.asarray(period, dtype=float)
-    extra = np.zeros((frequency.size, compiled.system.size)) if extra_force is None else extra_force
-    setting = Setting(compiled.system, frequency, cycles, compiled.grid.steps, extra, parameters)
-    marcher = AdaptiveMarcher(setting, compiled, rtol, atol)
-    return marcher.march(state, cycles, record=record, threads=threads)
+@dataclass(frozen=True)
+class Engine(Model):
+    """A way to march over time.
+
+    Parameters
+    ----------
+    name : str
+        Name in a case file.
+    method : str
+        Its name in :func:`tribodyn.dynamics.simulate`.
+    options : mapping of str to Option or default
+        Its options; ``argument`` of each is the argument of that function.
+    meaning : str
+        One line for whoever chooses an engine.
+    papers : tuple of str
+        Keys of the bibliography of the package.
+    source : str
+        Where the engine comes from, of those without such a key.
+
+    Examples
+    --------
+    >>> ENGINES["newmark"].arguments({"gamma": 0.5, "beta": 0.25})
+    {'method': 'newmark', 'gamma': 0.5, 'beta': 0.25}
+    """
+
+    name: str
+    method: Method
+    options: Mapping[str, Any] = field(default_factory=dict)
+    meaning: str = ""
+    papers: tuple[str, ...] = ()
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        """Keep options and defaults apart."""
+        self.declare(self.options)
+
+    def arguments(self, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Arguments of :func:`tribodyn.dynamics.simulate`.
+
+        Parameters
+        ----------
+        options : mapping of str to object
+            Options of this engine.
+
+        Returns
+        -------
+        dict of str to object
+        """
+        named = {self.declared[name].argument or name: value for name, value in options.items()}
+        return {"method": self.method, **named}
+
+
+ENGINES: Registry[Engine] = Registry("engine", model=Engine, part="method")
+
+for _engine in (
+    Engine("runge-kutta-4", "rk4", meaning="steps of one length, of fourth order"),
+    Engine(
+        "dormand-prince",
+        "dormand-prince",
+        {
+            "relative_tolerance": number(
+                1e-6, 1e-12, 1e-2, "a double carries 15 digits", argument="rtol",
+                meaning="error of each state over its largest size so far", example="1e-6",
+            ),
+        },
+        "steps as long as a tolerance allows, of fifth order",
+        ("dormand-prince",),
+    ),
+    Engine(
+        "newmark",
+        "newmark",
+        {
+            "gamma": number(
+                0.5, 0.5, 1.0, "below 1/2 it feeds energy in, above 1/2 it damps",
+                meaning="weight of the acceleration at the end of a step in the velocity",
+                example="0.5",
+            ),
+            "beta": number(
+                0.25, 0.0, 0.5, "from constant to linear acceleration and beyond",
+                meaning="weight of the acceleration at the end of a step in the position",
+                example="0.25",
+            ),
+        },
+        "implicit steps of one length, of second order: average acceleration",
+        ("newmark",),
+    ),
+):  # fmt: skip
+    ENGINES.register(_engine.name)(_engine)

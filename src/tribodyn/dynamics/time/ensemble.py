@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import Statistics
-from tribodyn.dynamics._engine.tolerance import Tolerance
-from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics._engine.adaptive_engine import Tolerance
+from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS, Statistics
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, ComplexArray
-
-#: Mean, mean square, minimum, maximum, share off the driving flank; see the compiled statistics.
-_PLAIN = 5
 
 
 @dataclass(frozen=True)
@@ -84,13 +79,12 @@ class Ensemble:
         )
 
 
-def fresh_moments(contacts: int, others: int, harmonics: int, lanes: int) -> Array:
-    """Moments before the first step: zero, but minima and maxima at infinity."""
-    tall = np.zeros((2 * contacts, _PLAIN + 2 * harmonics, lanes))
-    short = np.zeros((others, _PLAIN, lanes))
-    for part in (tall, short):
-        part[:, 2], part[:, 3] = np.inf, -np.inf
-    return np.concatenate((tall.reshape(-1, lanes), short.reshape(-1, lanes)))
+def lane_statistics(rows: Array, harmonics: ComplexArray | None = None) -> LaneStatistics:
+    """Statistics of the moments (signals, 5 or more, lanes) of one kind of signal."""
+    none = np.zeros((rows.shape[2], rows.shape[0], 0), dtype=complex)
+    mean, square, low, high = (rows[:, k].T for k in range(4))
+    rms = np.sqrt(np.maximum(square, 0.0))
+    return LaneStatistics(mean, rms, low, high, none if harmonics is None else harmonics)
 
 
 def simulate_ensemble(
@@ -177,11 +171,9 @@ def simulate_ensemble(
     frequency = _frequencies(system, mesh_frequency, parameters)
     if not 0 <= averaged <= cycles:
         raise InputError(
-            Problem(
-                what=f"averaged = {averaged} with cycles = {cycles}",
-                where="argument averaged",
-                why="Statistics cover some of the last mesh cycles",
-            )
+            f"averaged = {averaged} with cycles = {cycles}",
+            where="argument averaged",
+            why="Statistics cover some of the last mesh cycles",
         )
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size
@@ -192,9 +184,7 @@ def simulate_ensemble(
     state = _states(start, lanes, size)
     compiled = marcher.compiled
     linear = np.zeros((0, 2 * size)) if outputs is None else np.asarray(outputs, float)
-    contacts = len(compiled.system.contacts)
-    moments = fresh_moments(contacts, size + len(linear), harmonics, lanes)
-    statistics = Statistics(linear, _waves(compiled, harmonics), moments)
+    statistics = Statistics.of(compiled, linear, lanes, harmonics)
     progress.start("Marching the ensemble", cycles)
     early = cycles - averaged
     for count, gathered, elapsed in ((early, None, 0), (averaged, statistics, early)):
@@ -204,7 +194,7 @@ def simulate_ensemble(
             )
             progress.advance(count)
     progress.finish()
-    return _collect(frequency, state, moments, contacts, size, harmonics, averaged)
+    return _collect(frequency, state, statistics, averaged)
 
 
 def _frequencies(
@@ -224,11 +214,9 @@ def _frequencies(
     if frequency.ndim != 1 or odd:
         name = odd[0] if odd else "mesh_frequency"
         raise InputError(
-            Problem(
-                what=f"{name} is for {counts[name]} lanes, others are for {lanes}",
-                where=f"argument {name}",
-                why="One for each lane, or one for all",
-            )
+            f"{name} is for {counts[name]} lanes, others are for {lanes}",
+            where=f"argument {name}",
+            why="One for each lane, or one for all",
         )
     return np.array(np.broadcast_to(frequency, (lanes,)))
 
@@ -239,52 +227,28 @@ def _states(start: tuple[ArrayLike, ArrayLike], lanes: int, size: int) -> Array:
         state = np.ascontiguousarray(np.concatenate(parts, axis=1))
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what="start is not a pair (position, velocity)",
-                where="argument start",
-                why=f"Each of the two has the shape ({size},) or ({lanes}, {size})",
-            )
+            "start is not a pair (position, velocity)",
+            where="argument start",
+            why=f"Each of the two has the shape ({size},) or ({lanes}, {size})",
         ) from error
     if state.shape != (lanes, 2 * size) or not np.all(np.isfinite(state)):
-        raise InputError(Problem(what="start holds NaN or infinity", where="argument start"))
+        raise InputError("start holds NaN or infinity", where="argument start")
     return state
 
 
-def _waves(compiled: Compiled, harmonics: int) -> Array:
-    angle = 2.0 * np.pi * compiled.nodes.phase[:, :, None] * np.arange(1, harmonics + 1)
-    return np.stack((np.cos(angle), np.sin(angle)), axis=-1)
-
-
-def _collect(
-    frequency: Array, state: Array, moments: Array, contacts: int, size: int, harmonics: int,
-    averaged: int,
-) -> Ensemble:  # fmt: skip
-    long = _PLAIN + 2 * harmonics
-    split = 2 * contacts * long
-    tall = moments[:split].reshape(2 * contacts, long, moments.shape[1])
-    short = moments[split:].reshape(-1, _PLAIN, moments.shape[1])
-    waves = 2.0 * (tall[:, _PLAIN::2] - 1j * tall[:, _PLAIN + 1 :: 2])
-
-    def statistics(rows: Array, amplitudes: NDArray[Any]) -> LaneStatistics:
-        return LaneStatistics(
-            mean=rows[:, 0].T,
-            rms=np.sqrt(rows[:, 1]).T,
-            minimum=rows[:, 2].T,
-            maximum=rows[:, 3].T,
-            harmonics=np.moveaxis(amplitudes, -1, 0),
-        )
-
-    def plain(rows: Array) -> LaneStatistics:
-        return statistics(rows, np.zeros((rows.shape[0], 0, rows.shape[2]), dtype=complex))
-
+def _collect(frequency: Array, state: Array, gathered: Statistics, averaged: int) -> Ensemble:
+    tall, short, size = gathered.of_contacts, gathered.others, state.shape[1] // 2
+    parts = 2.0 * (tall[:, PLAIN_MOMENTS::2] - 1j * tall[:, PLAIN_MOMENTS + 1 :: 2])
+    waves = np.asarray(np.moveaxis(parts, -1, 0), dtype=complex)
+    pressed, forces = slice(gathered.contacts), slice(gathered.contacts, None)
     return Ensemble(
         mesh_frequency=frequency,
         position=state[:, :size],
         velocity=state[:, size:],
-        deflection=statistics(tall[:contacts], waves[:contacts]),
-        contact_force=statistics(tall[contacts:], waves[contacts:]),
-        acceleration=plain(short[:size]),
-        output=plain(short[size:]),
-        contact_loss_share=tall[contacts:, 4].T,
+        deflection=lane_statistics(tall[pressed], waves[:, pressed]),
+        contact_force=lane_statistics(tall[forces], waves[:, forces]),
+        acceleration=lane_statistics(short[:size]),
+        output=lane_statistics(short[size:]),
+        contact_loss_share=tall[forces, 4].T,
         averaged=averaged,
     )

@@ -16,17 +16,14 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics._engine.method import Newmark
-from tribodyn.dynamics.equations.compiled import Compiled, Member, require_steps
+from tribodyn.dynamics.equations.compiled import Compiled, Member
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.step_limit import largest_rate
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array
 
 #: Named pairs (gamma, beta). "seed" is what a source prints as "lambda = beta = 0.5" if that is
@@ -54,56 +51,12 @@ def newmark_law(
     if preset not in NEWMARK_PRESETS or gamma is not None or beta is not None:
         beside = "" if gamma is None and beta is None else " with gamma or beta"
         raise InputError(
-            Problem(
-                what=f'preset = "{preset}"{beside}',
-                where="argument preset",
-                why="It names both parameters and is one of "
-                + ", ".join(f'"{name}"' for name in NEWMARK_PRESETS),
-            )
+            f'preset = "{preset}"{beside}',
+            where="argument preset",
+            why="It names both parameters and is one of "
+            + ", ".join(f'"{name}"' for name in NEWMARK_PRESETS),
         )
     return NEWMARK_PRESETS[preset]
-
-
-def compile_newmark(
-    system: System,
-    mesh_frequency: ArrayLike,
-    steps: int,
-    *,
-    gamma: float = 0.5,
-    beta: float = 0.25,
-) -> Compiled:
-    """Compile a system for :func:`march_newmark`: no step is too long for a stable scheme."""
-    require_positive("mesh_frequency", mesh_frequency, "Hz")
-    require_steps(steps)
-    grid, nodes, program = compile_system(system, int(steps))
-    slowest = float(np.min(np.asarray(mesh_frequency, dtype=float)))
-    number = largest_rate(system, nodes) * float(grid.width.max()) / slowest
-    compiled = Compiled(system, grid, nodes, program, number)
-    refuse_newmark(compiled, np.array([1.0 / slowest]), gamma, beta)
-    return compiled
-
-
-def march_newmark(
-    compiled: Compiled,
-    period: Array,
-    state: Array,
-    cycles: int,
-    *,
-    gamma: float = 0.5,
-    beta: float = 0.25,
-    tolerance: float = 1e-12,
-    extra_force: Array | None = None,
-    parameters: LaneParameters | None = None,
-    record: Array | None = None,
-    threads: int | None = None,
-) -> Array:
-    """March lanes by whole mesh cycles; returns their new state."""
-    period = np.asarray(period, dtype=float)
-    method = newmark_method(compiled, period, gamma, beta, tolerance, parameters)
-    return march(
-        compiled, period, state, cycles, method=method, extra_force=extra_force,
-        parameters=parameters, record=record, threads=threads,
-    )  # fmt: skip
 
 
 def newmark_method(
@@ -130,13 +83,10 @@ def refuse_newmark(
     """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
     if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
         raise InputError(
-            Problem(
-                what=f"gamma = {gamma:g}, beta = {beta:g}",
-                where="arguments gamma, beta",
-                why="With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no "
-                "meaning",
-                remedy="Average acceleration is gamma = 0.5, beta = 0.25",
-            )
+            f"gamma = {gamma:g}, beta = {beta:g}",
+            where="arguments gamma, beta",
+            why="With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no meaning",
+            remedy="Average acceleration is gamma = 0.5, beta = 0.25",
         )
     if 2.0 * beta >= gamma:
         return
@@ -182,13 +132,11 @@ def _refuse_step(
     if number > limit:
         needed = int(np.ceil(grid.steps * number / limit / 64.0)) * 64
         raise InputError(
-            Problem(
-                what=f"omega*dt = {number:.4g} with {grid.steps} steps per mesh cycle at "
-                f"{1.0 / period:g} Hz and a highest natural frequency of {rate:.4g} rad/s{who}",
-                where="argument steps",
-                why=f"With gamma = {gamma:g} and beta = {beta:g} the limit is "
-                f"1/sqrt(gamma/2 - beta) = {limit:.4g}; any step is stable only with 2 beta >= "
-                "gamma",
-                remedy=f"Use at least {needed} steps per mesh cycle, or gamma = 0.5, beta = 0.25",
-            )
+            f"omega*dt = {number:.4g} with {grid.steps} steps per mesh cycle at "
+            f"{1.0 / period:g} Hz and a highest natural frequency of {rate:.4g} rad/s{who}",
+            where="argument steps",
+            why=f"With gamma = {gamma:g} and beta = {beta:g} the limit is "
+            f"1/sqrt(gamma/2 - beta) = {limit:.4g}; any step is stable only with 2 beta >= "
+            "gamma",
+            remedy=f"Use at least {needed} steps per mesh cycle, or gamma = 0.5, beta = 0.25",
         )

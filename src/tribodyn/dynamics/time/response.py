@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.motion import forces, has_gap, sides, with_middles
-from tribodyn.dynamics.time.response_crossings import resample_crossings
-from tribodyn.types import Array, ComplexArray
-
-if TYPE_CHECKING:
-    import xarray
+from tribodyn.dynamics.equations.motion import (
+    Forces,
+    WithinSteps,
+    clearance,
+    forces,
+    has_gap,
+    sides,
+    with_middles,
+    within_steps,
+)
+from tribodyn.dynamics.equations.step_limit import LIMIT
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array, ComplexArray, Index, Mask
 
 
 @dataclass(frozen=True)
@@ -59,8 +66,8 @@ class FineSamples:
         return np.asarray(np.tensordot(self.weight, signal, axes=(0, 0)))
 
 
-@dataclass(frozen=True)
-class Response:
+@record
+class Response(Record):
     """Motion of a system over one periodic orbit or over time.
 
     Values are those at the left end of every step; at an event they are the values after it.
@@ -104,19 +111,19 @@ class Response:
         Mesh cycles after which the orbit repeats, at most ``periods``; 0 for a transient.
     """
 
-    time: Array
-    phase: Array
-    position: Array
-    velocity: Array
-    acceleration: Array
-    deflection: Array
-    contact_force: Array
-    names: tuple[str, ...]
-    mesh_frequency: float
-    periods: int
-    fine: FineSamples = field(repr=False)
-    step_number: float
-    error: float = float("nan")
+    time: Array = quantity("time", unit="s", axis=True)
+    phase: Array = quantity("time", unit="1", axis=True)
+    position: Array = quantity("time", "coordinate", unit="m or rad")
+    velocity: Array = quantity("time", "coordinate", unit="m/s or rad/s")
+    acceleration: Array = quantity("time", "coordinate", unit="m/s^2 or rad/s^2")
+    deflection: Array = quantity("time", "contact", unit="m")
+    contact_force: Array = quantity("time", "contact", unit="N")
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
+    mesh_frequency: float = fact()
+    periods: int = fact()
+    fine: FineSamples
+    step_number: float = fact(name="omega_max_dt")
+    error: float = fact(name="steady_state_error", default=float("nan"))
     converged: bool = False
     floquet_multipliers: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
     cycles_used: int = 0
@@ -160,37 +167,6 @@ class Response:
             f"{self.mesh_frequency:.6g} Hz, {self.position.shape[1]} coordinates, "
             f"{self.time.size} steps{state})"
         )
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the series as an :class:`xarray.Dataset` with units.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``time``, ``coordinate`` and ``contact``.
-        """
-        import xarray
-
-        coordinate, contact = ("time", "coordinate"), ("time", "contact")
-        data: dict[str, Any] = {
-            "position": (coordinate, self.position, {"units": "m or rad"}),
-            "velocity": (coordinate, self.velocity, {"units": "m/s or rad/s"}),
-            "acceleration": (coordinate, self.acceleration, {"units": "m/s^2 or rad/s^2"}),
-            "deflection": (contact, self.deflection, {"units": "m"}),
-            "contact_force": (contact, self.contact_force, {"units": "N"}),
-        }
-        coords: dict[str, Any] = {
-            "time": ("time", self.time, {"units": "s"}),
-            "phase": ("time", self.phase, {"units": "1"}),
-            "coordinate": list(self.names),
-        }
-        attributes = {
-            "mesh_frequency": self.mesh_frequency,
-            "periods": self.periods,
-            "steady_state_error": self.error,
-            "omega_max_dt": self.step_number,
-        }
-        return xarray.Dataset(data, coords, attributes)
 
 
 def build_response(
@@ -280,3 +256,110 @@ def _without_jumps(
         deflection=replaced(whole.deflection, new.forces.deflection),
         contact_force=replaced(whole.contact_force, new.forces.contact),
     )
+
+
+_HALVINGS = 48
+#: Contacts that cross nearer to each other, as parts of a step, cross together.
+_TOGETHER = 1e-9
+
+
+class Resampled(NamedTuple):
+    """Three samples of each of some steps, in place of those that they had."""
+
+    step: Index  #: numbers of the steps, counted from the beginning
+    phase: Array  #: [-]
+    weight: Array  #: [-]
+    position: Array  #: [m or rad, ...]
+    velocity: Array  #: [m or rad, ...]
+    forces: Forces
+
+
+def resample_crossings(
+    compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, sides: Array
+) -> Resampled | None:
+    """Sample steps in which a contact opens or closes, and a neighbour of each, anew."""
+    crossed = np.any(sides[:, 0] != sides[:, 1], axis=1)
+    if not crossed.any() or compiled.step_number > LIMIT:
+        return None
+    step, forward = _with_neighbours(crossed, compiled.grid.after_event)
+    parts = compiled.system, compiled.nodes, compiled.grid
+    points = WithinSteps(*parts, mesh_frequency, extra_force)
+    tau = _crossing(points, step, states[step], sides[step, 0], sides[step, 1])
+    kept = (tau > 1e-6) & (tau < 1.0 - 1e-6)
+    step, forward, tau = step[kept], forward[kept], tau[kept]
+    if step.size == 0:
+        return None
+    before, after = sides[step, 0], sides[step, 1]
+    middle = points.advance(step, np.zeros(step.size), tau, states[step], before)
+    grid = compiled.grid
+    at = np.concatenate((grid.left, [1.0]))[step % grid.steps]
+    whole = step // grid.steps
+    cut = whole + at + tau * grid.width[step % grid.steps]
+    first = np.where(forward, step, step - 1)
+    outer = grid.left[first % grid.steps]
+    end = whole + outer + grid.width[first % grid.steps] + grid.width[(first + 1) % grid.steps]
+    left = _part(points, step, (whole + outer, cut), (states[first], middle), before)
+    right = _part(points, step, (cut, end), (middle, states[first + 2]), after)
+    phase, q, v = (np.concatenate(pair) for pair in zip(left[:3], right[:3], strict=True))
+    joined = Forces(*(np.concatenate(pair) for pair in zip(left[3], right[3], strict=True)))
+    weight = np.multiply.outer(phase[:, 2] - phase[:, 0], [1.0, 4.0, 1.0])
+    weight *= grid.steps / (6.0 * sides.shape[0])
+    return Resampled(np.concatenate((first, first + 1)), phase, weight, q, v, joined)
+
+
+def _with_neighbours(crossed: Mask, after_event: Mask) -> tuple[Index, Mask]:
+    """Steps with a crossing that have a free neighbour, and whether it is the next one."""
+    count, steps = crossed.size, after_event.size
+    taken = crossed.copy()
+    chosen, forward = [], []
+    for step in np.flatnonzero(crossed):
+        following = step + 1
+        if following < count and not after_event[following % steps] and not taken[following]:
+            taken[following] = True
+            chosen.append(step)
+            forward.append(True)
+        elif step > 0 and not after_event[step % steps] and not taken[step - 1]:
+            taken[step - 1] = True
+            chosen.append(step)
+            forward.append(False)
+    return np.array(chosen, dtype=np.int64), np.array(forward, dtype=bool)
+
+
+def _crossing(points: WithinSteps, step: Index, state: Array, before: Array, after: Array) -> Array:
+    """Fraction of each step at which its contacts leave their sides; 0 if not one place."""
+    end = points.advance(step, np.zeros(step.size), np.ones(step.size), state, before)
+    (q0, v0), (q1, v1) = np.split(state, 2, axis=1), np.split(end, 2, axis=1)
+    h = points.duration(step)[:, None]
+
+    def distance(j: int, of: Index, tau: Array) -> Array:
+        """Clearance of one contact at fractions of the steps in which it crosses."""
+        t = tau[:, None]
+        q = (1.0 + 2.0 * t) * (1.0 - t) ** 2 * q0[of] + t**2 * (3.0 - 2.0 * t) * q1[of]
+        q = q + h[of] * t * (1.0 - t) * ((1.0 - t) * v0[of] - t * v1[of])
+        pressed, gap = points.contacts(step[of], tau, q, slice(j, j + 1))
+        return clearance(pressed[:, 0], gap[:, 0], before[of, j], after[of, j])
+
+    places = np.full(before.shape, np.nan)
+    for j in map(int, np.flatnonzero(np.any(before != after, axis=0))):
+        of = np.flatnonzero(before[:, j] != after[:, j])
+        low, high = np.zeros(of.size), np.ones(of.size)
+        beyond = distance(j, of, low) <= 0.0
+        for _ in range(_HALVINGS):
+            tau = 0.5 * (low + high)
+            inside = distance(j, of, tau) > 0.0
+            low, high = np.where(inside, tau, low), np.where(inside, high, tau)
+        places[of, j] = np.where(beyond, 0.0, low)
+    first, last = np.nanmin(places, axis=1), np.nanmax(places, axis=1)
+    return np.where(last - first < _TOGETHER, first, 0.0)
+
+
+def _part(
+    points: WithinSteps, step: Index, phase: tuple[Array, Array], ends: tuple[Array, Array],
+    side: Array,
+) -> tuple[Array, Array, Array, Forces]:  # fmt: skip
+    """Both ends and the middle of a part of two steps, on one side of the contacts."""
+    duration = (phase[1] - phase[0])[:, None] / points.beat
+    q, v = (item[:, 0] for item in with_middles(duration, np.stack(ends, axis=1)))
+    at = np.stack((phase[0], 0.5 * (phase[0] + phase[1]), phase[1]), axis=1)
+    number, tau = within_steps(points.grid, step // points.grid.steps, at)
+    return at, q, v, points.forces(number, tau, q, v, side[:, None])

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.tolerance import Tolerance
+from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.dynamics.time.response import Response, build_response
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.errors import InputError, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -24,19 +24,15 @@ def read_start(system: System, start: tuple[ArrayLike, ArrayLike]) -> Array:
         state = np.concatenate(parts)
     except (TypeError, ValueError) as error:
         raise InputError(
-            Problem(
-                what="start is not a pair (position, velocity)",
-                where="argument start",
-                why=f"Each of the two has the shape ({system.size},)",
-            )
+            "start is not a pair (position, velocity)",
+            where="argument start",
+            why=f"Each of the two has the shape ({system.size},)",
         ) from error
     if state.size != 2 * system.size or not np.all(np.isfinite(state)):
         raise InputError(
-            Problem(
-                what="start holds NaN or infinity, or is not a pair (position, velocity)",
-                where="argument start",
-                why=f"Each of the two has the shape ({system.size},)",
-            )
+            "start holds NaN or infinity, or is not a pair (position, velocity)",
+            where="argument start",
+            why=f"Each of the two has the shape ({system.size},)",
         )
     return state
 
@@ -44,9 +40,7 @@ def read_start(system: System, start: tuple[ArrayLike, ArrayLike]) -> Array:
 def require_cycles(cycles: int) -> None:
     """Raise :class:`InputError` unless ``cycles`` is a whole number of at least one."""
     if int(cycles) != cycles or cycles < 1:
-        raise InputError(
-            Problem(what=f"cycles = {cycles}", where="argument cycles", why="A whole number >= 1")
-        )
+        raise InputError(f"cycles = {cycles}", where="argument cycles", why="A whole number >= 1")
 
 
 def simulate(

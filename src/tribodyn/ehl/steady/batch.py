@@ -103,7 +103,7 @@ def solve_line_contacts(
     lubricant, effective_modulus : Lubricant, float [Pa]
         Oil and modulus of all contacts.
     nodes, method, domain, inlet, viscosity_law, compressible
-        As for :func:`solve_line_contact`.
+        As for :func:`solve_line_contact`; the domain in half widths of each contact [-].
     tolerance, flux_tolerance, film_tolerance
         As there.
     stiffness : bool

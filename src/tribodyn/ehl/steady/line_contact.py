@@ -178,7 +178,7 @@ def solve_line_contact_moes(
         Slope of ln(viscosity) over pressure; it sets the Hertz pressure
         ``L sqrt(M/2pi)/alpha``, on which Roelands' law and the density depend.
     compressible, domain, inlet, nodes, method, viscosity_law
-        As for :func:`solve_line_contact`.
+        As for :func:`solve_line_contact`; the domain in half widths [-].
     tolerance, flux_tolerance, film_tolerance, levels, start
         As there.
     profile : callable, optional

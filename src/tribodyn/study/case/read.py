@@ -184,7 +184,7 @@ normal_pressure_angle, driver, pinion, wheel.
     """
     data = _parse(text, name)
     if not data:
-        remedy = "Write a case to start from: tribodyn new my.toml --from fzg-roughness"
+        remedy = "Write a case to start from: tribodyn new my.toml"
         raise InputError(Problem("the file holds no values", name, "", remedy))
     _place_files(data, Path(name).parent)
     return Case(Source(name or "case", partial(key_lines, text)), **data)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from importlib.resources import files
 
 from tribodyn.model import Model, Option
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.section import Section, Table, section_at
 
 
 def case_keys() -> Iterator[tuple[str, Option, str]]:
@@ -48,6 +49,30 @@ def reference_tables() -> str:
         row = (f"`{name}`", symbol, spec.meaning, _limits(spec), default)
         lines.append("| " + " | ".join(row) + " |")
     return "\n".join(lines).strip() + "\n"
+
+
+def start_toml() -> str:
+    """Write a short case file of no particular gears: required keys and recommended models."""
+    text = files("tribodyn.study.case").joinpath("start.toml").read_text(encoding="utf-8")
+    lines: list[str] = []
+    section: type[Section] | None = Case
+    for line in text.splitlines():
+        pair, _, note = line.partition("  # ")
+        if line.startswith("["):
+            section = section_at(tuple(line.strip("[]").split(".")))
+        name = pair.partition(" = ")[0]
+        spec = section.spec(name) if section and not line.startswith("#") else None
+        if spec is not None:
+            # What a limit only guards against is no help to who fills in a value.
+            limits = "" if note or "guards against" in spec.origin else _choice_or_range(spec)
+            told = "; ".join(filter(None, (spec.meaning, limits, note)))
+            line = f"{pair:<34} # {f'{spec.symbol}: ' if spec.symbol else ''}{told}"
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def _choice_or_range(spec: Option) -> str:
+    return spec.allowed() if spec.names is not None or math.isfinite(spec.low) else ""
 
 
 def _limits(spec: Option) -> str:

@@ -30,8 +30,9 @@ if TYPE_CHECKING:
 _STEEL = 3e9
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
-#: Ratio of a given mass or inertia to that of the solid, or the inverse, that is a slip.
-_UNLIKELY = 3.0
+#: Ratio of a given mass or inertia to that of the solid, or the inverse, that is told: of a value
+#: that the document behind the case states for this gear, and of any other.
+_OF_SOURCE, _UNLIKELY = 3.0, 1.25
 #: What a gear weighs: key, unit shown, and how many of it make the SI unit.
 _INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
@@ -102,13 +103,22 @@ def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     solid = _solid(case, gear)
     for key, unit, factor in _INERTIAS:
         given, own = getattr(gear, key), getattr(solid, key)
-        if given is not None and not 1.0 / _UNLIKELY <= given / own <= _UNLIKELY:
+        most = _OF_SOURCE if _is_stated(case, name, key) else _UNLIKELY
+        if given is not None and not 1.0 / most <= given / own <= most:
             yield ModelWarning(
                 "mass-unlikely",
                 f"{name}: {key} = {given * factor:.4g} {unit}, {given / own:.3g} times that of the "
-                f"solid gear, {own * factor:.4g} {unit}. Check the unit, or whether it holds more "
-                "than the gear",
+                f"solid gear, {own * factor:.4g} {unit}. Check unit and value; a web or a hub "
+                f"explain a difference. Leave {key} out for the solid gear",
             )
+
+
+def _is_stated(case: Case, name: str, key: str) -> bool:
+    """Whether the document that the case began with states the value, for a gear of this shape."""
+    changed = changed_keys(case)
+    full = f"gears.{name}.{key}"
+    stated = case.stated.base.get("origin") and case.stated.base.get(full) is not None
+    return bool(stated) and not any(k in changed for k in (full, *body(name)))
 
 
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:

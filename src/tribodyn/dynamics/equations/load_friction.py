@@ -7,90 +7,21 @@ on the tooth force become one polynomial for each row of the table.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import Entry, read_events
-from tribodyn.errors import InputError, Problem, require_positive
+from tribodyn.dynamics.equations.system import LoadFriction, System
+from tribodyn.errors import InputError
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.equations.grid import RowEvaluator
     from tribodyn.dynamics.equations.nodes import Nodes
-    from tribodyn.dynamics.equations.system import System
 
 
 #: Phases at which a function tells how many coefficients it returns; no likely number of these.
 _PROBE = 37
-
-
-@dataclass(frozen=True)
-class LoadFriction:
-    """Friction whose coefficient follows the contact force.
-
-    Parameters
-    ----------
-    direction : (n,) array or function
-        Generalized force against which one newton of friction acts [1 or m]; a function takes
-        mesh phases (p,) and returns (p, n).
-    coefficients : float, (m,) array or function
-        ``c_0, c_1, ...`` of ``F/N = sum_k c_k x^k``, with the sign of sliding [1]; a function
-        returns (p, m).
-    load : float
-        Contact force at which ``x = 1`` [N].
-    contacts : tuple of int
-        Contacts whose forces add up to N; the ramps of one force law belong together.
-    limit : float
-        Largest ``x``: beyond it the coefficient stays as it is there [1].
-    events : tuple of float
-        Mesh phases at which an entry jumps, beside those of the contacts.
-
-    Raises
-    ------
-    InputError
-        If load or limit is not positive, no contact is named, or an event lies outside [0, 1).
-
-    Notes
-    -----
-    ``x = min(|N|/load, limit)``. The friction keeps the sign of N: while the back flank carries,
-    or a damper pulls, N is negative and the friction turns round with it, as that of
-    :class:`Contact` does.
-
-    Examples
-    --------
-    >>> LoadFriction(direction=[1.0, -1.0], coefficients=[0.05, 0.01, -0.002], load=1000.0)
-    LoadFriction(load=1000.0, contacts=(0,))
-    """
-
-    direction: Entry
-    coefficients: Entry
-    load: float
-    contacts: tuple[int, ...] = (0,)
-    limit: float = 4.0
-    events: tuple[float, ...] = (0.0,)
-
-    def __post_init__(self) -> None:
-        require_positive("load", self.load, "N")
-        require_positive("limit", self.limit, "")
-        object.__setattr__(self, "events", read_events(self.events, "LoadFriction.events"))
-        contacts = (self.contacts,) if isinstance(self.contacts, int) else self.contacts
-        numbers = tuple(int(contact) for contact in contacts)
-        if not numbers or min(numbers) < 0:
-            raise InputError(
-                Problem(
-                    what=f"contacts = {numbers}",
-                    where="LoadFriction.contacts",
-                    why="The friction follows the force of one contact or of several",
-                    remedy="Name them by their place in System.contacts, counted from 0",
-                )
-            )
-        object.__setattr__(self, "contacts", numbers)
-
-    def __repr__(self) -> str:
-        """One line."""
-        return f"LoadFriction(load={self.load}, contacts={self.contacts})"
 
 
 def coefficient_count(where: str, friction: LoadFriction) -> int:
@@ -103,11 +34,9 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
         shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())
     if len(shape) > 1 or 0 in shape:
         raise InputError(
-            Problem(
-                what=f"{where} gives the shape {values.shape}",
-                where=where,
-                why=f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases",
-            )
+            f"{where} gives the shape {values.shape}",
+            where=where,
+            why=f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases",
         )
     return int(shape[0]) if shape else 1
 
