@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
+from tribodyn.compiled import announced, source_digest
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.multigrid_levels import (
@@ -321,6 +321,6 @@ def _build(digest: str) -> Any:
     return multigrid_solve
 
 
-multigrid_solve = _build(
-    source_digest(Path(__file__).parent, (*SOURCES, "steady", "multigrid_levels", "multigrid"))
-)
+_FILES = (*SOURCES, "steady", "multigrid_levels", "multigrid")
+multigrid_solve = _build(source_digest(Path(__file__).parent, _FILES))
+multigrid_solve = announced(multigrid_solve, "the multigrid film solver", "half a minute")

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
+from tribodyn.compiled import announced, source_digest
 from tribodyn.ehl._kernel.elementary import BURIED, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import make_grid
 from tribodyn.ehl._kernel.inlet import cold_start, free_nodes
@@ -161,5 +161,5 @@ def _build_tangent(digest: str) -> Any:
 
 
 _DIGEST = source_digest(Path(__file__).parent, (*SOURCES, "steady"))
-newton_solve = _build(_DIGEST)
+newton_solve = announced(_build(_DIGEST), "the film solver", "one to two minutes")
 tangent_of_film = _build_tangent(_DIGEST)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
+from tribodyn.compiled import announced, source_digest
 from tribodyn.ehl._kernel.elementary import BURIED, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, influence
 from tribodyn.ehl._kernel.inlet import flooded_inlet
@@ -343,3 +343,4 @@ def _build(digest: str) -> Any:
 
 
 follow_contact = _build(source_digest(Path(__file__).parent, (*SOURCES, "transient")))
+follow_contact = announced(follow_contact, "the transient film solver", "one to two minutes")

@@ -158,7 +158,7 @@ def solve_line_contacts(
 
     size = columns[0].size
     table, solutions = np.empty((8, size)), np.empty(size, dtype=object)
-    progress.start("Solving oil films", size)
+    progress.start("Oil films", size)
     for index, (row, solution) in enumerate(_in_order(solve, size, threads)):
         table[:, index], solutions[index] = row, solution
         progress.advance()
