@@ -3,7 +3,7 @@
 | module | what it answers |
 | --- | --- |
 | `base` | what a law is given and what a law is |
-| `none`, `constant` | no friction, or the same everywhere |
+| `constant` | no friction, or the same everywhere |
 | `benedict_kelly`, `drozdov`, `misharin`, `odonoghue_cameron` | friction of discs, by formula |
 | `xu`, `ehl` | friction of an oil film, by regression or from the solved film |
 | `mixed_ehl`, `matsumoto` | film and asperities share the load |
@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.friction.benedict_kelly import benedict_kelly
-from tribodyn.friction.constant import constant
+from tribodyn.friction.constant import constant, none
 from tribodyn.friction.drozdov import drozdov
 from tribodyn.friction.ehl import ehl
 from tribodyn.friction.exponential import exponential
@@ -29,7 +29,6 @@ from tribodyn.friction.mesh_means.pitch_point import PitchPoint, pitch_point
 from tribodyn.friction.mesh_means.schlenk import schlenk
 from tribodyn.friction.misharin import misharin
 from tribodyn.friction.mixed_ehl import mixed_ehl
-from tribodyn.friction.none import none
 from tribodyn.friction.odonoghue_cameron import odonoghue_cameron
 from tribodyn.friction.xu import xu_2007
 
