@@ -104,8 +104,8 @@ def _compare(folder: Path, summary: Mapping[str, float], data: xarray.Dataset) -
 
     case = hashlib.sha256(read_bytes(folder / "case.toml", "case")).hexdigest()
     changed = ["case.toml"] if data.attrs.get("case", case) != case else []
-    told = {name: float(data.attrs[name]) for name in SUMMARY if name in data.attrs}
-    if told and told != summary:
+    told = {name: data.attrs.get(name, value) for name, value in summary.items()}
+    if told != summary or data.attrs.get("figures", len(summary)) != len(summary):
         changed.append("summary.json")
     if changed:
         why = "It was damaged or changed after it was written"
@@ -164,7 +164,8 @@ def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:
         facts["floquet_multipliers"] = real + 1j * imaginary
     response = build_response(
         compile_for(system, frequency, rows // periods), frequency, np.vstack(ends), extra,
-        error=float(told["steady_state_error"]), converged=bool(told["converged"]),
+        error=float(told["steady_state_error"]),
+        step_error=float(told.get("step_error", "nan")), converged=bool(told["converged"]),
         **{name: int(told[name]) for name in ("cycles_used", "search_cycles", "period")}, **facts,
     )  # fmt: skip
     return later(response, float(data["time"].values[0]))

@@ -160,6 +160,7 @@ def _facts(result: Result) -> dict[str, Any]:
         names = ("load", "limit", "fit_error")
         facts |= {f"friction_{name}": getattr(result.friction, name) for name in names}
     facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
+    facts["figures"] = len(result.summary())
     return {**facts, **result.summary()}
 
 
