@@ -108,8 +108,8 @@ def _compare(folder: Path, summary: Mapping[str, float], data: xarray.Dataset) -
     if told != summary or data.attrs.get("figures", len(summary)) != len(summary):
         changed.append("summary.json")
     if changed:
-        why = "It was damaged or changed after it was written"
-        raise InputError(f"{changed[0]} is not of this result", str(folder), why, _REMEDY)
+        why = f"{changed[0]} is of another, or was damaged or changed after it was written"
+        raise InputError("these files are of different results", str(folder), why, _REMEDY)
 
 
 def read_summary(folder: Path) -> dict[str, float]:
