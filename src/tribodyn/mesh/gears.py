@@ -38,6 +38,10 @@ class NoGears:
         return "no gear pair"
 
 
+#: What the gears of a table are; a :class:`NoGears` stands in for them where there are none.
+Gears = SpurPair
+
+
 @dataclass(frozen=True)
 class GearData:
     """The spur gears behind a mesh table; tables of other programs have none."""
