@@ -14,9 +14,7 @@ from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, Sp
 from tribodyn.types import Array
 
 #: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
-COORDINATES = (
-    "pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta",
-)  # fmt: skip
+COORDINATES = tuple(f"{gear}_{way}" for gear in ("pinion", "wheel") for way in ("x", "y", "theta"))
 
 
 class NoGears:
