@@ -222,10 +222,8 @@ def spur_pair(
         Module [m].
     normal_pressure_angle : float
         Pressure angle of the rack [rad], 10 to 30 degrees.
-    pinion_face_width : float
-        Width of the pinion's toothing [m].
-    wheel_face_width : float, optional
-        Width of the wheel's toothing [m]; that of the pinion by default.
+    pinion_face_width, wheel_face_width : float [m]
+        Widths of the toothings; that of the pinion by default.
     center_distance : float, optional
         Distance of the axes [m]; by default the one without backlash.
     pinion_profile_shift_coefficient, wheel_profile_shift_coefficient : float

@@ -82,8 +82,8 @@ class BasicRack:
 
         Parameters
         ----------
-        pressure_angle : float
-            Pressure angle of the rack [rad].
+        pressure_angle : float [rad]
+            Of the rack.
 
         Returns
         -------
@@ -98,8 +98,8 @@ class BasicRack:
 
         Parameters
         ----------
-        pressure_angle : float
-            Pressure angle of the rack [rad].
+        pressure_angle : float [rad]
+            Of the rack.
 
         Returns
         -------

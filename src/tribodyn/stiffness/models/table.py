@@ -29,10 +29,8 @@ def tabulated_stiffness(
 
     Parameters
     ----------
-    abscissa : array (m,) [unit]
-        Strictly increasing, at least two values.
-    stiffness : array (m,) [N/m]
-        Positive values.
+    abscissa, stiffness : array (m,) [unit], [N/m]
+        Strictly increasing, at least two values; positive values.
     at : array [unit]
         Where to evaluate; clipped to the table within rounding.
     name, unit : str
