@@ -21,7 +21,7 @@ from tribodyn.types import Array
 #: A number, an array over time, or a function of time.
 Series = ArrayLike | Callable[[Array], ArrayLike]
 
-_RAMP = "Begin and end a tooth engagement at 1 to 2 % of the load instead of zero"
+_RAMP = "Begin and end at 1 to 2 % of the load instead of zero"
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ def _time(time: ArrayLike) -> Array:
             + ("" if t.size < 2 else f", least step {np.min(np.diff(t)):.4g} s"),
             where="argument time",
             why="time must hold at least two finite instants that rise",
-            remedy="200 to 800 steps a mesh cycle, as numpy.linspace(0, duration, 401)",
+            remedy="200 to 800 steps over the time of contact, as numpy.linspace(0, duration, 401)",
         )
     return t
 

@@ -149,8 +149,8 @@ def solve_transient_line_contact(
     """Film of a line contact whose load, radius and speed change over time.
 
     Reynolds' equation with its squeeze term, elastic deflection and the load at every instant, on
-    one fixed grid. Second order in time (backward differences) and in space; 200 to 800 steps a
-    mesh cycle.
+    one fixed grid. Second order in time (backward differences) and in space; 200 to 800 steps
+    over the time of contact.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ def _require_options(
     effective_modulus: float, start: str, nodes: int, inlet: str, tolerance: float, keep_every: int
 ) -> None:
     require_positive("effective_modulus", effective_modulus, "Pa")
-    require_between("nodes", nodes, 65, 16385, remedy="257 to 513 nodes suit a mesh cycle")
+    require_between("nodes", nodes, 65, 16385, remedy="257 to 513 nodes suit most contacts")
     require_between("tolerance", tolerance, 1e-13, 1e-3)
     require_between("keep_every", keep_every, 0, 1e9)
     require_one_of("start", start, ("steady", "unloaded"))
