@@ -82,16 +82,10 @@ def envelope_spectrum(
 
     Parameters
     ----------
-    signal : (n,) array
-        Equally spaced samples, in any unit.
-    sampling_rate : float
-        Samples per second [Hz].
-    band : tuple of two float, optional
-        Lower and upper end of the band that carries the modulation [Hz].
-    window : str
-        Window of :func:`scipy.signal.get_window`.
-    unit : str
-        Unit of the signal, for display.
+    signal, sampling_rate, band
+        As :func:`envelope` takes them [Hz].
+    window, unit
+        As :func:`spectrum` takes them.
 
     Returns
     -------

@@ -49,15 +49,13 @@ def rms(samples: FineSamples, signal: Array) -> Array:
 
     Parameters
     ----------
-    samples : FineSamples
-        ``response.fine``.
-    signal : (3 * steps, ...) array
-        Signal in any unit.
+    samples, signal
+        As :func:`mean` takes them.
 
     Returns
     -------
     array
-        Shape ``signal.shape[1:]``, in the unit of the signal.
+        As :func:`mean` gives it.
 
     Examples
     --------
@@ -76,15 +74,13 @@ def alternating_rms(samples: FineSamples, signal: Array) -> Array:
 
     Parameters
     ----------
-    samples : FineSamples
-        ``response.fine``.
-    signal : (3 * steps, ...) array
-        Signal in any unit.
+    samples, signal
+        As :func:`mean` takes them.
 
     Returns
     -------
     array
-        Shape ``signal.shape[1:]``, in the unit of the signal.
+        As :func:`mean` gives it.
 
     Examples
     --------
@@ -135,8 +131,8 @@ def peak_to_peak(signal: Array) -> Array:
 
     Parameters
     ----------
-    signal : (3 * steps, ...) array
-        Signal on fine samples, in any unit.
+    signal
+        As :func:`extremes` takes it.
 
     Returns
     -------
@@ -157,10 +153,8 @@ def crest_factor(samples: FineSamples, signal: Array) -> Array:
 
     Parameters
     ----------
-    samples : FineSamples
-        ``response.fine``.
-    signal : (3 * steps, ...) array
-        Signal in any unit.
+    samples, signal
+        As :func:`mean` takes them.
 
     Returns
     -------

@@ -31,10 +31,8 @@ def order_map(
 
     Parameters
     ----------
-    signal : (n,) array
-        Signal over time, in any unit.
-    time : (n,) array
-        Time of each sample [s].
+    signal, time
+        As :func:`tribodyn.analysis.angular_resampling` takes them [s].
     rotation : (n,) array, optional
         Rotation of the shaft at each sample [rad], counted on without wrap.
     speed : float or (n,) array, optional

@@ -87,10 +87,8 @@ def sidebands(
 
     Parameters
     ----------
-    signal : (n,) array
-        Equally spaced samples, in any unit.
-    sampling_rate : float
-        Samples per second [Hz].
+    signal, sampling_rate
+        As :func:`tribodyn.analysis.spectrum` takes them [Hz].
     carrier : float
         Frequency of the carrier [Hz].
     modulation : float

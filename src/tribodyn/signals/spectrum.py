@@ -310,18 +310,14 @@ def zoom_spectrum(
 
     Parameters
     ----------
-    signal : (n,) array
-        Equally spaced samples, in any unit.
-    sampling_rate : float
-        Samples per second [Hz].
+    signal, sampling_rate
+        As :func:`spectrum` takes them [Hz].
     lowest, highest : float
         Ends of the band [Hz].
     points : int
         Number of lines.
-    window : str
-        Window of :func:`scipy.signal.get_window`.
-    unit : str
-        Unit of the signal, for display.
+    window, unit
+        As :func:`spectrum` takes them.
 
     Returns
     -------

@@ -16,8 +16,6 @@ import numpy as np
 from tribodyn.compiled import source_digest
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
-    JIT,
     Law,
     acceleration,
     first_contact,
@@ -50,6 +48,7 @@ from tribodyn.dynamics._engine.dormand_prince import (
 )
 from tribodyn.dynamics._engine.lanes import address
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
+from tribodyn.dynamics._engine.method import INNER, JIT, ONCE
 from tribodyn.dynamics._engine.phase_table import PhaseTable
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
@@ -156,7 +155,7 @@ def _leaves(lane: int, width: int, law: Law, w: Array) -> bool:
     return False
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _enclose(law: Law, cells: Cells, trial: Trial, room: Array, w: Array) -> tuple[float, float]:
     """Places of the step between which the first contact leaves its side; the far one 2 if none."""
     s, o, contacts = slots_of(law.code), adaptive_slots(law.code), law.code[1]
@@ -192,7 +191,7 @@ def _enclose(law: Law, cells: Cells, trial: Trial, room: Array, w: Array) -> tup
     return low, high
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _first_crossing(
     law: Law, cells: Cells, trial: Trial, room: Array, w: Array
 ) -> tuple[float, float]:
@@ -247,7 +246,7 @@ def _accept(lanes: Any, law: Law, w: Array) -> None:
         w[o.stage * width + item] = w[o.last * width + item]
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _advance_lane(
     law: Law, cells: Cells, segment: Trial, end: float, tolerance: Any, kept: Kept, point: int,
     shift: int, lane: int, room: Array, w: Array,
@@ -335,7 +334,8 @@ def _build(digest: str) -> Any:
         n, contacts, slots = s.n, s.contacts, s.end + o.end
         work = np.zeros(slots * (block + 1))
         aside = np.empty(table.constant.size + WIDTH * (contacts + 1))
-        aside[: table.constant.size] = table.constant
+        for column in range(table.constant.size):
+            aside[column] = table.constant[column]
         law = Law(code, address(program.reads), address(aside))
         room, w = address(aside[table.constant.size :]), address(work)
         single, atol = address(work[slots * block :]), address(atol_)

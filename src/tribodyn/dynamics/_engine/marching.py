@@ -14,8 +14,6 @@ from tribodyn.compiled import source_digest
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
-    JIT,
     Law,
     first_contact,
     is_dead_zone,
@@ -26,7 +24,16 @@ from tribodyn.dynamics._engine.contact_forces import (
 )
 from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
 from tribodyn.dynamics._engine.lanes import address, open_rows
-from tribodyn.dynamics._engine.method import accept, own_slots, prepare, restart, step
+from tribodyn.dynamics._engine.method import (
+    INNER,
+    JIT,
+    ONCE,
+    accept,
+    own_slots,
+    prepare,
+    restart,
+    step,
+)
 from tribodyn.dynamics._engine.moments import Gathered, gather, gather_parts
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.interrupt import STOPPED
@@ -61,7 +68,7 @@ def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> 
     raise TypeError("chosen by type where it is compiled")
 
 
-@overload(_rows_of_lane)
+@overload(_rows_of_lane, inline="always")
 def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-def]
     if not isinstance(law.types[2], types.BaseTuple):
         return lambda law, base, width, lane, gathered: (law, base)
@@ -80,14 +87,14 @@ def _moments_of(gathered: Any) -> Any:
     raise TypeError("chosen by type where it is compiled")
 
 
-@overload(_moments_of)
+@overload(_moments_of, inline="always")
 def _choose_moments(gathered):  # type: ignore[no-untyped-def]
     if isinstance(gathered, types.NoneType):
         return lambda gathered: (0, 0)
     return lambda gathered: (gathered.moments.size, 6 * gathered.harmonics)
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w: Array) -> None:
     """Fill the slots of all lanes: state, load and factors."""
     s = slots_of(code)
@@ -110,7 +117,7 @@ def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w:
             w[s.force_scale * width + lane] = load[lane, n + 5]
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def has_dead_zones(law: Law) -> bool:
     """Whether any contact has a dead zone."""
     here = first_contact(law, I64(0), I64(0))
@@ -146,7 +153,7 @@ def _build(digest: str) -> Any:
         share, again = program.width, program.restart
         law = Law(address(program.code), address(program.reads), open_rows(rows))
         s, n, columns, width = slots_of(law.code), law.code[0], law.code[2], len(lanes)
-        own, lasting = own_slots(method, law)
+        own, lasting, kinds = own_slots(method, law)
         slots = s.end + own
         # Slots of all lanes, those of one, rows of a part of a step, rows of one lane.
         work = np.zeros(slots * (width + 1) + 6 * columns)
@@ -162,7 +169,8 @@ def _build(digest: str) -> Any:
         for lane in range(width if own > 0 else 0):
             take_lane(lane, width, slots, w, single)
             alone, first = _rows_of_lane(law, I64(0), width, lane, room)
-            prepare(method, alone, first, period[lane], single)
+            for kind in range(kinds):
+                prepare(method, alone, first, period[lane], kind, single)
             put_lane(lane, width, s.end, slots, w, single)
         switching = has_dead_zones(law)
         keep = record.shape[0] > 0

@@ -16,7 +16,6 @@ import numpy as np
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
     Law,
     acceleration,
     compression,
@@ -27,6 +26,7 @@ from tribodyn.dynamics._engine.contact_forces import (
 )
 from tribodyn.dynamics._engine.crossing import row_within
 from tribodyn.dynamics._engine.lanes import greatest, least, load, store
+from tribodyn.dynamics._engine.method import INNER
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array
