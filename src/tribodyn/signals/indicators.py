@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.time.response import FineSamples, Response
+from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
 from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.recorded_signal import checked_signal
@@ -118,12 +118,7 @@ def extremes(signal: Array) -> tuple[Array, Array]:
     >>> round(float(high), 12)
     1.0
     """
-    left, middle, right = np.moveaxis(signal.reshape(-1, 3, *signal.shape[1:]), 1, 0)
-    slope, bend = right - left, left - 2.0 * middle + right
-    inside = np.abs(slope) < 2.0 * np.abs(bend)
-    vertex = np.where(inside, middle - slope**2 / (8.0 * np.where(inside, bend, 1.0)), middle)
-    values = np.concatenate((signal, vertex))
-    return values.min(axis=0), values.max(axis=0)
+    return sample_extremes(signal)
 
 
 def peak_to_peak(signal: Array) -> Array:

@@ -46,7 +46,7 @@ from tribodyn.dynamics._engine.dormand_prince import (
     set_scale,
     try_step,
 )
-from tribodyn.dynamics._engine.lanes import address
+from tribodyn.dynamics._engine.lanes import address, ahead
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
 from tribodyn.dynamics._engine.method import INNER, JIT, ONCE
 from tribodyn.dynamics._engine.phase_table import PhaseTable
@@ -337,8 +337,8 @@ def _build(digest: str) -> Any:
         for column in range(table.constant.size):
             aside[column] = table.constant[column]
         law = Law(code, address(program.reads), address(aside))
-        room, w = address(aside[table.constant.size :]), address(work)
-        single, atol = address(work[slots * block :]), address(atol_)
+        room, w = ahead(law.rows, table.constant.size), address(work)
+        single, atol = ahead(w, slots * block), address(atol_)
         cells = Cells(
             address(table.edge), address(table.degree), address(table.start),
             address(table.coefficients), address(table.varying), table.varying.size,

@@ -50,6 +50,16 @@ def address(typing: Any, array: Any) -> Any:
     return types.CPointer(array.dtype)(array), generate
 
 
+@intrinsic
+def ahead(typing: Any, place: Any, count: Any) -> Any:
+    """Address that many items after another."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.gep(arguments[0], [arguments[1]])
+
+    return place(place, types.intp), generate
+
+
 def _pointer(context: Any, builder: Any, kind: Any, array: Any, slot: Any, width: int) -> Any:
     data = array if isinstance(kind, types.CPointer) else _data(context, builder, kind, array)
     place = builder.gep(data, [builder.mul(slot, ir.Constant(slot.type, width))])

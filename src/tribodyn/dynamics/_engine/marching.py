@@ -23,7 +23,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
-from tribodyn.dynamics._engine.lanes import address, open_rows
+from tribodyn.dynamics._engine.lanes import address, ahead, open_rows
 from tribodyn.dynamics._engine.method import (
     INNER,
     JIT,
@@ -157,14 +157,16 @@ def _build(digest: str) -> Any:
         slots = s.end + own
         # Slots of all lanes, those of one, rows of a part of a step, rows of one lane.
         work = np.zeros(slots * (width + 1) + 6 * columns)
-        single, part = address(work[slots * width :]), address(work[slots * (width + 1) :])
-        w, room = address(work), address(work[slots * (width + 1) + 3 * columns :])
+        w = address(work)
+        single, part = ahead(w, slots * width), ahead(w, slots * (width + 1))
+        room = ahead(part, 3 * columns)
         # A list of the parts of a step, the search, moments of the lanes that were split, waves.
         listed = 1 + (most_splits(s.contacts) + 1) * (2 + s.contacts + 4 * n)
         most = listed + WIDTH * (s.contacts + 1)
         counts = _moments_of(gathered)
         kept = np.empty(most + counts[0] + counts[1])
-        parts, search = address(kept), address(kept[listed:])
+        parts = address(kept)
+        search, others = ahead(parts, listed), ahead(parts, most)
         set_up(width, law.code, period, load, state, w)
         for lane in range(width if own > 0 else 0):
             take_lane(lane, width, slots, w, single)
@@ -173,7 +175,7 @@ def _build(digest: str) -> Any:
                 prepare(method, alone, first, period[lane], kind, single)
             put_lane(lane, width, s.end, slots, w, single)
         switching = has_dead_zones(law)
-        keep = record.shape[0] > 0
+        keep, kept_states, states = record.shape[0] > 0, address(record), 2 * n * width
         point = 0
         for _cycle in range(cycles):
             for r in range(share.size):
@@ -187,9 +189,8 @@ def _build(digest: str) -> Any:
                         set_sides(lanes, law, base, I64(0), w)
                     restart(lanes, method, law, base, w)
                 if keep:
-                    for i in range(2 * n):
-                        for lane in range(width):
-                            record[point, i, lane] = w[i * width + lane]
+                    for item in range(states):
+                        kept_states[point * states + item] = w[item]
                 if not step(lanes, method, law, r, base, w):
                     return UNFOUND + point + 1
                 gone = I64(0)
@@ -214,13 +215,13 @@ def _build(digest: str) -> Any:
                         put_lane(lane, width, s.end, s.end + lasting, w, single)
                         if gathered is not None:
                             count = counts[0] // width
-                            mine = address(kept[most + lane * count :])
+                            mine = ahead(others, lane * count)
                             take_lane(lane, width, count, address(gathered.moments), mine)
                             gather_parts(
                                 alone, first, parts, whole, part, single, gathered.outputs,
                                 share[r] / cycles, address(gathered.waves),
                                 6 * gathered.harmonics * r, gathered.harmonics,
-                                address(kept[most + counts[0] :]), mine,
+                                ahead(others, counts[0]), mine,
                             )  # fmt: skip
                 if gathered is not None:
                     for lane in range(width):
@@ -235,11 +236,11 @@ def _build(digest: str) -> Any:
                     for lane in range(width if gone != 0 else 0):
                         if (gone >> lane) & 1:
                             count = counts[0] // width
-                            mine = address(kept[most + lane * count :])
+                            mine = ahead(others, lane * count)
                             put_lane(lane, width, I64(0), count, moments, mine)
                 accept(lanes, method, law, w)
                 point += 1
-            for item in range(2 * n * width):
+            for item in range(states):
                 if not np.isfinite(w[item]):
                     return point
         # Addresses hold only as long as their owners are in use.
@@ -248,9 +249,8 @@ def _build(digest: str) -> Any:
             for i in range(2 * n):
                 state[lane, i] = w[i * width + lane]
         if keep:
-            for i in range(2 * n):
-                for lane in range(width):
-                    record[point, i, lane] = w[i * width + lane]
+            for item in range(states):
+                kept_states[point * states + item] = w[item]
         return -1
 
     return march_block

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import (
@@ -118,8 +119,8 @@ class Tables:
     def _refuse(self, lowest: float) -> None:
         steps = self.fixed
         needed = self.rate / (LIMIT * lowest)
-        if steps is not None and (steps < 1 or int(steps) != steps):
-            raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
+        if steps is not None:
+            require_whole("steps", steps)
         if steps is not None and needed > steps:
             raise InputError(
                 f"omega_max*dt = {LIMIT * needed / steps:.3f} with {steps} steps per mesh "
