@@ -7,13 +7,11 @@ is repeated up to there, the contact changes its side, and the motion goes on.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     Law,
@@ -48,16 +46,11 @@ from tribodyn.dynamics._engine.dormand_prince import (
 )
 from tribodyn.dynamics._engine.lanes import address, ahead
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
-from tribodyn.dynamics._engine.method import INNER, JIT, ONCE
+from tribodyn.dynamics._engine.method import INNER, JIT, ONCE, kernel_digest
 from tribodyn.dynamics._engine.phase_table import PhaseTable
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "lanes", "contact_forces", "method", "crossing", "dormand_prince", "marching", "adaptive",
-    "../equations/program", "../equations/motion", "../equations/divergence",
-)  # fmt: skip
 #: Changes of side of one lane within this much mesh phase; more is chatter, and is reported.
 MAX_CHANGES, CHATTER = 64, 1e-6
 #: Narrowest step in phase that may be rejected.
@@ -339,10 +332,9 @@ def _build(digest: str) -> Any:
         law = Law(code, address(program.reads), address(aside))
         room, w = ahead(law.rows, table.constant.size), address(work)
         single, atol = ahead(w, slots * block), address(atol_)
-        cells = Cells(
-            address(table.edge), address(table.degree), address(table.start),
-            address(table.coefficients), address(table.varying), table.varying.size,
-        )  # fmt: skip
+        edge, degree, start = address(table.edge), address(table.degree), address(table.start)
+        coefficients, varying = address(table.coefficients), address(table.varying)
+        cells = Cells(edge, degree, start, coefficients, varying, table.varying.size)
         set_up(block, code, period, load_, state, w)
         for lane in range(block):
             w[o.period * block + lane] = period[lane]
@@ -440,4 +432,4 @@ def _build(digest: str) -> Any:
     return march_adaptive_block
 
 
-march_adaptive_block = _build(source_digest(Path(__file__).parent, _SOURCES))
+march_adaptive_block = _build(kernel_digest())

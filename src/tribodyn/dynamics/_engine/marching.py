@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numba as nb
@@ -10,7 +9,6 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from tribodyn.compiled import source_digest
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -29,6 +27,7 @@ from tribodyn.dynamics._engine.method import (
     JIT,
     ONCE,
     accept,
+    kernel_digest,
     own_slots,
     prepare,
     restart,
@@ -39,11 +38,6 @@ from tribodyn.dynamics.equations.program import Program
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "lanes", "contact_forces", "method", "runge_kutta", "newmark", "crossing", "statistics",
-    "moments", "marching", "../equations/program", "../equations/motion", "../equations/divergence",
-)  # fmt: skip
 #: What :func:`march_block` returns from here on tells of a step that comes to no end, and of one
 #: whose forces were not found.
 UNPARTED, UNFOUND = 1 << 40, 1 << 50
@@ -217,21 +211,21 @@ def _build(digest: str) -> Any:
                             count = counts[0] // width
                             mine = ahead(others, lane * count)
                             take_lane(lane, width, count, address(gathered.moments), mine)
+                            waves, number = address(gathered.waves), gathered.harmonics
+                            own_sums = Gathered(gathered.outputs, waves, number, mine)
+                            weight, wave = share[r] / cycles, 6 * number * r
+                            near = ahead(others, counts[0])
                             gather_parts(
-                                alone, first, parts, whole, part, single, gathered.outputs,
-                                share[r] / cycles, address(gathered.waves),
-                                6 * gathered.harmonics * r, gathered.harmonics,
-                                ahead(others, counts[0]), mine,
+                                alone, first, parts, whole, part, weight, wave, near, own_sums,
+                                single,
                             )  # fmt: skip
                 if gathered is not None:
                     for lane in range(width):
                         w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
-                    moments = address(gathered.moments)
-                    gather(
-                        lanes, law, base, switching, w, gathered.outputs, share[r] / cycles,
-                        address(gathered.waves), 6 * gathered.harmonics * r, gathered.harmonics,
-                        moments,
-                    )  # fmt: skip
+                    moments, number = address(gathered.moments), gathered.harmonics
+                    sums = Gathered(gathered.outputs, address(gathered.waves), number, moments)
+                    weight, wave = share[r] / cycles, 6 * number * r
+                    gather(lanes, law, base, switching, weight, wave, sums, w)
                     # The whole step was added to lanes that were split: their own moments instead.
                     for lane in range(width if gone != 0 else 0):
                         if (gone >> lane) & 1:
@@ -256,4 +250,4 @@ def _build(digest: str) -> Any:
     return march_block
 
 
-march_block = _build(source_digest(Path(__file__).parent, _SOURCES))
+march_block = _build(kernel_digest())

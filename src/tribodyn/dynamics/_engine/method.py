@@ -9,12 +9,21 @@ begin where those of the law end.
 from __future__ import annotations
 
 import inspect
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.compiled import source_digest
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.types import Array, Index
+
+
+def kernel_digest() -> str:
+    """Digest of every file whose code may end up in a compiled kernel."""
+    folder = Path(__file__).parent
+    law = (f"../equations/{name}" for name in ("program", "motion", "divergence"))
+    return source_digest(folder, [*sorted(path.stem for path in folder.glob("*.py")), *law])
 
 
 class RungeKutta4(NamedTuple):

@@ -131,9 +131,8 @@ def probable_cause(
 ) -> tuple[str, str]:
     """Look for what can make a motion grow."""
     stiff, damp = factors[:2]
-    for kind, entry, factor, unit in (
-        ("stiffness", nodes.stiffness, stiff, "N/m"), ("damping", nodes.damping, damp, "N*s/m"),
-    ):  # fmt: skip
+    spring, damper = ("stiffness", stiff, "N/m"), ("damping", damp, "N*s/m")
+    for (kind, factor, unit), entry in ((spring, nodes.stiffness), (damper, nodes.damping)):
         values = factor * entry
         if values.size and values.min() < 0.0:
             row, node, j = np.unravel_index(int(values.argmin()), values.shape)
@@ -142,10 +141,10 @@ def probable_cause(
                 f"phase {nodes.phase[row, node]:.4g}",
                 f"Look for a wrong sign in contacts[{j}].{kind}",
             )
-    spring, damper, push = _mean_matrices(system, nodes, factors)
+    stiffness, damping, push = _mean_matrices(system, nodes, factors)
     checks = (
-        ("stiffness", spring, np.asarray(system.stiffness)),
-        ("damping", damper, np.asarray(system.damping)),
+        ("stiffness", stiffness, np.asarray(system.stiffness)),
+        ("damping", damping, np.asarray(system.damping)),
     )
     for kind, total, own in checks:
         found = _negative_direction(total, system)
@@ -159,7 +158,7 @@ def probable_cause(
     if np.abs(push).max(initial=0.0) > 0.0:
         rub_spring, rub_damper = push
         growth, still = (
-            _growth(mass, spring + part * rub_spring, damper + part * rub_damper)
+            _growth(mass, stiffness + part * rub_spring, damping + part * rub_damper)
             for part in (1.0, 0.0)
         )
         if growth > max(10.0 * still, _ROUNDING):
