@@ -16,7 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribodyn.cases import cases, load_case, run
+    from tribodyn.cases import cases, load_case, load_result, run
     from tribodyn.errors import ComputationError, InputError, ModelWarning
     from tribodyn.study import (
         Case,
@@ -49,6 +49,7 @@ __all__ = [
     "film_over_operation",
     "harris_map",
     "load_case",
+    "load_result",
     "loaded_contact",
     "natural_modes",
     "optimize_tip_relief",
@@ -69,6 +70,7 @@ _HOMES = {
     "film_over_operation": "study",
     "harris_map": "study",
     "load_case": "cases",
+    "load_result": "cases",
     "loaded_contact": "study",
     "natural_modes": "study",
     "optimize_tip_relief": "study",

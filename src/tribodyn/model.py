@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Names = Callable[[], list[str]]
 
-#: The default of an option that must be given.
+#: The default of an option that must be given, and what no options are.
 REQUIRED: Any = ...
+NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)

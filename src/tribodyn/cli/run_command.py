@@ -21,6 +21,7 @@ def run(
     force: Annotated[bool, Parameter(negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
     open_: Annotated[bool, Parameter(name="--open", negative="")] = False,
+    csv: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Compute a case; write its report and its data into a new directory.
@@ -39,6 +40,8 @@ def run(
         Leave the table of values out; warnings and the place of the report are still told.
     open_ : bool
         Show the report in the web browser.
+    csv : bool
+        Write the motion over the time as response.csv as well.
     json : bool
         Write the summary as one flat JSON object in SI to stdout.
     """
@@ -54,8 +57,8 @@ def run(
         from tribodyn.study.pipeline.run import run as compute
 
         result = compute(ready, progress)
-        progress.start("writing the report")
-        result.save(target, force=force)
+        progress.start("Report")
+        result.save(target, force=force, csv=csv)
         progress.finish()
     if json:
         say_json(result.summary())

@@ -29,12 +29,13 @@ from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import blok_flash_temperature
 from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.traction.newtonian import newtonian_shear_stress
-from tribodyn.ehl.traction.ree_eyring import ree_eyring_shear_stress
-from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.shear_models import (
+    SHEAR_MODELS,
+    newtonian_shear_stress,
+    ree_eyring_shear_stress,
+)
 from tribodyn.ehl.traction.traction import Traction, film_traction
-from tribodyn.ehl.transient.transient import solve_transient_line_contact
-from tribodyn.ehl.transient.transient_result import TransientLineContact
+from tribodyn.ehl.transient.transient import TransientLineContact, solve_transient_line_contact
 
 __all__ = [
     "FILM_MODELS",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.friction.benedict_kelly import benedict_kelly
-from tribodyn.friction.constant import constant
+from tribodyn.friction.constant import constant, none
 from tribodyn.friction.ehl import ehl
-from tribodyn.friction.none import none
 from tribodyn.friction.xu import xu_2007
 
 __all__ = [

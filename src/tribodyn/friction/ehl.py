@@ -11,8 +11,7 @@ from tribodyn.ehl.traction.film_temperature import (
     thermal_oil,
 )
 from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
-from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS
 from tribodyn.ehl.traction.traction import FilmShear
 from tribodyn.errors import InputError, require_positive, warn
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact

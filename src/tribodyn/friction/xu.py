@@ -2,13 +2,71 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.checks import positive
+from tribodyn.errors import InputError, require_between, warn
 from tribodyn.friction.base import LAWS, TribologicalContact
-from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.types import Array
+
+
+class Range(NamedTuple):
+    """A quantity with the range in which a law was fitted."""
+
+    name: str  #: name of the quantity
+    value: Array  #: value in any unit, named below
+    low: float
+    high: float
+    unit: str = ""  #: unit of value and limits
+
+
+def warn_outside(law: str, ranges: Iterable[Range], remedy: str) -> None:
+    """Warn once, naming every quantity outside of its range with all that it runs through.
+
+    Parameters
+    ----------
+    law : str
+        Name of the law.
+    ranges : iterable of Range
+        Quantities to look at.
+    remedy : str
+        What the user can do.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``friction-range``.
+
+    Source: the range that each law states.
+
+    Examples
+    --------
+    >>> warn_outside("xu-2007", [Range("hertz_pressure", np.array(1.0), 0.5, 2.5, "GPa")], "")
+    """
+    faults = [_told(quantity) for quantity in ranges if _leaves(quantity)]
+    if faults:
+        warn("friction-range", f"{law}: {'; '.join(faults)}. {remedy}", stacklevel=3)
+
+
+def _leaves(quantity: Range) -> bool:
+    low, high = float(np.min(quantity.value)), float(np.max(quantity.value))
+    return not quantity.low <= low <= high <= quantity.high
+
+
+def _told(quantity: Range) -> str:
+    """Write the whole range of a quantity and the one of the law."""
+    low, high = f"{np.min(quantity.value):.4g}", f"{np.max(quantity.value):.4g}"
+    values = low if low == high else f"{low} to {high}"
+    limits = f"{quantity.low:g} to {quantity.high:g}"
+    if quantity.high == np.inf:
+        limits = f"{quantity.low:g} or more"
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    return f"{quantity.name} {values}{unit}, fitted for {limits}{unit}"
+
 
 _B = (
     -8.916465,
@@ -80,18 +138,16 @@ def xu_2007(
     0.067992
     """
     require_between("slide_to_roll_ratio", slide_to_roll_ratio, -np.inf, np.inf)
-    require_positive("hertz_pressure", hertz_pressure, "Pa")
-    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
     require_between("roughness_rms", roughness_rms, 0.0, np.inf, "m")
-    require_positive("entrainment_speed", entrainment_speed, "m/s")
-    require_positive("equivalent_radius", equivalent_radius, "m")
+    pressure, viscosity, speed, radius = positive(
+        hertz_pressure=hertz_pressure,
+        dynamic_viscosity=dynamic_viscosity,
+        entrainment_speed=entrainment_speed,
+        equivalent_radius=equivalent_radius,
+    )
     ratio = np.abs(np.asarray(slide_to_roll_ratio, dtype=float))
-    pressure = np.asarray(hertz_pressure, dtype=float) * 1e-9
-    viscosity = np.asarray(dynamic_viscosity, dtype=float) * 1e3
     roughness = np.asarray(roughness_rms, dtype=float) * 1e6
-    speed = np.asarray(entrainment_speed, dtype=float)
-    radius = np.asarray(equivalent_radius, dtype=float)
-
+    pressure, viscosity = pressure * 1e-9, viscosity * 1e3
     coefficient = _regression(ratio, pressure, viscosity, roughness, speed, radius)
     _require_plausible(coefficient, float(np.max(roughness)))
     warn_outside(

@@ -19,9 +19,9 @@ from tribodyn.mesh.loads import (
     tribological_contact,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.sharing import shared_load_columns, teeth_of
+from tribodyn.mesh.sharing import ToothContact, shared_load_columns, teeth_of
 from tribodyn.mesh.table import MeshTable
-from tribodyn.mesh.tooth_contact import NO_OPTIONS, ToothContact
+from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
 from tribodyn.types import Array, Mask
@@ -49,26 +49,19 @@ def build(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position, and which one drives.
-    material : Material
-        Material of both gears.
-    stiffness_model : str
-        Name in ``tribodyn.stiffness.MODELS``.
-    stiffness_options : mapping
-        Options of the stiffness model.
+    pair, material : SpurPair, Material
+        Both gears in their working position with the one that drives, and their material.
+    stiffness_model, stiffness_options
+        Name in ``tribodyn.stiffness.MODELS``, and options of that model.
     lubricant : Lubricant
         Oil at working temperature.
-    friction_law : str
-        Name in ``tribodyn.friction.LAWS``.
-    friction_options : mapping
-        Options of the friction law.
+    friction_law, friction_options
+        Name in ``tribodyn.friction.LAWS``, and options of that law.
     composite_roughness : float [m]
         Root of the sum of squares of both roughnesses; zero for ideal flanks.
-    film_model : str
-        Name in ``tribodyn.ehl.FILM_MODELS``.
-    film_options : mapping
-        Options of the film model; its ``stiffness`` puts the film in series with the teeth.
+    film_model, film_options
+        Name in ``tribodyn.ehl.FILM_MODELS``, and options of that model, whose ``stiffness`` puts
+        the film in series with the teeth.
     pinion_speed : float [rad/s]
         Speed of the pinion in the running sense.
     pinion_torque : float [N*m]

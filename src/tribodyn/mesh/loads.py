@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
-from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ComputationError, quiet, warn
 from tribodyn.friction import TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
 from tribodyn.mesh.film.path_film import FilmAt, film_of
-from tribodyn.mesh.sharing import SharedLoad, Teeth
-from tribodyn.mesh.tooth_contact import ToothContact
+from tribodyn.mesh.sharing import SharedLoad, Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Mask
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
+from tribodyn.compiled import announced
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     Law,
@@ -432,4 +433,4 @@ def _build(digest: str) -> Any:
     return march_adaptive_block
 
 
-march_adaptive_block = _build(kernel_digest())
+march_adaptive_block = announced(_build(kernel_digest()), "the adaptive engine", "half a minute")

@@ -9,6 +9,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
+from tribodyn.compiled import announced
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -250,4 +251,4 @@ def _build(digest: str) -> Any:
     return march_block
 
 
-march_block = _build(kernel_digest())
+march_block = announced(_build(kernel_digest()), "the engine", "a quarter of a minute")

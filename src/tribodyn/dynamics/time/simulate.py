@@ -9,7 +9,7 @@ from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
-from tribodyn.dynamics.time.response import Response, build_response
+from tribodyn.dynamics.time.response import Response, build_response, later
 from tribodyn.errors import InputError, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
@@ -45,6 +45,7 @@ def simulate(
     *,
     steps: int = 512,
     extra_force: ArrayLike | None = None,
+    kept: int | None = None,
     progress: Progress = SILENT,
     method: Method = "rk4",
     rtol: float | None = None,
@@ -68,6 +69,8 @@ def simulate(
         Steps per mesh cycle; with "dormand-prince" rows of the response per mesh cycle.
     extra_force : (n,) array, optional
         Constant generalized force on top of the system's [N or N*m].
+    kept : int, optional
+        Last mesh cycles that are recorded; all of them by default.
     progress : Progress
         Told about every 64 cycles.
     method : "rk4", "dormand-prince" or "newmark"
@@ -86,7 +89,7 @@ def simulate(
     Returns
     -------
     Response
-        With ``cycles * steps`` rows.
+        With ``cycles * steps`` rows, or ``kept * steps``.
 
     Raises
     ------
@@ -115,14 +118,19 @@ def simulate(
     frequency = np.array([float(mesh_frequency)])
     setting = Setting(system, frequency, cycles, steps, extra[None, :])
     marcher = prepare(method, setting, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
-    record = np.empty((cycles * steps + 1, 2 * system.size, 1))
-    progress.start("Marching over time", cycles)
-    for first in range(0, cycles, _CHUNK):
-        count = min(_CHUNK, cycles - first)
-        part = record[first * steps : (first + count) * steps + 1]
-        state = marcher.march(state, count, record=part, elapsed=first)
+    skipped = cycles - min(kept or cycles, cycles)
+    record = np.empty(((cycles - skipped) * steps + 1, 2 * system.size, 1))
+    progress.start("Mesh cycles", cycles)
+    elapsed = 0
+    while elapsed < cycles:
+        count = min(_CHUNK, (skipped if elapsed < skipped else cycles) - elapsed)
+        first = (elapsed - skipped) * steps
+        part = record[first : first + count * steps + 1] if elapsed >= skipped else None
+        state = marcher.march(state, count, record=part, elapsed=elapsed)
+        elapsed += count
         progress.advance(count)
+    progress.finish()
     progress.start("Forces along the motion")
     response = build_response(marcher.compiled, mesh_frequency, record[:, :, 0], extra)
     progress.finish()
-    return response
+    return later(response, skipped / mesh_frequency)

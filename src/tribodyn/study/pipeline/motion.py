@@ -24,6 +24,8 @@ _ORBITS = "runge-kutta-4"
 _REPEATS = 1e-8
 #: Periods marched between two looks at that change, and mesh cycles marched at most.
 _AT_ONCE, _MOST_CYCLES = 32, 4096
+#: Steps of a transient that are kept in memory.
+_MOST_ROWS = 2**19
 #: Mesh cycles after which a steady motion may repeat.
 _PERIODS = (1, 2, 3, 4)
 
@@ -56,9 +58,16 @@ def _transient(
             extra = steady_state(system, mesh_frequency, steps=steps).extra_force
     state = static_start(compile_for(system, mesh_frequency, steps))
     start = (state[: system.size], state[system.size :])
+    kept = max(1, _MOST_ROWS // steps)
+    if kept < cycles:
+        warn(
+            "transient-kept",
+            f"of {cycles} mesh cycles of {steps} steps the last {kept} are kept; the summary is "
+            f"taken over {kept - kept // 2} of them. A shorter run is kept whole",
+        )
     return simulate(
-        system, mesh_frequency, cycles, start, steps=steps, extra_force=extra, progress=progress,
-        **engine_arguments(case),
+        system, mesh_frequency, cycles, start, steps=steps, extra_force=extra, kept=kept,
+        progress=progress, **engine_arguments(case),
     )  # fmt: skip
 
 

@@ -133,11 +133,22 @@ class Result(Record):
         return diagram_of(self.system, self.case, self.mesh.mesh_frequency)
 
     def _parts(self) -> Parts:
-        """Parts of the motion with the force of all ramps of a force law, and the summary."""
-        motion: Any = self.response.to_xarray()
-        force = ("time", self.response.contact_force.sum(axis=1), {"units": "N"})
-        facts = {**motion.attrs, "title": self.case.title, **self._summary}
-        return Parts({**motion.data_vars, "mesh_force": force}, dict(motion.coords), facts)
+        """Parts of the motion, ramps of a force law as one contact, and the summary."""
+        from tribodyn.study.pipeline.series import parts_of
+
+        return parts_of(self)
+
+    def to_csv(self) -> str:
+        """Write the series of the motion as comma-separated values in SI.
+
+        Returns
+        -------
+        str
+            One line for each step; units are in brackets in the first line.
+        """
+        from tribodyn.study.pipeline.series import stored, to_csv
+
+        return to_csv(stored(self))
 
     def cite(self, style: str = "text") -> str:
         """Name the papers behind this result.
@@ -160,10 +171,13 @@ class Result(Record):
 
         return cite(self.case, style)
 
-    def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:
+    def save(
+        self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
+    ) -> Path:
         """Write case, summary, mesh table, motion and report into a new directory.
 
-        The directory appears complete or not at all.
+        The directory appears complete or not at all; :func:`tribodyn.load_result` reads it. Of a
+        long transient the last mesh cycles are stored, as many as 64 MB hold.
 
         Parameters
         ----------
@@ -171,6 +185,8 @@ class Result(Record):
             Directory to make.
         force : bool
             Replace an earlier result there.
+        csv : bool
+            Write the motion as ``response.csv`` as well.
 
         Returns
         -------
@@ -184,12 +200,16 @@ class Result(Record):
         InputError
             If the place cannot be written to.
         """
+        from tribodyn.study.pipeline.series import stored
+
         target = Path(directory)
         with new_directory(target, force=force) as place:
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
             (place / "summary.json").write_text(_json(self._summary), encoding="utf-8")
             self.mesh.save(place / "mesh.nc")
-            write_dataset(self.to_xarray(), place / "response.nc")
+            write_dataset(stored(self), place / "response.nc")
+            if csv:
+                (place / "response.csv").write_text(self.to_csv(), encoding="utf-8")
             write_report_of(self, place / "report.html")
         return target
 

@@ -12,12 +12,14 @@ from tribodyn.files import cannot_write, clear_leftovers, whole
 
 #: What a result directory holds; only such a directory may be replaced.
 RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.html")
+#: What it may hold besides.
+_ON_REQUEST = ("response.csv",)
 #: The same of studies.
 SWEEP_FILES = ("case.toml", "sweep.csv", "sweep.nc", "report.html")
 BIFURCATION_FILES = ("case.toml", "bifurcation.nc", "bifurcation.html")
 #: File by which a directory is known -> all that it may hold.
 _KINDS = {
-    "summary.json": RESULT_FILES,
+    "summary.json": (*RESULT_FILES, *_ON_REQUEST),
     "sweep.nc": SWEEP_FILES,
     "bifurcation.nc": BIFURCATION_FILES,
 }

@@ -1,0 +1,143 @@
+"""A saved result back from its directory."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.cases.load import load_case
+from tribodyn.errors import InputError, ModelWarning, collected
+from tribodyn.study.case.derive import placed
+from tribodyn.study.pipeline.assembly import system_of
+from tribodyn.study.pipeline.damping import damping_of
+from tribodyn.study.pipeline.result import Result
+from tribodyn.study.pipeline.save import RESULT_FILES
+from tribodyn.study.pipeline.summary import SUMMARY
+
+if TYPE_CHECKING:
+    import xarray
+
+    from tribodyn.dynamics import Response, System
+    from tribodyn.mesh import MeshFriction, MeshTable
+
+_REMEDY = "Give the directory that tribodyn run or Result.save wrote"
+#: Series without which a motion cannot be built again.
+_NEEDED = ("position", "velocity", "end_position", "end_velocity", "phase", "time")
+_FACTS = ("mesh_frequency", "periods", "steady_state_error", "warnings", "cycles_used",
+          "search_cycles", "period", "converged")  # fmt: skip
+
+
+def load_result(directory: str | os.PathLike[str]) -> Result:
+    """Read a result that was saved; nothing is computed anew but the forces along its motion.
+
+    Parameters
+    ----------
+    directory : str or path
+        What :meth:`tribodyn.Result.save` or ``tribodyn run`` wrote.
+
+    Returns
+    -------
+    Result
+        With the same case, summary, warnings and figures. Of a long transient it has the mesh
+        cycles that were stored; the summary is that of the whole run. The motion with nominal
+        friction is not stored, only its figures in the summary.
+
+    Raises
+    ------
+    InputError
+        If the directory holds no result, or a file is damaged or was changed.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> tribodyn.load_result("no-such-result")
+    Traceback (most recent call last):
+        ...
+    tribodyn.errors.InputError: no-such-result: this is no result. There is no such directory. \
+Give the directory that tribodyn run or Result.save wrote.
+    """
+    from tribodyn.mesh import MeshTable
+    from tribodyn.stored import read_dataset
+
+    folder = Path(directory)
+    summary = read_summary(folder)
+    case = load_case(folder / "case.toml")
+    mesh = MeshTable.load(folder / "mesh.nc")
+    data = read_dataset(folder / "response.nc", str(folder))
+    lacking = [name for name in _NEEDED if name not in data.variables]
+    lacking += [name for name in _FACTS if name not in data.attrs]
+    if lacking:
+        why = f"response.nc has no {', '.join(lacking)}: an earlier version wrote it"
+        remedy = f"Compute it again: tribodyn run {folder / 'case.toml'}"
+        raise InputError("this result cannot be read back", str(folder), why, remedy)
+    friction = _friction(mesh, data)
+    with placed(case), collected():
+        damping = damping_of(case, mesh)
+        system = system_of(case, mesh, damping, friction)
+    response = _response(folder, system, data)
+    told = tuple(ModelWarning(code, text) for code, text in json.loads(data.attrs["warnings"]))
+    result = Result(case, mesh, system, response, damping, told, friction)
+    vars(result)["_summary"] = summary
+    return result
+
+
+def read_summary(folder: Path) -> dict[str, float]:
+    """Figures of a saved result, from a directory that holds all of its files."""
+    lacking = [name for name in RESULT_FILES[:-1] if not (folder / name).is_file()]
+    if lacking:
+        why = f"It holds no {lacking[0]}" if folder.is_dir() else "There is no such directory"
+        raise InputError("this is no result", str(folder), why, _REMEDY)
+    from tribodyn.stored import read_bytes
+
+    place = folder / "summary.json"
+    try:
+        found = json.loads(read_bytes(place, "case"))
+        if not isinstance(found, dict) or not found:
+            raise ValueError("It is no table of figures")
+        figures = {name: float(value) for name, value in found.items()}
+        if wrong := [n for n, v in figures.items() if not np.isfinite(v)]:
+            raise ValueError(f"It has {wrong[0]} = {figures[wrong[0]]}")
+        if unknown := [name for name in figures if name not in SUMMARY]:
+            raise ValueError(f"No figure that is known here is called {unknown[0]}")
+    except (OSError, TypeError, ValueError, RecursionError) as error:
+        remedy = "Compute the case again"
+        raise InputError("cannot be read", str(place), str(error), remedy) from None
+    return {name: figures[name] for name in SUMMARY if name in figures}
+
+
+def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
+    from tribodyn.mesh import MeshFriction
+
+    if "friction_coefficients" not in data:
+        return None
+    facts = (float(data.attrs[f"friction_{name}"]) for name in ("load", "limit", "fit_error"))
+    return MeshFriction(mesh.grid, data["friction_coefficients"].values, *facts)
+
+
+def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:
+    """The motion from its states at the steps, with forces as the structure has them."""
+    from tribodyn.dynamics.equations.compiled import compile_for
+    from tribodyn.dynamics.time.response import build_response, later
+
+    names, told, facts = tuple(data["coordinate"].values), data.attrs, dict[str, Any]()
+    rows, periods = data.sizes["time"], int(told["periods"])
+    if names != tuple(system.names) or rows % periods:
+        why = f"Its motion has {', '.join(names)}, its case {', '.join(system.names)}"
+        raise InputError("these files are of different results", str(folder), why, _REMEDY)
+    frequency = float(told["mesh_frequency"])
+    ends = [np.hstack([data[f"{end}{name}"].values for name in ("position", "velocity")])
+            for end in ("", "end_")]  # fmt: skip
+    extra = data["extra_force"].values if "extra_force" in data else np.zeros(system.size)
+    if "floquet_multipliers" in data:
+        real, imaginary = data["floquet_multipliers"].values
+        facts["floquet_multipliers"] = real + 1j * imaginary
+    response = build_response(
+        compile_for(system, frequency, rows // periods), frequency, np.vstack(ends), extra,
+        error=float(told["steady_state_error"]), converged=bool(told["converged"]),
+        **{name: int(told[name]) for name in ("cycles_used", "search_cycles", "period")}, **facts,
+    )  # fmt: skip
+    return later(response, float(data["time"].values[0]))

@@ -1,0 +1,211 @@
+"""The motion of a result as labelled series: all that its figures draw, with units and meanings."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.record import Parts
+from tribodyn.study.pipeline import record
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+    from tribodyn.dynamics import Response
+    from tribodyn.study.pipeline.result import Result
+
+#: Most that the series of a motion take in a file [bytes].
+LARGEST = 64_000_000
+#: Highest mesh harmonic that is stored.
+_HIGHEST = 80
+_DIRECTIONS = {"loa": ("y", "along the line of action"), "oloa": ("x", "across it")}
+_STATES = {
+    "position": ("m", "rad", "displacement"),
+    "velocity": ("m/s", "rad/s", "velocity"),
+    "acceleration": ("m/s^2", "rad/s^2", "acceleration"),
+}
+
+
+def _told(unit: str, words: str) -> dict[str, str]:
+    return {"units": unit, "long_name": words}
+
+
+def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
+    """Signals that figures draw, on the samples: values, unit and meaning by name."""
+    force = record.mesh_force(samples)
+    phase = np.asarray(samples.phase)
+    if result.friction is None:
+        rubbing = result.mesh.functions().friction_sum(phase) * force
+    else:
+        rubbing = result.friction.value("friction_sum", phase, force) * force
+    static = result.mesh.at("static_transmission_error", phase) + result.static_error(phase)
+    found = {
+        "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
+        "dynamic_transmission_error": (
+            record.transmission_error(result, samples), "m",
+            "lag of the driven gear on the line of action, from first contact of the flanks",
+        ),
+        "static_transmission_error": (static, "m", "the same at rest under the nominal load"),
+        "friction_force": (rubbing, "N", "friction force of all tooth pairs"),
+    }  # fmt: skip
+    forces = record.support_forces(result.system, samples)
+    for gear in ("pinion", "wheel"):
+        for direction, (axis, words) in _DIRECTIONS.items():
+            column = record.centre_column(result.response.names, gear, axis)
+            if column is not None:
+                told = f"force of the {gear} on its bearing {words}"
+                found[f"bearing_force_{direction}_{gear}"] = (forces[:, column], "N", told)
+                told = f"acceleration of the {gear}'s centre {words}"
+                signal = samples.acceleration[:, column]
+                found[f"acceleration_{direction}_{gear}"] = (signal, "m/s^2", told)
+    return found
+
+
+def parts_of(result: Result) -> Parts:
+    """Variables, coordinates and attributes of the data set of a result."""
+    response = result.response
+    turns = np.array(["theta" in name for name in response.names])
+    variables: dict[str, Any] = {}
+    coordinates: dict[str, Any] = {
+        "time": ("time", response.time, _told("s", "time")),
+        "phase": ("time", response.phase, _told("1", "mesh phase")),
+        "coordinate": ("coordinate", list(response.names)),
+    }
+    for name, (straight, turning, words) in _STATES.items():
+        told = {"long_name": f"{words} of every coordinate, in the unit named by {name}_unit"}
+        variables[name] = (("time", "coordinate"), getattr(response, name), told)
+        coordinates[f"{name}_unit"] = ("coordinate", np.where(turns, turning, straight))
+    pressed, force = _contacts(response)
+    variables["deflection"] = (("time", "contact"), pressed, _told(
+        "m", "compression of every contact, counted from the middle of the play: its flanks touch "
+        "at the attribute half_backlash"))  # fmt: skip
+    variables["contact_force"] = (("time", "contact"), force, _told("N", "force of every contact"))
+    for name, (values, unit, words) in signals(result, response).items():
+        if not name.startswith("acceleration_"):  # they stand under acceleration
+            variables[name] = ("time", values, _told(unit, words))
+    if record.is_steady(response):
+        variables |= _spectra(result)
+        coordinates["order"] = ("order", variables.pop("order"), _told("1", "mesh harmonic"))
+    variables |= _ends(result)
+    return Parts(variables, coordinates, _facts(result))
+
+
+def _contacts(response: Response) -> tuple[Array, Array]:
+    """Compression and force of the contacts; ramps of one force law are one contact."""
+    pressed, force = response.deflection, response.contact_force
+    if np.ptp(pressed, axis=1).max(initial=0.0) > 0.0:
+        return pressed, force
+    return pressed[:, :1], force.sum(axis=1, keepdims=True)
+
+
+def _spectra(result: Result) -> dict[str, Any]:
+    """Amplitudes of the mesh harmonics of every signal."""
+    from tribodyn.analysis import amplitude_spectrum
+
+    response = result.response
+    highest = min(_HIGHEST, response.time.size // response.periods // 8)
+    found: dict[str, Any] = {}
+    for name, (values, unit, words) in signals(result, response.fine).items():
+        if name == "static_transmission_error":
+            continue
+        spectrum = amplitude_spectrum(response, values, highest=highest)
+        told = _told(unit, f"peak amplitude of the harmonics: {words}")
+        found[f"{name}_spectrum"] = ("order", spectrum.amplitude, told)
+        found["order"] = spectrum.order
+        found["frequency"] = ("order", spectrum.frequency, _told("Hz", "frequency of a harmonic"))
+    return found
+
+
+def _ends(result: Result) -> dict[str, Any]:
+    """What a motion is built from again, beside its states at the steps."""
+    response, friction = result.response, result.friction
+    found: dict[str, Any] = {
+        f"end_{name}": ("coordinate", getattr(response.fine, name)[-1], {
+            "long_name": f"{name} at the end of the record"})
+        for name in ("position", "velocity")
+    }  # fmt: skip
+    multipliers = response.floquet_multipliers
+    if response.extra_force.size:
+        told = {"long_name": "force or torque that balances the friction [N or N*m]"}
+        found["extra_force"] = ("coordinate", response.extra_force, told)
+    if multipliers.size:
+        both = np.stack((multipliers.real, multipliers.imag))
+        told = _told("1", "Floquet multipliers: real and imaginary part")
+        found["floquet_multipliers"] = (("part", "multiplier"), both, told)
+    if friction is not None:
+        told = {"long_name": "friction over powers of the load: force [1], moments [m]"}
+        dims = ("knot", "power", "channel")
+        found["friction_coefficients"] = (dims, friction.coefficients, told)
+    return found
+
+
+def _facts(result: Result) -> dict[str, Any]:
+    response = result.response
+    facts: dict[str, Any] = {
+        "mesh_frequency": response.mesh_frequency,
+        "periods": response.periods,
+        "steady_state_error": response.error,
+        "omega_max_dt": response.step_number,
+        "title": result.case.title,
+        "half_backlash": result.half_backlash,
+        "warnings": json.dumps([[each.code, each.message] for each in result.warnings]),
+        **{name: int(getattr(response, name))
+           for name in ("converged", "cycles_used", "search_cycles", "period")},
+    }  # fmt: skip
+    if result.friction is not None:
+        names = ("load", "limit", "fit_error")
+        facts |= {f"friction_{name}": getattr(result.friction, name) for name in names}
+    return {**facts, **result.summary()}
+
+
+def _kept(response: Response) -> int:
+    """Last mesh cycles whose series stay below ``LARGEST``, but at least one."""
+    columns = 3 * len(response.names) + 2 * _contacts(response)[0].shape[1] + 10
+    cycle = 8 * columns * response.time.size // response.periods
+    return int(min(response.periods, max(1, LARGEST // cycle)))
+
+
+def stored(result: Result) -> xarray.Dataset:
+    """The data set of a result as it is saved: of a long run the last mesh cycles."""
+    data: xarray.Dataset = result.to_xarray()
+    periods, kept = int(result.response.periods), _kept(result.response)
+    data.attrs |= {"periods": kept, "computed_mesh_cycles": periods}
+    return data.isel(time=slice(data.sizes["time"] // periods * (periods - kept), None))
+
+
+def told_cycles(response: Response) -> str:
+    """How much of the motion is in the file, for whoever reads the report."""
+    computed, kept = int(response.periods), _kept(response)
+    if kept == computed:
+        return f"all {computed} mesh cycles" if computed > 1 else "the whole mesh cycle"
+    return (
+        f"the last {kept} of {computed} mesh cycles, which are {LARGEST / 1e6:g} MB; the "
+        "figures of the summary are those of the whole run"
+    )
+
+
+def to_csv(data: xarray.Dataset) -> str:
+    """Series over the time as comma-separated values in SI, units in the first line."""
+    import io
+
+    heads, columns = [], []
+    for name in ("time", *data.data_vars):
+        series = data[name]
+        if series.dims[:1] != ("time",):
+            continue
+        rows = series.values.reshape(series.sizes["time"], -1)
+        for number, column in enumerate(rows.T):
+            unit, label = series.attrs.get("units", ""), str(name)
+            if "coordinate" in series.dims:
+                label = f"{name}_{data['coordinate'].values[number]}"
+                unit = str(data[f"{name}_unit"].values[number])
+            elif rows.shape[1] > 1:
+                label = f"{name}_{number}"
+            heads.append(f"{label} [{unit}]")
+            columns.append(column)
+    text = io.StringIO()
+    np.savetxt(text, np.column_stack(columns), "%.9g", ",", header=",".join(heads), comments="")
+    return text.getvalue()
