@@ -84,11 +84,7 @@ def order_map(
     require_between("overlap", overlap, 0.0, 0.95)
     per_turn = 2 * int(np.ceil(1.3 * highest_order + 2))
     made = angular_resampling(
-        values,
-        moments,
-        angle,
-        samples_per_revolution=per_turn,
-        highest_order=highest_order,
+        values, moments, angle, samples_per_revolution=per_turn, highest_order=highest_order
     )
     length = revolutions * per_turn
     if made.signal.size < length:

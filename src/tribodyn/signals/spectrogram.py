@@ -136,12 +136,7 @@ def spectrogram(
     from scipy.signal import ShortTimeFFT
 
     transform = ShortTimeFFT(
-        weights,
-        hop,
-        sampling_rate,
-        fft_mode="onesided2X",
-        scale_to="magnitude",
-        phase_shift=None,
+        weights, hop, sampling_rate, fft_mode="onesided2X", scale_to="magnitude", phase_shift=None
     )
     lines = transform.stft(values, p0=first, p1=last + 1)
     return Spectrogram(

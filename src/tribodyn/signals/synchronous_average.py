@@ -176,11 +176,7 @@ def time_synchronous_average(
     highest = teeth * mesh_harmonics + 2
     per_turn = 2 * int(np.ceil(1.3 * highest))
     made = angular_resampling(
-        values,
-        moments,
-        angle,
-        samples_per_revolution=per_turn,
-        highest_order=float(highest),
+        values, moments, angle, samples_per_revolution=per_turn, highest_order=float(highest)
     )
     count = made.signal.size // per_turn
     if count < 2:

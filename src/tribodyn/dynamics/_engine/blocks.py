@@ -10,12 +10,7 @@ import numpy as np
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import (
-    Failed,
-    newmark_failure,
-    runaway,
-    unparted_step,
-)
+from tribodyn.dynamics.equations.divergence import Failed, newmark_failure, runaway, unparted_step
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import lane_load
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag

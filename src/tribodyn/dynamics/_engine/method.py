@@ -49,11 +49,7 @@ class Newmark(NamedTuple):
 
 
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
-JIT: dict[str, Any] = {
-    "nogil": True,
-    "fastmath": {"contract", "nsz"},
-    "error_model": "numpy",
-}
+JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
 
 #: For what only compiled functions call: no entry from Python has to be compiled.
 INNER: dict[str, Any] = {**JIT, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}

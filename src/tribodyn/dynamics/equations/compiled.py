@@ -88,10 +88,7 @@ def require_whole(name: str, value: float, least: int = 1) -> None:
 
 
 def compile_for(
-    system: System,
-    mesh_frequency: ArrayLike,
-    steps: int,
-    parameters: LaneParameters | None = None,
+    system: System, mesh_frequency: ArrayLike, steps: int, parameters: LaneParameters | None = None
 ) -> Compiled:
     """Compile a system and refuse a step that the integrator cannot follow."""
     require_positive("mesh_frequency", mesh_frequency, "Hz")

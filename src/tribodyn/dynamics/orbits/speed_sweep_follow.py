@@ -101,12 +101,7 @@ class SpeedFamily:
         return state, extra
 
     def statistics(
-        self,
-        number: Index,
-        y: Array,
-        periods: Index,
-        cycles: int,
-        outputs: Array,
+        self, number: Index, y: Array, periods: Index, cycles: int, outputs: Array
     ) -> Array:
         """March motions over their periods and gather their figures."""
         contacts, others = len(self.system.contacts), self.system.size + len(outputs)

@@ -16,12 +16,7 @@ import numpy as np
 from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import (
-    Program,
-    build_program,
-    compile_on,
-    compile_system,
-)
+from tribodyn.dynamics.equations.program import Program, build_program, compile_on, compile_system
 from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive

@@ -190,9 +190,7 @@ def simulate_ensemble(
 
 
 def _frequencies(
-    system: System | Sequence[System],
-    mesh_frequency: ArrayLike,
-    parameters: LaneParameters | None,
+    system: System | Sequence[System], mesh_frequency: ArrayLike, parameters: LaneParameters | None
 ) -> Array:
     """Mesh frequency of every lane."""
     frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
