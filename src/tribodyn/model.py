@@ -191,6 +191,8 @@ def _declared(default: Any) -> Option:
     """An option of which only the default is known."""
     if isinstance(default, Option):
         return default
+    if default is None:
+        return Option("number", "", REQUIRED, example="1.0")
     if isinstance(default, bool):
         return Option("flag", "", default)
     if isinstance(default, str):

@@ -8,6 +8,7 @@
 | ``transient`` | pressure and film while load, radius and speed change |
 | ``stiffness`` | stiffness and damping of the film |
 | ``traction`` | shear of the oil, and its temperature |
+| ``load_share`` | how much of the load the film carries between rough surfaces |
 | ``roughness`` | measured heights of a surface |
 """
 
@@ -21,6 +22,7 @@ from tribodyn.ehl.formulas.power_laws import (
     pan_hamrock_central,
     pan_hamrock_minimum,
 )
+from tribodyn.ehl.load_share import film_load_share
 from tribodyn.ehl.models import FILM_MODELS, FilmModel
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
@@ -51,6 +53,7 @@ __all__ = [
     "blok_flash_temperature",
     "dowson_1968_minimum",
     "dowson_toyoda_central",
+    "film_load_share",
     "film_traction",
     "inlet_heating_factor",
     "line_contact_groups",

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, path_of_contact
 from tribodyn.errors import require_positive
+from tribodyn.friction import pitch_point
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import mesh_cycle, pairs_in_contact
@@ -154,8 +155,9 @@ def mesh_table(
     loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)
     warn_of_rigid_films(loads.film_at)
     roughness = settings.composite_roughness
-    contact = tribological_contact(motion, pairs, loads.tribological, roughness)
     films = loads.film_at(loads.tribological)
+    pitch = pitch_point(pair, pinion_speed, pinion_torque)
+    contact = tribological_contact(motion, pairs, loads.tribological, roughness, pitch, films)
     reported = reported_films(films, loads, teeth.least_share * teeth.load_per_width)
     columns: dict[str, Array] = {
         **_motion_columns(motion, cycle.sliding_direction),

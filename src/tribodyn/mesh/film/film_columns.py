@@ -97,10 +97,16 @@ def film_columns(
 def as_columns(films: Films, composite_roughness: float) -> dict[str, Array]:
     """Name the films as columns and add their ratio to the roughness."""
     known = {name: getattr(films, name, None) for name in FILM_COLUMNS}
-    thin = [film for film in (films.central_film, films.minimum_film) if film is not None]
-    if thin and composite_roughness > 0.0:
-        known["film_ratio"] = np.min(thin, axis=0) / composite_roughness
+    thickness = smallest_film(films)
+    if thickness is not None and composite_roughness > 0.0:
+        known["film_ratio"] = thickness / composite_roughness
     return {name: values for name, values in known.items() if values is not None}
+
+
+def smallest_film(films: Films) -> Array | None:
+    """Smallest film known: the minimum, or in its place that in the centre."""
+    thin = [film for film in (films.central_film, films.minimum_film) if film is not None]
+    return np.asarray(np.min(thin, axis=0)) if thin else None
 
 
 #: How the batch of contacts names the one that failed.
