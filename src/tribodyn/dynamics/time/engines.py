@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -35,26 +35,6 @@ class Setting(NamedTuple):
     steps: int
     extra_force: Array  #: of every lane (lanes, n)
     parameters: LaneParameters | None = None
-
-
-class Marcher(Protocol):
-    """Lanes that march on from call to call."""
-
-    @property
-    def compiled(self) -> Compiled:
-        """The systems on their grid."""
-
-    def march(
-        self,
-        state: Array,
-        cycles: int,
-        *,
-        record: Array | None = None,
-        statistics: Statistics | None = None,
-        threads: int | None = None,
-        elapsed: int = 0,
-    ) -> Array:
-        """March by some mesh cycles, after ``elapsed`` others; returns the new state."""
 
 
 class FixedMarcher:
@@ -151,6 +131,10 @@ class AdaptiveMarcher:
         recorded = RecordedLanes(member, grid, period, extra, scales, record)
         statistics._replace(moments=moments).add(recorded, 1.0 / cycles)
         statistics.moments[:, lanes] = moments
+
+
+#: Lanes that march on from call to call.
+Marcher = FixedMarcher | AdaptiveMarcher
 
 
 def _runge_kutta(setting: Setting) -> Marcher:
