@@ -18,7 +18,18 @@ _CITED = re.compile(
 _STANDARD = re.compile(r"\b(?:(ISO(?:/TR)?|DIN|AGMA|ASTM) (D?\d+)(-\d+)?)")
 _SPELT = {"Mueller": "Müller"}
 #: Words before a year in brackets that are no authors.
-_NO_AUTHORS = {"Chaos", "Trib", "Trans", "Valid", "Source", "Unreleased"}
+_NO_AUTHORS = {
+    "Chaos",
+    "Gearing",
+    "IMechE",
+    "Lyon",
+    "Munich",
+    "Trib",
+    "Trans",
+    "Valid",
+    "Source",
+    "Unreleased",
+}
 
 
 def _texts() -> list[Path]:

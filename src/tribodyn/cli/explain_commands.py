@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
@@ -30,7 +31,8 @@ def explain(
     Parameters
     ----------
     symbol : str
-        For example "epsilon_alpha", "tip relief", "gears.center_distance" or "xu-2007".
+        For example "epsilon_alpha", "tip relief", "gears.center_distance" or "xu-2007"; "friction"
+        compares all friction laws.
     more : str
         Further words of it.
     json : bool
@@ -40,6 +42,9 @@ def explain(
     if not asked:
         remedy = "Give a name, for example: tribodyn explain backlash"
         raise InputError(Problem("there is nothing to explain", "", "", remedy))
+    if asked.lower() == "friction":
+        _friction_laws(json)
+        return
     found = _named(asked) or _holding(asked)
     if not found:
         raise InputError(_unknown(asked))
@@ -51,6 +56,27 @@ def explain(
     if len(found) > _MOST:
         names = ", ".join(str(next(iter(entry.values()))) for entry in found[_MOST:])
         say(f"{len(found) - _MOST} more have these words: {names}")
+
+
+def _friction_laws(json: bool) -> None:
+    """Compare all friction laws along the path of contact of FZG type A."""
+    from tribodyn.cases.load import load_case
+    from tribodyn.study.studies.friction_laws import PLACES, friction_laws
+
+    laws = friction_laws(load_case("fzg-roughness"))
+    if json:
+        say_json([{**law, "places": PLACES} for law in laws])
+        return
+    for law in laws:
+        options = f" Options: {law['options']}." if law["options"] else ""
+        say(f"{law['law']}: {law['meaning']}.{options} {law['source']}\n")
+    rows = [["FZG type A", *PLACES, ""]]
+    for law in laws:
+        values = [f"{value:.4f}" for value in law["coefficients"] or [math.nan] * len(PLACES)]
+        remark = "*" if law["in_range"] is False else law["missing"]
+        rows.append([law["law"], *(value.replace("nan", "-") for value in values), remark])
+    say("Friction coefficient at 90 N*m, 900 rpm, 82 mPa*s, 0.53 um; * outside of the law's range:")
+    say(table(rows))
 
 
 def _plainly(name: str) -> str:
