@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+import random
 import tempfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 
@@ -17,19 +18,19 @@ def pytest_configure() -> None:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Take the size and the seed of the tests that draw their inputs."""
-    parser.addoption("--runs", type=int, default=None, help="random inputs of each such test")
-    parser.addoption("--seed", type=int, default=0, help="where the random inputs begin")
+    """Options of the tests that draw their inputs."""
+    parser.addoption("--runs", type=int, default=None, help="draws of each fuzz")
+    parser.addoption("--seed", type=int, default=20251122, help="seed of the draws")
 
 
 @pytest.fixture
-def runs(request: pytest.FixtureRequest) -> int | None:
-    """Random inputs asked for; None in the gate."""
-    asked = request.config.getoption("--runs")
-    return None if asked is None else int(asked)
+def draws(request: pytest.FixtureRequest) -> Callable[[int], Iterator[random.Random]]:
+    """Random sources: as many as asked for with --runs, else a few; each is told by a failure."""
 
+    def sources(few: int) -> Iterator[random.Random]:
+        count, seed = request.config.getoption("--runs") or few, request.config.getoption("--seed")
+        for number in range(count):
+            print(f"draw {number} of the seed {seed}")
+            yield random.Random(f"{seed} {number}")
 
-@pytest.fixture
-def generator(request: pytest.FixtureRequest) -> np.random.Generator:
-    """Generator of random inputs."""
-    return np.random.default_rng(request.config.getoption("--seed"))
+    return sources

@@ -22,7 +22,7 @@ from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError
+from tribodyn.errors import ComputationError, InputError, require_whole
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
@@ -195,10 +195,8 @@ def lyapunov_exponents(
     >>> bool(np.allclose(found.exponents, -0.1, rtol=1e-6))
     True
     """
-    for name, value, least in (("cycles", cycles, 1), ("transient", transient, 0)):
-        if int(value) != value or value < least:
-            why = f"A whole number >= {least}"
-            raise InputError(f"{name} = {value}", where=f"argument {name}", why=why)
+    require_whole("cycles", cycles)
+    require_whole("transient", transient, 0)
     compiled = compile_for(system, mesh_frequency, steps)
     tables = TangentTables(compiled, mesh_frequency)
     if tables.size == 0:
@@ -210,7 +208,7 @@ def lyapunov_exponents(
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     state = static_start(compiled) if start is None else read_start(system, start)
     carrier = _Carrier(tables, state, np.broadcast_to(extra, (system.size,)))
-    progress.start("Carrying disturbances", int(cycles + transient))
+    progress.start("Mesh cycles", int(cycles + transient))
     align = min(int(transient), _ALIGN)
     carrier.settle(int(transient) - align)
     progress.advance(int(transient) - align)

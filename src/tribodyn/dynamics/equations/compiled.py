@@ -79,20 +79,12 @@ class Compiled:
         return self.members or (Member(self.system, self.nodes, np.arange(lanes)),)
 
 
-def require_steps(steps: int) -> None:
-    """Refuse steps that are no whole number of at least one."""
-    require_whole("steps", steps)
-
-
 def compile_for(
-    system: System,
-    mesh_frequency: ArrayLike,
-    steps: int,
-    parameters: LaneParameters | None = None,
+    system: System, mesh_frequency: ArrayLike, steps: int, parameters: LaneParameters | None = None
 ) -> Compiled:
     """Compile a system and refuse a step that the integrator cannot follow."""
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    require_steps(steps)
+    require_whole("steps", steps)
     grid, nodes, program = compile_system(system, int(steps))
     beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if parameters is None:
@@ -117,7 +109,7 @@ def compile_lanes(
         return compile_for(distinct[0], mesh_frequency, steps, parameters)
     _refuse_different(given)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    require_steps(steps)
+    require_whole("steps", steps)
     if len(distinct) == 1:
         system, (grid, nodes, program) = distinct[0], compile_system(distinct[0], int(steps))
         rate = largest_rate(system, nodes) if parameters is None else float("nan")

@@ -8,6 +8,7 @@ the fourth order of the integrator survives, and nothing is interpolated in the 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class Grid:
     segment_left: Array  #: [-]
     segment_right: Array  #: [-]
 
-    @property
+    @cached_property
     def steps(self) -> int:
         """Number of steps in a mesh cycle."""
         return int(self.left.size)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -262,7 +263,7 @@ class System:
                 )
             object.__setattr__(self, "balance", balance)
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of coordinates."""
         return int(np.asarray(self.mass).shape[0])

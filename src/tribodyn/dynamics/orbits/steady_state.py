@@ -105,7 +105,7 @@ def steady_state(
     mapping = OrbitMap(compiled, mesh_frequency, count or 1)
     state = static_start(compiled) if start is None else read_start(system, start)
     y = mapping.start(state)
-    progress.start("Searching the steady state", None)
+    progress.start("Steady motion", None)
     if count is None:
         any_orbit = find_any_orbit(mapping, y, tolerance)
         mapping, orbit, apart = any_orbit.mapping, any_orbit.orbit, any_orbit.apart
@@ -156,11 +156,7 @@ def _advice(mapping: OrbitMap, apart: Array) -> str:
 
 
 def _finish(
-    mapping: OrbitMap,
-    orbit: OrbitPoint,
-    frequency: float,
-    tolerance: float,
-    apart: Array,
+    mapping: OrbitMap, orbit: OrbitPoint, frequency: float, tolerance: float, apart: Array
 ) -> Response:
     error = max(orbit.error, float(np.finfo(float).eps))
     converged = bool(np.isfinite(error) and error <= tolerance)

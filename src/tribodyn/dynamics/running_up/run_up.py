@@ -19,12 +19,7 @@ from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import (
-    ComputationError,
-    InputError,
-    quiet,
-    require_positive,
-)
+from tribodyn.errors import ComputationError, InputError, quiet, require_positive, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -113,8 +108,7 @@ def run_up(
     """
     path = read_profile(profile, duration)
     require_positive("teeth", teeth)
-    if int(samples) != samples or samples < 2:
-        raise InputError(f"samples = {samples}", where="argument samples", why="Whole number >= 2")
+    require_whole("samples", samples, 2)
     frequency, systems = systems_by_frequency(system)
     first = systems[0]
     tables = Tables(systems, int(samples), path.lowest, steps)
@@ -125,7 +119,7 @@ def run_up(
     state = _begin(marcher, path, start)
     count = max(math.ceil(path.cycles - 1e-9), 1)
     kept = Samples(systems, frequency, count, int(samples))
-    progress.start("Marching the run-up", count)
+    progress.start("Mesh cycles of the run-up", count)
     figures = _march(marcher, path, count, state, kept, progress)
     progress.finish()
     return RunUp(

@@ -15,15 +15,10 @@ import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import (
-    Program,
-    build_program,
-    compile_on,
-    compile_system,
-)
+from tribodyn.dynamics.equations.program import Program, build_program, compile_on, compile_system
 from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import InputError, require_positive, require_whole
 from tribodyn.types import Array, Index
 
 #: ``omega_max * dt`` of the chosen steps; the damping that the integrator adds is then below 4e-5.
@@ -118,8 +113,8 @@ class Tables:
     def _refuse(self, lowest: float) -> None:
         steps = self.fixed
         needed = self.rate / (LIMIT * lowest)
-        if steps is not None and (steps < 1 or int(steps) != steps):
-            raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
+        if steps is not None:
+            require_whole("steps", steps)
         if steps is not None and needed > steps:
             raise InputError(
                 f"omega_max*dt = {LIMIT * needed / steps:.3f} with {steps} steps per mesh "

@@ -24,24 +24,23 @@ from tribodyn.types import Array
 _CHUNK = 64
 
 
-def read_start(system: System, start: tuple[ArrayLike, ArrayLike]) -> Array:
-    """Check a start and return it as one state."""
+def read_start(
+    system: System, start: tuple[ArrayLike, ArrayLike], lanes: int | None = None
+) -> Array:
+    """Check a start and return it as one state (2 n,), or as those of all lanes."""
+    size, several = system.size, f" or ({lanes}, {system.size})" if lanes else ""
     try:
-        parts = [np.broadcast_to(np.asarray(part, dtype=float), (system.size,)) for part in start]
-        state = np.concatenate(parts)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            "start is not a pair (position, velocity)",
-            where="argument start",
-            why=f"Each of the two has the shape ({system.size},)",
-        ) from error
-    if state.size != 2 * system.size or not np.all(np.isfinite(state)):
+        parts = [np.broadcast_to(np.asarray(part, float), (lanes or 1, size)) for part in start]
+        state = np.ascontiguousarray(np.concatenate(parts, axis=1))
+    except (TypeError, ValueError):
+        state = np.zeros((0, 0))
+    if state.shape != (lanes or 1, 2 * size) or not np.all(np.isfinite(state)):
         raise InputError(
             "start holds NaN or infinity, or is not a pair (position, velocity)",
             where="argument start",
-            why=f"Each of the two has the shape ({system.size},)",
+            why=f"Each of the two has the shape ({size},){several}",
         )
-    return state
+    return state if lanes else state[0]
 
 
 def read_force(system: System, extra_force: ArrayLike | None) -> Array:
@@ -56,11 +55,6 @@ def read_force(system: System, extra_force: ArrayLike | None) -> Array:
             why=f"One finite force for each coordinate: ({system.size},)",
         )
     return force
-
-
-def require_cycles(cycles: int) -> None:
-    """Raise :class:`InputError` unless ``cycles`` is a whole number of at least one."""
-    require_whole("cycles", cycles)
 
 
 def simulate(
@@ -137,7 +131,7 @@ def simulate(
     >>> bool(abs(motion.position[128, 0] - np.cos(1.0)) < 1e-9)
     True
     """
-    require_cycles(cycles)
+    require_whole("cycles", cycles)
     require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     extra = read_force(system, extra_force)
@@ -148,7 +142,7 @@ def simulate(
     kept = cycles if kept is None else require_whole("kept", kept)
     skipped = cycles - min(kept, cycles)
     record = np.empty(((cycles - skipped) * steps + 1, 2 * system.size, 1))
-    progress.start("Marching over time", cycles)
+    progress.start("Mesh cycles", cycles)
     elapsed = 0
     while elapsed < cycles:
         count = min(_CHUNK, (skipped if elapsed < skipped else cycles) - elapsed)

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
-from tribodyn.ehl._kernel.elementary import INNER, JIT
+from tribodyn.compiled import announced, source_digest
+from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.multigrid_levels import (
     LEFT,
@@ -37,12 +37,6 @@ from tribodyn.ehl._kernel.newton import CONVERGED, NOT_FINITE, ROUNDED, STALLED
 from tribodyn.ehl._kernel.steady import SteadyContact
 from tribodyn.ehl._kernel.transfer import central, cut_negative, extend, refine
 from tribodyn.types import Array, Index
-
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "inlet",
-    "newton", "steady", "multigrid_levels", "multigrid",
-)  # fmt: skip
 
 #: Columns of the record of cycles: intervals, change of pressure, flux error, load error, least
 #: residual of the cavity per length, last free node.
@@ -69,6 +63,7 @@ class MultigridLimits(NamedTuple):
     flux: float  #: greatest flux error at convergence
     load: float  #: greatest load error at convergence
     cycles: int  #: at most, on one grid
+    film: float  #: relative error of the central film with which a coarser grid does
 
 
 class Cycled(NamedTuple):
@@ -252,8 +247,7 @@ def _build(digest: str) -> Any:
     @nb.njit(cache=True, **JIT)
     def multigrid_solve(
         n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
-        film_tolerance: float, offset: float, free: int, P: Array, H: Array, shape: Array,
-        films: Array, record: Array,
+        offset: float, free: int, P: Array, H: Array, shape: Array, films: Array, record: Array,
     ) -> Cycled:  # fmt: skip
         """Solve a steady contact by full multigrid, from a pressure on the grid ``first``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -295,7 +289,7 @@ def _build(digest: str) -> Any:
                     status = nb.int64(NOT_FINITE)
                 elif still and change < limits.pressure and flux < limits.flux:
                     break
-                elif g > 0 and film_tolerance == 0.0:
+                elif g > 0 and limits.film == 0.0:
                     if cycles >= _PASSING_CYCLES or (
                         change < limits.pressure and flux < max(limits.flux, _PASSING_FLUX)
                     ):
@@ -310,7 +304,7 @@ def _build(digest: str) -> Any:
                     break
             films[used] = central(m, contact.start, level.grid.dx, level.H)
             error = abs(films[used] - films[used - 1]) / 3.0 if used > 0 else np.inf
-            if status != CONVERGED or g == 0 or error < film_tolerance * films[used]:
+            if status != CONVERGED or g == 0 or error < limits.film * films[used]:
                 break
             used += 1
             g -= 1
@@ -327,4 +321,6 @@ def _build(digest: str) -> Any:
     return multigrid_solve
 
 
-multigrid_solve = _build(source_digest(Path(__file__).parent, _SOURCES))
+_FILES = (*SOURCES, "steady", "multigrid_levels", "multigrid")
+multigrid_solve = _build(source_digest(Path(__file__).parent, _FILES))
+multigrid_solve = announced(multigrid_solve, "the multigrid film solver", "half a minute")

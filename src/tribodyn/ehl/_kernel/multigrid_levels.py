@@ -15,8 +15,8 @@ import numba as nb
 import numpy as np
 
 from tribodyn.ehl._kernel.elementary import INNER
-from tribodyn.ehl._kernel.factors import lu_factor, lu_solve
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, influence
+from tribodyn.ehl._kernel.linear_solver import lu_factor, lu_solve
 from tribodyn.ehl._kernel.newton import CONVERGED, GAP, SINGULAR
 from tribodyn.ehl._kernel.reynolds import Fields, fill_oil, fill_tangent, make_fields, residual
 from tribodyn.types import Array, Index
@@ -113,10 +113,8 @@ def fill_balance(level: Level, work: LevelWork) -> None:
 @nb.njit(**INNER)
 def fill_level_tangent(level: Level, work: LevelWork) -> None:
     """Tangent about pressure and film of a grid."""
-    fill_tangent(
-        level.grid.n, level.grid.dx, work.lam, 1.0, 0.0, level.P, level.H, work.fields,
-        work.by_film, work.by_pressure,
-    )  # fmt: skip
+    n, dx, H, fields = level.grid.n, level.grid.dx, level.H, work.fields
+    fill_tangent(n, dx, 1.0, 0.0, level.P, H, fields, work.by_film, work.by_pressure)
 
 
 @nb.njit(**INNER)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
-from tribodyn.ehl.formulas.lubrication_regimes import (
+from tribodyn.ehl.formulas.dimensionless_groups import (
     elastic_isoviscous,
     elastic_piezoviscous,
     rigid_isoviscous,
@@ -101,8 +101,7 @@ def choose_domain(domain: Any, inlet: str, film: float, scales: ContactScales) -
     else:
         # The first terms hold for gears; between rigid bodies all lengths go with the root.
         root = math.sqrt(2.0 * film)
-        reach = 1.2 * film + 3.0 * max(0.0, film - 0.5)
-        start = -max(3.0, 4.0 + min(reach, 12.0 * root))
+        start = -max(3.0, 4.0 + min(1.2 * film, 8.0 * root))
         end = 1.5 + min(0.4 * max(0.0, film - 0.5), 1.5 * root)
     _check_extent(start, end, inlet, film)
     tail, tail_load = inlet_tail(start, film, scales.lam) if inlet == "flooded" else (0.0, 0.0)
@@ -171,7 +170,7 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
     if (
         isinstance(nodes, bool)
         or not isinstance(nodes, Real)
-        or not -_ENDLESS < nodes < _ENDLESS
+        or not -_ENDLESS < cast(float, nodes) < _ENDLESS
         or not float(nodes).is_integer()
     ):
         raise InputError(

@@ -36,22 +36,16 @@ class LineContactSolution(Record):
         Pressure above ambient.
     film : (nodes,) array [m]
         Gap between the bodies.
-    central_film : float [m]
-        Film at position zero.
-    minimum_film : float [m]
-        Least film between inlet and outlet.
-    hertz_pressure : float [Pa]
-        Maximum pressure of the dry contact.
-    half_width : float [m]
-        Half width b of the dry contact.
+    central_film, minimum_film : float [m]
+        Film at position zero, and least film between inlet and outlet.
+    hertz_pressure, half_width : float [Pa], [m]
+        Maximum pressure and half width b of the dry contact.
     outlet : float [m]
         Position where the oil film parts.
-    spike_pressure : float, optional [Pa]
-        Local maximum of the pressure nearest to the outlet; ``None`` where the pressure has a
-        single maximum below the Hertz pressure. Not converged on uniform grids: too low by
-        10 % and more.
-    spike_position : float, optional [m]
-        Where the spike lies.
+    spike_pressure, spike_position : float, optional [Pa], [m]
+        Local maximum of the pressure nearest to the outlet, and where it lies; ``None`` where the
+        pressure has a single maximum below the Hertz pressure. Not converged on uniform grids: too
+        low by 10 % and more.
     flux_error : float [-]
         Greatest relative deviation of the mass flux from its mean.
     load_error : float [-]
@@ -71,32 +65,24 @@ class LineContactSolution(Record):
         Engine that found the solution.
     regime : str
         One of the four regimes of Moes.
-    central_film_error : float [m]
-        Estimate of the error of ``central_film`` by the grid.
-    central_film_extrapolated : float, optional [m]
-        Central film extrapolated to an infinitely fine grid; ``None`` without a coarser grid.
+    central_film_error, central_film_extrapolated : float, optional [m]
+        Estimate of the error of ``central_film`` by the grid; its extrapolation to an infinitely
+        fine grid, ``None`` without a coarser grid.
     attempts : tuple of str
         What was tried in vain before.
     moes_load, moes_viscosity : float [-]
         Numbers M and L of Moes.
-    load_per_width : float [N/m]
-        Load that was asked for.
-    equivalent_radius : float [m]
-        Reduced radius of curvature.
-    entrainment_speed : float [m/s]
-        HALF the sum of the surface speeds.
+    load_per_width, equivalent_radius, entrainment_speed : float [N/m], [m], [m/s]
+        What was asked for, as for :func:`tribodyn.ehl.solve_line_contact`.
     effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+        As there.
     lubricant : Lubricant, optional
         The oil; ``None`` for a contact given by the numbers of Moes.
-    viscosity_law : str
-        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
-    compressible : bool
-        Whether the density rises with pressure.
-    minimum_film_error : float [m]
-        Estimate of the error of ``minimum_film`` by the grid.
-    pressure_error : float [Pa]
-        Estimate of the error of the greatest pressure by the grid; great where that is the spike.
+    viscosity_law, compressible : str, bool
+        Law of the viscosity that was used, and whether the density rises with pressure.
+    minimum_film_error, pressure_error : float [m], [Pa]
+        Estimates of the errors of ``minimum_film`` and of the greatest pressure by the grid; the
+        latter is great where that is the spike.
     """
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
@@ -135,9 +121,9 @@ class LineContactSolution(Record):
     lubricant: Lubricant | None
     viscosity_law: str = fact()
     compressible: bool
-    minimum_film_error: float = fact()
-    pressure_error: float = fact()
     _grid: DiscreteContact
+    minimum_film_error: float = fact(default=float("nan"))
+    pressure_error: float = fact(default=float("nan"))
 
     @property
     def film_unit(self) -> float:

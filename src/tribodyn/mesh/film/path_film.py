@@ -9,13 +9,14 @@ formula follows every change of load, radius and speed.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.errors import quiet, warn
 from tribodyn.friction import LAWS, TribologicalContact
@@ -43,8 +44,7 @@ from tribodyn.mesh.film.film_refinement import (
     places_of,
 )
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
-from tribodyn.mesh.sharing import Teeth
-from tribodyn.mesh.tooth_contact import ToothContact
+from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Index, Mask
 
@@ -146,10 +146,8 @@ class PathFilm:
         )
         yielding = known.yielding if PRESSURE in checked else np.ones(again.size, dtype=bool)
         first.yielding[count:] = yielding
-        refinement = Refinement(
-            self.places, self.pairs, self.zone, loads, known, first,
-            lambda new: self._solve_more(new, loads),
-        )  # fmt: skip
+        more = partial(self._solve_more, loads)
+        refinement = Refinement(self.places, self.pairs, self.zone, loads, known, first, more)
         if checked:
             refinement.refine(checked)
         if PRESSURE in checked:
@@ -164,7 +162,7 @@ class PathFilm:
             scored=loads.scored,
         )
 
-    def _solve_more(self, contacts: Index, loads: PathLoads) -> Places:
+    def _solve_more(self, loads: PathLoads, contacts: Index) -> Places:
         pairs, zone = self.pairs.some(contacts), self.zone[contacts]
         with quiet("seed-film-stiffness"):
             # The positions have said it already.

@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import require_positive, warn
 from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel
+from tribodyn.stiffness.model import MODELS, MeshState
 from tribodyn.types import Array
 
 #: N/(mm um) in SI.
@@ -37,16 +37,12 @@ def iso6336_single_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material : SpurPair, Material
+        Both gears in their working position, and their material.
     normal_force : float [N]
         Force along the line of action.
-    application_factor : float
-        ``K_A``.
-    gear_blank_factor : float
-        ``C_R``; 1 for solid discs.
+    application_factor, gear_blank_factor : float
+        ``K_A``, and ``C_R``, which is 1 for solid discs.
 
     Returns
     -------
@@ -162,10 +158,8 @@ def iso6336_pair_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material
+        As for :func:`iso6336_single_stiffness`.
     path : array [m]
         Distance of the contact from the pinion's base tangent point.
     normal_force : float [N]
@@ -204,18 +198,12 @@ def iso6336_pair_stiffness(
     return pair.common_face_width * single * (1.0 - 3.0 * (1.0 - mean) * from_middle**2)
 
 
+@MODELS.define(
+    "iso6336",
+    meaning="stiffness from the fitted formulas of ISO 6336-1, over the path as a parabola",
+    papers=("iso-6336-1",),
+)
 def _model(*mesh: Any, **options: Any) -> Array:
     state = MeshState(*mesh)
     stiffness = iso6336_pair_stiffness(state.pair, state.material, state.path, state.normal_force)
     return np.where(state.in_contact, stiffness, 0.0)
-
-
-MODELS.register("iso6336")(
-    StiffnessModel(
-        "iso6336",
-        _model,
-        {},
-        meaning="stiffness from the fitted formulas of ISO 6336-1, over the path as a parabola",
-        papers=("iso-6336-1",),
-    )
-)

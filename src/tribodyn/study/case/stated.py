@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 #: Equal to this, two ways of writing one value are the same.
 _ROUNDING = 1e-9
 _PARTS = {"value", "reason"}
+#: Faults that are told.
+_TOLD = 50
 
 Found = list[tuple[str, Problem]]
 
@@ -34,6 +36,11 @@ class Stated(NamedTuple):
     marks: dict[str, Any]
     #: Values that the case began with, and the origin that stands for them.
     base: dict[str, Any]
+
+
+def differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> set[str]:
+    """Keys of values that are not equal to rounding any more."""
+    return {key for key, value in before.items() if not same(value, now.get(key))}
 
 
 def same(one: Any, other: Any) -> bool:
@@ -95,6 +102,8 @@ def _read(given: Given, table: str, typed: Mapping[str, Any]) -> tuple[dict[str,
     values: dict[str, Any] = {}
     found: Found = []
     for key, value in typed.items():
+        if len(found) > _TOLD:
+            break
         spec, place = _spec_at(key, given), f"{table}.{key}"
         if spec is None:
             why, remedy = f"[{table}] remembers values of this case", "Remove the line"
@@ -136,7 +145,7 @@ def settled(
     # A reason without a recorded value belongs to the value that it came with.
     reasons = case.assumed
     marks = {key: stated.marks.get(key, values.get(key)) for key in reasons}
-    stale = {key for key, value in marks.items() if not same(value, values.get(key))}
+    stale = differing(marks, values)
     said = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
     kept = {key: value for key, value in marks.items() if key not in stale}
     if stated.base and case.origin in (None, stated.base.get("origin")):

@@ -80,7 +80,7 @@ def rehearse(case: Case) -> None:
 def computed(case: Case, progress: Progress = SILENT) -> Result:
     """Compute a case; what the models said is kept in the result alone."""
     with placed(case), collected() as found:
-        progress.start("tooth contact")
+        progress.start("Tooth contact")
         mesh = mesh_of(case, progress)
         friction = load_friction_of(case, mesh)
         damping = damping_of(case, mesh)

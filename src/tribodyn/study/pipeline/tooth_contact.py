@@ -43,7 +43,7 @@ def mesh_of(
     """
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
-    from tribodyn.mesh.tooth_contact import ToothContact
+    from tribodyn.mesh.sharing import ToothContact
 
     if case.mesh_table is not None:
         return case.mesh_table.table(

@@ -117,7 +117,7 @@ def campbell(
 
 def _system(case: Case, progress: Progress) -> tuple[System, float]:
     with placed(case), collected():
-        progress.start("tooth contact")
+        progress.start("Tooth contact")
         member = built(case)
         progress.finish()
     return member.system, member.mesh.mesh_frequency
