@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import Argument, InputError, real_numbers, require_positive
+from tribodyn.errors import Argument, InputError, Problem, real_numbers, require_positive, shortened
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 
@@ -38,3 +40,31 @@ def one_or_more(**quantities: ArrayLike) -> list[Array]:
                 remedy="Give each value once; several quantities are combined, each with each",
             )
     return lists
+
+
+def require_whole(name: str, value: Any, least: int = 1) -> int:
+    """Return a whole number, or raise :class:`InputError`."""
+    number = real_numbers(Argument(name), value, "a whole number")
+    if number.ndim or not (float(number).is_integer() and least <= number <= 1e9):
+        why = f"A whole number from {least} to {1e9:g}"
+        raise InputError(Problem(f"{name} = {shortened(repr(value))}", Argument(name), why))
+    return int(number)
+
+
+def require_number(name: str, value: Any) -> float:
+    """Return one finite number, or raise :class:`InputError`."""
+    number = real_numbers(Argument(name), value, "a number")
+    if number.ndim or not np.abs(number) < 1e60:
+        raise InputError(
+            Problem(f"{name} = {shortened(repr(value))}", Argument(name), "A finite number")
+        )
+    return float(number)
+
+
+def require_flag(name: str, value: Any) -> bool:
+    """Return True or False, or raise :class:`InputError` for anything else."""
+    if not isinstance(value, bool | int | np.bool_) or value not in (0, 1):
+        raise InputError(
+            Problem(f"{name} = {shortened(repr(value))}", Argument(name), "True or False")
+        )
+    return bool(value)

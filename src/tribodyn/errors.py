@@ -30,11 +30,8 @@ __all__ = [
     "quiet",
     "real_numbers",
     "require_between",
-    "require_flag",
-    "require_number",
     "require_one_of",
     "require_positive",
-    "require_whole",
     "shortened",
     "warn",
 ]
@@ -408,102 +405,6 @@ def require_between(
         f"between {low:g} and {high:g} {unit}".rstrip(),
         remedy,
     )
-
-
-#: No count is as large.
-_MOST_COUNTED = 1e9
-
-
-def require_whole(name: str, value: Any, least: int = 1) -> int:
-    """Return a whole number, or raise :class:`InputError`.
-
-    Parameters
-    ----------
-    name : str
-        Argument name used in the message.
-    value : int
-        What was given; 3.0 counts as 3.
-    least : int
-        The least that is allowed.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    InputError
-        If the value is no whole number or less than that.
-
-    Examples
-    --------
-    >>> require_whole("steps", 512)
-    512
-    """
-    number = real_numbers(Argument(name), value, "a whole number")
-    if number.ndim or not (float(number).is_integer() and least <= number <= _MOST_COUNTED):
-        why = f"A whole number from {least} to {_MOST_COUNTED:g}"
-        raise InputError(Problem(f"{name} = {_brief(value)}", Argument(name), why))
-    return int(number)
-
-
-def require_number(name: str, value: Any) -> float:
-    """Return one finite number, or raise :class:`InputError`.
-
-    Parameters
-    ----------
-    name : str
-        Argument name used in the message.
-    value : float
-        What was given.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InputError
-        If it is not a single finite real number.
-
-    Examples
-    --------
-    >>> require_number("tolerance", 1e-8)
-    1e-08
-    """
-    number = real_numbers(Argument(name), value, "a number")
-    if number.ndim or not np.abs(number) < _ENDLESS:
-        raise InputError(Problem(f"{name} = {_brief(value)}", Argument(name), "A finite number"))
-    return float(number)
-
-
-def require_flag(name: str, value: Any) -> bool:
-    """Return True or False, or raise :class:`InputError` for anything else.
-
-    Parameters
-    ----------
-    name : str
-        Argument name used in the message.
-    value : bool
-        What was given; 0 and 1 count as well.
-
-    Returns
-    -------
-    bool
-
-    Raises
-    ------
-    InputError
-        If the value is neither.
-
-    Examples
-    --------
-    >>> require_flag("compressible", True)
-    True
-    """
-    if not isinstance(value, bool | int | np.bool_) or value not in (0, 1):
-        raise InputError(Problem(f"{name} = {_brief(value)}", Argument(name), "True or False"))
-    return bool(value)
 
 
 def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:

@@ -16,13 +16,17 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_whole
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, require_whole
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+)
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.load_friction import coefficient_count
@@ -24,7 +25,10 @@ from tribodyn.dynamics.equations.step_limit import (
     refuse_unstable_step,
 )
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, require_positive, require_whole
+from tribodyn.errors import (
+    InputError,
+    require_positive,
+)
 from tribodyn.types import Index, Mask
 
 

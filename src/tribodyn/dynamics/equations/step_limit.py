@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from tribodyn.checks import require_number
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
@@ -19,7 +20,6 @@ from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import (
     InputError,
-    require_number,
     require_positive,
 )
 from tribodyn.types import Array, ComplexArray, Index

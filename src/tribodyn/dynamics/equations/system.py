@@ -16,14 +16,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.errors import (
     InputError,
     real_numbers,
-    require_flag,
-    require_number,
     require_positive,
-    require_whole,
 )
 from tribodyn.types import Array
 

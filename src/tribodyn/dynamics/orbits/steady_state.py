@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
@@ -25,8 +26,6 @@ from tribodyn.dynamics.orbits.step_error import step_error
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import (
-    require_number,
-    require_whole,
     warn,
 )
 from tribodyn.progress import SILENT, Progress

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_whole
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
@@ -19,7 +20,12 @@ from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, quiet, require_positive, require_whole
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+    quiet,
+    require_positive,
+)
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
@@ -13,9 +14,7 @@ from tribodyn.errors import (
     Argument,
     InputError,
     real_numbers,
-    require_number,
     require_positive,
-    require_whole,
 )
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array

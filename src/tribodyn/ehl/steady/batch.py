@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.checks import require_flag, require_number
 from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
@@ -23,8 +24,6 @@ from tribodyn.errors import (
     TribodynError,
     quiet,
     real_numbers,
-    require_flag,
-    require_number,
     require_positive,
     warn,
 )

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.checks import require_flag
 from tribodyn.errors import (
     Argument,
     InputError,
     real_numbers,
     require_between,
-    require_flag,
     require_one_of,
     require_positive,
 )

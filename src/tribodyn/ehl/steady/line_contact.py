@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, estimate_film
@@ -20,8 +21,6 @@ from tribodyn.errors import (
     InputError,
     real_numbers,
     require_between,
-    require_number,
-    require_whole,
     warn,
 )
 from tribodyn.lubricant import Lubricant
