@@ -72,7 +72,7 @@ def run_up(
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> run_up(case, ("3000 rpm", "3300 rpm"), 0.1, tables=2)
-    RunUp(0.1 s, 84 mesh cycles from 800 over 880 to 880 Hz, 6 coordinates, 128 samples per cycle)
+    RunUp(0.1 s, 84 mesh cycles, mesh frequency 800 to 880 Hz, 6 coordinates, 128 samples per cycle)
     """
     from tribodyn.dynamics import run_up as compute
     from tribodyn.dynamics import speed_ramp
