@@ -153,6 +153,54 @@ def write_bifurcation_report(
     return _write(Path(path), case, page)
 
 
+def write_study_report(
+    case: Any,
+    path: str | os.PathLike[str],
+    *,
+    kind: str,
+    told: Sequence[str],
+    figures: Sequence[tuple[str, Any, str]],
+    head: Sequence[str],
+    rows: Sequence[Sequence[str]],
+) -> Path:
+    """Write any other study of a case to a file.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was studied.
+    path : path
+        File to write; an existing one is replaced.
+    kind : str
+        What kind of study it is.
+    told : sequence of str
+        What was found, in sentences.
+    figures : sequence of (str, figure, str)
+        Heading, plotly figure and caption of each.
+    head, rows : sequence of str, sequence of sequence of str
+        The table.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    blocks = [
+        drawn_block(f"figure-{number}", heading, drawn, caption)
+        for number, (heading, drawn, caption) in enumerate(figures, 1)
+    ]
+    page = _Page(
+        kind=kind, lead=told[0], varied=[], blocks=blocks, cards=[], notice_heading="What it says",
+        notices=list(told), head=head, rows=rows,
+    )  # fmt: skip
+    return _write(Path(path), case, page)
+
+
 def _headed(words: str, unit: str) -> str:
     text = words.replace("_", " ")
     return f"{text[:1].upper()}{text[1:]} [{unit}]" if unit else f"{text[:1].upper()}{text[1:]}"
