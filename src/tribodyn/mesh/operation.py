@@ -19,7 +19,7 @@ from tribodyn.mesh.film.film_columns import as_columns, film_places
 from tribodyn.mesh.sharing import LEAST_SHARE, teeth_of
 from tribodyn.mesh.tooth_contact import ToothContact
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Record, quantity, record
+from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array, Mask
 
 _NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
@@ -73,6 +73,14 @@ class FilmOverOperation(Record):
     film_ratio: Array | None = quantity("torque", "speed", "position", default=None)
     film_pressure: Array | None = quantity("torque", "speed", "position", default=None)
     film_stiffness: Array | None = quantity("torque", "speed", "position", default=None)
+
+    def _parts(self) -> Parts:
+        """With coordinates of the dimensions, by which frames and selections find values."""
+        parts = super()._parts()
+        for dim, name in (("torque", "pinion_torque"), ("speed", "pinion_speed"),
+                          ("position", "path")):  # fmt: skip
+            parts.coordinates[dim] = (dim, *parts.coordinates[name][1:])
+        return parts
 
     def __repr__(self) -> str:
         """One line."""

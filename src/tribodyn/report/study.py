@@ -18,15 +18,6 @@ from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.words import in_words
 
-#: Figures of the summary that the report of a sweep draws and tabulates, where they occur.
-SWEEP_FIGURES = (
-    "rms_mesh_force",
-    "peak_mesh_force",
-    "peak_to_peak_dynamic_transmission_error",
-    "rms_bearing_force_loa_pinion",
-    "mean_friction_power",
-    "contact_loss_share",
-)
 #: Rows of the table; more are in the files beside it.
 _ROWS = 400
 
@@ -68,7 +59,7 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
     InputError
         If the place cannot be written to.
     """
-    names = [name for name in SWEEP_FIGURES if name in found.figures]
+    names = found.shown()
     caption = plot.sweep.caption_of(found)
     blocks = [
         drawn_block(name, in_words(name), found.plot(name), caption if name == names[0] else "")
