@@ -19,6 +19,7 @@ SCRIPTS = (
     "parameter_map",
     "film_speed",
     "film_batch",
+    "friction_speed",
     "fe2d_speed",
     "stiffness_speed",
     "cold_start",

@@ -1,12 +1,21 @@
-"""How compiled kernels are kept on disk: by the content of all their sources."""
+"""How compiled kernels are kept on disk, by the content of all their sources, and announced."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
+from typing import Any, TypeVar
 
-__all__ = ["source_digest"]
+__all__ = ["announced", "source_digest", "telling"]
+
+Kernel = TypeVar("Kernel")
+
+#: What is told of a kernel when it is first compiled; by kernel.
+_texts: dict[Any, str] = {}
 
 
 def source_digest(folder: str | Path, names: Sequence[str]) -> str:
@@ -34,3 +43,76 @@ def source_digest(folder: str | Path, names: Sequence[str]) -> str:
     """
     content = [(Path(folder) / f"{name}.py").read_bytes() for name in names]
     return hashlib.sha256(b"".join(content)).hexdigest()
+
+
+def announced(kernel: Kernel, what: str, time: str) -> Kernel:
+    """Say so whenever a kernel is compiled, which is once on a machine: else it looks like a hang.
+
+    Parameters
+    ----------
+    kernel : Numba function
+        Kept on disk.
+    what : str
+        What it does, for example ``"the film solver"``.
+    time : str
+        How long compiling it takes.
+
+    Returns
+    -------
+    Numba function
+        The same.
+
+    Examples
+    --------
+    >>> announced(len, "the film solver", "one to two minutes") is len
+    True
+    """
+    _texts[kernel] = f"compiling {what}, once on this machine, about {time}"
+    _listen()
+    return kernel
+
+
+@cache
+def _listen() -> None:
+    """Listen to Numba, once."""
+    from numba.core import event
+
+    class Compiling(event.Listener):  # type: ignore[misc]
+        def on_start(self, event: Any) -> None:
+            text = _texts.pop(event.data["dispatcher"], None)
+            if text is not None:
+                _tellers[-1](text)
+
+        def on_end(self, event: Any) -> None:
+            pass
+
+    event.register("numba:compile", Compiling())
+
+
+def _to_terminal(text: str) -> None:
+    """Write to whoever sits before a terminal or a notebook."""
+    if sys.stderr.isatty() or hasattr(sys, "ps1"):
+        sys.stderr.write(f"tribodyn: {text}\n")
+
+
+_tellers: list[Callable[[str], None]] = [_to_terminal]
+
+
+@contextmanager
+def telling(teller: Callable[[str], None]) -> Iterator[None]:
+    """Let a function tell what is compiled inside the block.
+
+    Parameters
+    ----------
+    teller : callable
+        Takes one line.
+
+    Yields
+    ------
+    None
+    """
+    _tellers.append(teller)
+    try:
+        yield
+    finally:
+        _tellers.remove(teller)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 __all__ = [
     "Argument",
@@ -26,6 +27,7 @@ __all__ = [
     "TribodynError",
     "collected",
     "quiet",
+    "real_numbers",
     "require_between",
     "require_one_of",
     "require_positive",
@@ -238,10 +240,55 @@ def quiet(*codes: str) -> Iterator[None]:
         yield
 
 
+def real_numbers(
+    where: Argument | ModelOption | str, value: Any, wanted: str = "real numbers"
+) -> NDArray[np.float64]:
+    """Read a number or an array of numbers as floats.
+
+    Parameters
+    ----------
+    where : Argument, ModelOption or str
+        What the value belongs to.
+    value : float or array
+        What was given.
+    wanted : str
+        What belongs there instead.
+
+    Returns
+    -------
+    array
+        Of the same shape.
+
+    Raises
+    ------
+    InputError
+        If it is a text, complex, nothing, of uneven rows or anything else but real numbers.
+
+    Examples
+    --------
+    >>> float(real_numbers("nodes", 3))
+    3.0
+    """
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind == "O" and all(isinstance(one, int) for one in array.flat):
+            array = array.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        array = np.asarray(None)
+    if array.dtype.kind not in "fiub":
+        raise InputError(Problem(f"{_brief(value)} is not real", where, f"Wanted: {wanted}"))
+    return array.astype(float)
+
+
+def _brief(value: Any) -> str:
+    text = f'"{value}"' if isinstance(value, str) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
 def _check(
     name: str, value: Any, unit: str, holds: Callable[[Any], Any], limit: str, remedy: str
 ) -> None:
-    array = np.asarray(value, dtype=float)
+    array = real_numbers(Argument(name), value)
     bad = ~(np.isfinite(array) & holds(array))
     if np.any(bad):
         worst = np.atleast_1d(array)[np.atleast_1d(bad)][0]

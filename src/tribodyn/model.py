@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Names = Callable[[], list[str]]
 
-#: The default of an option that must be given.
+#: The default of an option that must be given, and what no options are.
 REQUIRED: Any = ...
+NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -190,6 +191,8 @@ def _declared(default: Any) -> Option:
     """An option of which only the default is known."""
     if isinstance(default, Option):
         return default
+    if default is None:
+        return Option("number", "", REQUIRED, example="1.0")
     if isinstance(default, bool):
         return Option("flag", "", default)
     if isinstance(default, str):

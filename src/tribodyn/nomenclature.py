@@ -141,6 +141,7 @@ time | t | s | ms | time
 angle | | rad | deg | angle | "20 deg"
 contact_loss_share | | | | part of the mesh cycle without contact on the driving flank
 steady_state_error | | | | distance to the exact periodic orbit relative to its size
+step_error | | | | distance to the periodic orbit at half the step relative to its size
 path | g | m | mm | distance of a contact from the pinion's base tangent point along the line of action
 in_contact | | | | whether a tooth pair is in contact
 pinion_curvature_radius | rho_1 | m | mm | radius of curvature of the pinion's flank in the contact

@@ -184,7 +184,7 @@ def test_new_writes_a_case_that_checks(
         (["run", "fzg-roughness", "--oot", "x"], "--out"),
         (["check", "fzg-roughnes"], 'Did you mean "fzg-roughness"?'),
         (["check", "."], "directory"),
-        (["explain", "alpha_w"], "alpha_wt"),
+        (["explain", "alpha_vt"], "alpha_wt"),
         (["new"], "tribodyn new my.toml"),
     ],
 )

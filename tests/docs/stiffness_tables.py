@@ -16,7 +16,7 @@ from known_pairs import pair_of, standard, type_c
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness import MODELS, LoadedContact, loaded_contact
 from tribodyn.stiffness.loaded.contact import compliance_of
-from tribodyn.stiffness.loaded.load_points import contact_places
+from tribodyn.stiffness.loaded.problem import contact_places
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "stiffness.md"
 

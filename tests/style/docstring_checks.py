@@ -27,6 +27,7 @@ PHYSICS = {
     "lubricant",
     "ehl",
     "friction",
+    "losses",
     "stiffness",
     "mesh",
     "dynamics",

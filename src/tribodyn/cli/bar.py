@@ -3,9 +3,54 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
+from tribodyn.cli.screen import tell
+from tribodyn.compiled import telling
 from tribodyn.progress import SILENT, Progress
+
+
+def _columns() -> list[Any]:
+    """Spinner, what is done, how many of how many, a bar, and the time that is gone and left."""
+    from rich.progress import (
+        BarColumn,
+        ProgressColumn,
+        SpinnerColumn,
+        TextColumn,
+        TimeElapsedColumn,
+    )
+    from rich.text import Text
+
+    class Count(ProgressColumn):
+        def render(self, task: Any) -> Text:
+            return Text(counted(task.completed, task.total))
+
+    class Left(ProgressColumn):
+        max_refresh = 0.5
+
+        def render(self, task: Any) -> Text:
+            return Text(left(task.time_remaining))
+
+    text = TextColumn("{task.description}")
+    return [SpinnerColumn(), text, Count(), BarColumn(), TimeElapsedColumn(), Left()]
+
+
+def counted(done: float, total: float | None) -> str:
+    """How many of how many; empty where nobody knows."""
+    return "" if total is None else f"{done:.0f} of {total:.0f}"
+
+
+def left(seconds: float | None) -> str:
+    """Time that is left, to two digits; empty where nobody knows."""
+    if not seconds:
+        return ""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"about {hours} h {minutes} min left"
+    return f"about {minutes} min {rest:02d} s left" if minutes else f"about {rest} s left"
 
 
 class Bar:
@@ -13,23 +58,22 @@ class Bar:
 
     def __init__(self) -> None:
         from rich.console import Console
-        from rich.progress import BarColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
         from rich.progress import Progress as Rich
 
-        self._screen = Rich(
-            SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(),
-            console=Console(stderr=True), transient=True,
-        )  # fmt: skip
+        self._screen = Rich(*_columns(), console=Console(stderr=True), transient=True)
         self._task: Any = None
+        self._telling = telling(lambda text: self._screen.console.print(f"{text} ..."))
 
     def __enter__(self) -> Progress:
         """Start drawing."""
+        self._telling.__enter__()
         self._screen.start()
         return self
 
     def __exit__(self, *_: object) -> None:
         """Clear the bar."""
         self._screen.stop()
+        self._telling.__exit__(None, None, None)
 
     def start(self, task: str, total: int | None = None) -> None:
         """Begin a task of ``total`` steps."""
@@ -48,23 +92,19 @@ class Bar:
             self._task = None
 
 
-class _NoBar:
-    """Where stderr is no terminal."""
-
-    def __enter__(self) -> Progress:
-        """Stay silent."""
-        return SILENT
-
-    def __exit__(self, *_: object) -> None:
-        """Stay silent."""
+@contextmanager
+def _no_bar() -> Iterator[Progress]:
+    """Where stderr is no terminal: only what is compiled is told, for that takes minutes."""
+    with telling(tell):
+        yield SILENT
 
 
-def progress_bar() -> Bar | _NoBar:
-    """Return a bar if stderr is a terminal, else something that draws nothing.
+def progress_bar() -> AbstractContextManager[Progress]:
+    """Return a bar if stderr is a terminal, else something that draws none.
 
     Returns
     -------
     context manager
         Yields a :class:`tribodyn.progress.Progress`.
     """
-    return Bar() if sys.stderr.isatty() else _NoBar()
+    return Bar() if sys.stderr.isatty() else _no_bar()

@@ -93,7 +93,7 @@ def bifurcation(
         )
     findings = Findings(ready, found)
     with progress_bar() as progress:
-        progress.start("writing the report")
+        progress.start("Report")
         _save(found, ready, findings, target, force=force)
         progress.finish()
     if json:

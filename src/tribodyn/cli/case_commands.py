@@ -36,7 +36,7 @@ def check(
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Check a case and show the geometry that follows from it; nothing is computed beyond.
+    """Check a case, rehearse its run and show the geometry that follows from it.
 
     Parameters
     ----------
@@ -51,8 +51,10 @@ def check(
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.first_look import operating_figures
     from tribodyn.study.pipeline.geometry import geometry
+    from tribodyn.study.pipeline.run import rehearse
 
     checked = changed_case(case, set_ or [])
+    rehearse(checked)
     values = {n: float(v) for n, v in (geometry(checked) | operating_figures(checked)).items()}
     if json:
         say_json(values)

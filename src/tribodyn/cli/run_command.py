@@ -57,7 +57,7 @@ def run(
         from tribodyn.study.pipeline.run import run as compute
 
         result = compute(ready, progress)
-        progress.start("writing the report")
+        progress.start("Report")
         result.save(target, force=force, csv=csv)
         progress.finish()
     if json:

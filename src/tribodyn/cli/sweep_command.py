@@ -71,7 +71,7 @@ def sweep(
             "written; Ctrl-C again stops at once"
         )
     with progress_bar() as progress:
-        progress.start("writing the report")
+        progress.start("Report")
         found.save(target, force=force)
         progress.finish()
     _show(found, found.shown(names), json)

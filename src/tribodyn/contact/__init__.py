@@ -5,12 +5,16 @@
 | `path` | where on the line of action tooth pairs are, and how their flanks move there |
 | `separation` | how far teeth are apart before and after the path of contact |
 | `hertz` | half width and pressure of a line contact |
-| `loss_factor` | sliding work over transmitted work at unit friction |
 """
 
 from tribodyn.contact.hertz import HertzLine, effective_modulus, hertz_line
-from tribodyn.contact.loss_factor import equal_share, gear_loss_factor
-from tribodyn.contact.path import Kinematics, PathOfContact, path_of_contact
+from tribodyn.contact.path import (
+    Kinematics,
+    PathOfContact,
+    equal_share,
+    gear_loss_factor,
+    path_of_contact,
+)
 from tribodyn.contact.separation import ExtendedContact, extended_contact
 
 __all__ = [

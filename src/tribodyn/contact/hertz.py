@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import require_between, require_positive
+from tribodyn.checks import positive
+from tribodyn.errors import require_between
 from tribodyn.gear import Material
 from tribodyn.types import Array
 
@@ -99,11 +100,10 @@ def hertz_line(
     0.5698
     """
     require_between("load_per_width", load_per_width, 0.0, math.inf, "N/m")
-    require_positive("equivalent_radius", equivalent_radius, "m")
-    require_positive("effective_modulus", effective_modulus, "Pa")
+    radius, modulus = positive(
+        equivalent_radius=equivalent_radius, effective_modulus=effective_modulus
+    )
     load = np.asarray(load_per_width, dtype=float)
-    radius = np.asarray(equivalent_radius, dtype=float)
-    modulus = np.asarray(effective_modulus, dtype=float)
     half_width = np.sqrt(8.0 * load * radius / (math.pi * modulus))
     maximum = np.sqrt(load * modulus / (2.0 * math.pi * radius))
     return HertzLine(half_width, maximum, math.pi / 4.0 * maximum)

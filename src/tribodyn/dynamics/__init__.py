@@ -1,8 +1,9 @@
 """Lumped structures with time-varying contacts: steady states, transients, ensembles."""
 
+from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
-from tribodyn.dynamics.equations.system import Contact, Entry, LoadFriction, System
+from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.linear.forced_response import ForcedResponse, forced_response
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes

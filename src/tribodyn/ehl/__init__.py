@@ -8,6 +8,7 @@
 | ``transient`` | pressure and film while load, radius and speed change |
 | ``stiffness`` | stiffness and damping of the film |
 | ``traction`` | shear of the oil, and its temperature |
+| ``load_share`` | how much of the load the film carries between rough surfaces |
 | ``roughness`` | measured heights of a surface |
 """
 
@@ -21,6 +22,7 @@ from tribodyn.ehl.formulas.power_laws import (
     pan_hamrock_central,
     pan_hamrock_minimum,
 )
+from tribodyn.ehl.load_share import film_load_share
 from tribodyn.ehl.models import FILM_MODELS, FilmModel
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
@@ -29,12 +31,13 @@ from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import blok_flash_temperature
 from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.traction.newtonian import newtonian_shear_stress
-from tribodyn.ehl.traction.ree_eyring import ree_eyring_shear_stress
-from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.shear_models import (
+    SHEAR_MODELS,
+    newtonian_shear_stress,
+    ree_eyring_shear_stress,
+)
 from tribodyn.ehl.traction.traction import Traction, film_traction
-from tribodyn.ehl.transient.transient import solve_transient_line_contact
-from tribodyn.ehl.transient.transient_result import TransientLineContact
+from tribodyn.ehl.transient.transient import TransientLineContact, solve_transient_line_contact
 
 __all__ = [
     "FILM_MODELS",
@@ -50,6 +53,7 @@ __all__ = [
     "blok_flash_temperature",
     "dowson_1968_minimum",
     "dowson_toyoda_central",
+    "film_load_share",
     "film_traction",
     "inlet_heating_factor",
     "line_contact_groups",

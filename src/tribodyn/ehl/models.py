@@ -16,7 +16,7 @@ from tribodyn.ehl.formulas.power_laws import (
     pan_hamrock_central,
     pan_hamrock_minimum,
 )
-from tribodyn.ehl.steady.solved_films import Films, solved_films
+from tribodyn.ehl.steady.batch import Films, solved_films
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.model import Model, Registry, choice, integer, numbers
@@ -185,16 +185,11 @@ class FilmModel(Model):
 
         Parameters
         ----------
-        load_per_width : float or array [N/m]
-            Normal load per face width.
-        equivalent_radius : float or array [m]
-            Reduced radius of curvature.
-        entrainment_speed : float or array [m/s]
-            HALF the sum of the surface speeds.
-        lubricant : Lubricant
-            Oil at working temperature.
-        effective_modulus : float [Pa]
-            ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+        load_per_width, equivalent_radius, entrainment_speed : float or array [N/m], [m], [m/s]
+            Normal load per face width, reduced radius of curvature, HALF the sum of the surface
+            speeds.
+        lubricant, effective_modulus : Lubricant, float [Pa]
+            Oil at working temperature; ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
         length : float [m]
             Length of the contact line, for the film stiffness.
         progress : Progress

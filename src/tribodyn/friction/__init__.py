@@ -1,21 +1,58 @@
-"""Friction coefficients of the tooth contact: one law per file, picked by name from ``LAWS``."""
+"""Friction coefficients of the tooth contact: one law per file, picked by name from ``LAWS``.
+
+| module | what it answers |
+| --- | --- |
+| `base` | what a law is given and what a law is |
+| `constant` | no friction, or the same everywhere |
+| `benedict_kelly`, `drozdov`, `misharin`, `odonoghue_cameron` | friction of discs, by formula |
+| `xu`, `ehl` | friction of an oil film, by regression or from the solved film |
+| `mixed_ehl`, `matsumoto` | film and asperities share the load |
+| `exponential` | sliding and roughness, with numbers to be fitted |
+| `mesh_means` | one mean value for a whole mesh: Schlenk, ISO, Niemann, measured points |
+| `validity` | the warning of quantities out of the range of a law |
+"""
 
 from __future__ import annotations
 
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.friction.benedict_kelly import benedict_kelly
-from tribodyn.friction.constant import constant
+from tribodyn.friction.constant import constant, none
+from tribodyn.friction.drozdov import drozdov
 from tribodyn.friction.ehl import ehl
-from tribodyn.friction.none import none
+from tribodyn.friction.exponential import exponential
+from tribodyn.friction.matsumoto import matsumoto
+from tribodyn.friction.mesh_means.iso_6336_22 import iso_6336_22
+from tribodyn.friction.mesh_means.iso_14179 import iso_14179_1, iso_14179_2
+from tribodyn.friction.mesh_means.measured import measured
+from tribodyn.friction.mesh_means.niemann import niemann
+from tribodyn.friction.mesh_means.pitch_point import PitchPoint, pitch_point
+from tribodyn.friction.mesh_means.schlenk import schlenk
+from tribodyn.friction.misharin import misharin
+from tribodyn.friction.mixed_ehl import mixed_ehl
+from tribodyn.friction.odonoghue_cameron import odonoghue_cameron
 from tribodyn.friction.xu import xu_2007
 
 __all__ = [
     "LAWS",
     "FrictionLaw",
+    "PitchPoint",
     "TribologicalContact",
     "benedict_kelly",
     "constant",
+    "drozdov",
     "ehl",
+    "exponential",
+    "iso_6336_22",
+    "iso_14179_1",
+    "iso_14179_2",
+    "matsumoto",
+    "measured",
+    "misharin",
+    "mixed_ehl",
+    "niemann",
     "none",
+    "odonoghue_cameron",
+    "pitch_point",
+    "schlenk",
     "xu_2007",
 ]

@@ -15,6 +15,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.ehl.traction.film_state import FilmState
+    from tribodyn.friction.mesh_means.pitch_point import PitchPoint
 
 
 _POSITIVE = (
@@ -51,6 +52,12 @@ class TribologicalContact:
         Root of the sum of squares of the two rms roughnesses.
     film : FilmState, optional
         Solved oil film of every contact, in flat order; ``None`` where none is solved.
+    oil_density : float, optional [kg/m^3]
+        Density of the oil, for laws of kinematic viscosity.
+    film_thickness : array, optional [m]
+        Smallest thickness known of the oil film of each contact.
+    pitch : PitchPoint, optional
+        The mesh at its pitch point, for laws of one mean value.
 
     Raises
     ------
@@ -77,10 +84,14 @@ class TribologicalContact:
     dynamic_viscosity: float
     composite_roughness: float
     film: FilmState | None = field(default=None, repr=False)
+    oil_density: float | None = None
+    film_thickness: Array | None = field(default=None, repr=False)
+    pitch: PitchPoint | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         """Refuse contacts without load, mixed shapes and contradicting speeds."""
         names = [name for name, _ in _POSITIVE] + ["sliding_speed", "slide_to_roll_ratio"]
+        names += ["film_thickness"] if self.film_thickness is not None else []
         shapes = {name: np.shape(getattr(self, name)) for name in names}
         if len(set(shapes.values())) > 1:
             listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
@@ -98,6 +109,10 @@ class TribologicalContact:
             require_positive(name, getattr(self, name), unit, remedy="Leave unloaded pairs out")
         require_positive("dynamic_viscosity", self.dynamic_viscosity, "Pa*s")
         require_between("composite_roughness", self.composite_roughness, 0.0, np.inf, "m")
+        if self.oil_density is not None:
+            require_positive("oil_density", self.oil_density, "kg/m^3")
+        if self.film_thickness is not None:
+            require_between("film_thickness", self.film_thickness, 0.0, np.inf, "m")
         self._require_consistent_sliding()
         if self.film is not None and self.film.size != self.size:
             raise InputError(
@@ -125,6 +140,61 @@ class TribologicalContact:
     def size(self) -> int:
         """Number of contacts."""
         return int(np.size(self.load_per_width))
+
+    @property
+    def kinematic_viscosity(self) -> float:
+        """Viscosity over density [m^2/s]."""
+        return self.dynamic_viscosity / float(self.known("oil_density"))
+
+    @property
+    def film_ratio(self) -> Array:
+        """Film thickness over composite roughness; infinite over smooth flanks."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(self.known("film_thickness") / np.float64(self.composite_roughness))
+
+    def known(self, name: str) -> Any:
+        """Field that a law needs.
+
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+
+        Returns
+        -------
+        object
+            Its value.
+
+        Raises
+        ------
+        InputError
+            If the contacts do not have it, with where it comes from.
+
+        Examples
+        --------
+        >>> TribologicalContact(1e5, 8e8, 1.0, 2.0, 0.5, 8e-3, 0.08, 5e-7, oil_density=880.0).known(
+        ...     "oil_density"
+        ... )
+        880.0
+        """
+        value = getattr(self, name)
+        if value is not None:
+            return value
+        raise InputError(
+            f"{name} is not known",
+            where="TribologicalContact",
+            why="The friction law needs it",
+            remedy=_REMEDIES[name],
+        )
+
+
+#: Where the fields come from that not every law needs.
+_REMEDIES = {
+    "film": 'Set [film] model = "newton" (or "multigrid"), or choose another friction law',
+    "film_thickness": 'Set [film] model, for example "dowson-higginson", or choose another law',
+    "oil_density": "Give the density of the oil",
+    "pitch": "Give pitch = pitch_point(pair, pinion_speed, pinion_torque)",
+}
 
 
 @dataclass(frozen=True)
@@ -223,7 +293,7 @@ class FrictionLaw(Model):
                 remedy=f"Give {name}",
             )
             for name in self.options
-            if complete[name] is None
+            if complete[name] is None and self.declared[name].required
         ]
         if problems:
             raise InputError(problems)

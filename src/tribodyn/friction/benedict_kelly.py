@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between, require_positive, warn
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.model import Registry, choice, number
@@ -94,16 +95,17 @@ def benedict_kelly(
     >>> round(float(benedict_kelly(133022.0, 0.913038, 1.407953, 0.082, 0.53e-6)), 6)
     0.105843
     """
-    require_positive("load_per_width", load_per_width, "N/m", remedy="1 N/mm is 1000 N/m")
     require_between("sliding_speed", sliding_speed, -np.inf, np.inf, "m/s")
-    require_positive("entrainment_speed", entrainment_speed, "m/s")
-    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
     require_positive("minimum_sliding_speed", minimum_sliding_speed, "m/s")
+    load, speed, viscosity = positive(
+        load_per_width=load_per_width,
+        entrainment_speed=entrainment_speed,
+        dynamic_viscosity=dynamic_viscosity,
+    )
     rough = _roughness_factor(roughness)
-    load = np.asarray(load_per_width, dtype=float) * 1e-3
-    viscosity = np.asarray(dynamic_viscosity, dtype=float) * 1e3
+    load, viscosity = load * 1e-3, viscosity * 1e3
     sliding = np.maximum(np.abs(np.asarray(sliding_speed, dtype=float)), minimum_sliding_speed)
-    rolling = ROLLING_SPEEDS[rolling_speed] * np.asarray(entrainment_speed, dtype=float)
+    rolling = ROLLING_SPEEDS[rolling_speed] * speed
     argument = _UNITS * load / (viscosity * sliding * rolling**2)
     coefficient = _clipped(VARIANTS[variant] * rough * np.log10(argument))
     _warn_of_slow(coefficient, rough, entrainment_speed)

@@ -1,4 +1,4 @@
-"""The same friction coefficient everywhere."""
+"""The same friction coefficient everywhere, or none."""
 
 from __future__ import annotations
 
@@ -54,5 +54,33 @@ _COEFFICIENT = number(
     needs_oil=False,
     meaning="one friction coefficient everywhere",
 )
-def _law(contact: TribologicalContact, *, coefficient: float) -> Array:
+def _constant(contact: TribologicalContact, *, coefficient: float) -> Array:
     return constant(coefficient, np.shape(contact.load_per_width))
+
+
+def none(shape: tuple[int, ...] = ()) -> Array:
+    """No friction: a coefficient of zero.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Shape of the result.
+
+    Returns
+    -------
+    float or array
+        Zeros of that shape.
+
+    Valid as a limit. Source: none needed.
+
+    Examples
+    --------
+    >>> none((2,)).tolist()
+    [0.0, 0.0]
+    """
+    return np.zeros(shape)[()]
+
+
+@LAWS.define("none", source="no friction", needs_oil=False)
+def _none(contact: TribologicalContact) -> Array:
+    return none(np.shape(contact.load_per_width))

@@ -11,10 +11,9 @@ from tribodyn.ehl.traction.film_temperature import (
     thermal_oil,
 )
 from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
-from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS
 from tribodyn.ehl.traction.traction import FilmShear
-from tribodyn.errors import InputError, require_positive, warn
+from tribodyn.errors import require_positive, warn
 from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
 from tribodyn.model import choice, flag, number
 from tribodyn.types import Array
@@ -86,7 +85,7 @@ def ehl(
     [0.044] [0.035]
     """
     require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
-    film = _film_of(contact)
+    film = contact.known("film")
     speed = np.abs(np.ravel(contact.sliding_speed))
     factor = _film_factor(contact, film) if inlet_heating else None
     shear = FilmShear(film, SHEAR_MODELS[shear_model], eyring_stress, factor)
@@ -97,17 +96,6 @@ def ehl(
     coefficient = traction / np.ravel(contact.load_per_width)
     _warn_of_solid(coefficient, shear_model)
     return coefficient.reshape(np.shape(contact.load_per_width))
-
-
-def _film_of(contact: TribologicalContact) -> FilmState:
-    if contact.film is not None:
-        return contact.film
-    raise InputError(
-        "the oil film is not known",
-        where='friction law "ehl"',
-        why="it integrates the shear stress of the solved film",
-        remedy='Set [film] model = "newton" (or "multigrid"), or choose another friction law',
-    )
 
 
 def _film_factor(contact: TribologicalContact, film: FilmState) -> Array:

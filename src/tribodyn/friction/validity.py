@@ -22,28 +22,7 @@ class Range(NamedTuple):
 
 
 def warn_outside(law: str, ranges: Iterable[Range], remedy: str) -> None:
-    """Warn once, naming every quantity outside of its range with all that it runs through.
-
-    Parameters
-    ----------
-    law : str
-        Name of the law.
-    ranges : iterable of Range
-        Quantities to look at.
-    remedy : str
-        What the user can do.
-
-    Warns
-    -----
-    ModelWarning
-        Code ``friction-range``.
-
-    Source: the range that each law states.
-
-    Examples
-    --------
-    >>> warn_outside("xu-2007", [Range("hertz_pressure", np.array(1.0), 0.5, 2.5, "GPa")], "")
-    """
+    """Warn once, naming every quantity outside of its range with all that it runs through."""
     faults = [_told(quantity) for quantity in ranges if _leaves(quantity)]
     if faults:
         warn("friction-range", f"{law}: {'; '.join(faults)}. {remedy}", stacklevel=3)

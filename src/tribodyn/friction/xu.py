@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.checks import positive
+from tribodyn.errors import InputError, require_between
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.types import Array
@@ -80,18 +81,16 @@ def xu_2007(
     0.067992
     """
     require_between("slide_to_roll_ratio", slide_to_roll_ratio, -np.inf, np.inf)
-    require_positive("hertz_pressure", hertz_pressure, "Pa")
-    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
     require_between("roughness_rms", roughness_rms, 0.0, np.inf, "m")
-    require_positive("entrainment_speed", entrainment_speed, "m/s")
-    require_positive("equivalent_radius", equivalent_radius, "m")
+    pressure, viscosity, speed, radius = positive(
+        hertz_pressure=hertz_pressure,
+        dynamic_viscosity=dynamic_viscosity,
+        entrainment_speed=entrainment_speed,
+        equivalent_radius=equivalent_radius,
+    )
     ratio = np.abs(np.asarray(slide_to_roll_ratio, dtype=float))
-    pressure = np.asarray(hertz_pressure, dtype=float) * 1e-9
-    viscosity = np.asarray(dynamic_viscosity, dtype=float) * 1e3
     roughness = np.asarray(roughness_rms, dtype=float) * 1e6
-    speed = np.asarray(entrainment_speed, dtype=float)
-    radius = np.asarray(equivalent_radius, dtype=float)
-
+    pressure, viscosity = pressure * 1e-9, viscosity * 1e3
     coefficient = _regression(ratio, pressure, viscosity, roughness, speed, radius)
     _require_plausible(coefficient, float(np.max(roughness)))
     warn_outside(

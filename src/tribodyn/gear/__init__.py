@@ -2,23 +2,27 @@
 
 | module | what it answers |
 | --- | --- |
-| `rack` | the basic rack whose rolling generates the tooth |
 | `curves` | involute and fillet, the two curves of a tooth |
-| `tooth_form` | circles, thickness, flank and fillet of a tooth as the rack cuts it |
+| `tooth_form` | the basic rack, and the tooth that it cuts: circles, thickness, flank and fillet |
 | `spur_gear` | a gear with a body: values in their range, a tooth that can be made |
 | `outline` | the outline of a tooth and of a gear as points |
 | `mass_properties` | material, mass and moment of inertia |
 | `mesh_geometry` | what follows from two tooth forms and a centre distance |
 | `spur_pair` | two gears that can run together |
 | `pair_factory` | a pair from the figures of a drawing |
-| `modification` | modifications and deviations of the flanks of a gear |
-| `profile_map` | a measured deviation of a flank |
-| `flank_gap` | the gap that modified flanks leave |
-| `deviation` | places of the teeth: pitch deviations, run-out, when they recur |
+| `modification` | modifications and deviations of the flanks of a gear, also as a map |
+| `flank_gap` | the gap that modified flanks, pitch deviations and run-out leave |
 """
 
-from tribodyn.gear.deviation import hunting_period, pitch_gap, run_out_gap, tooth_positions
-from tribodyn.gear.flank_gap import flank_gap, lead_gap, profile_gap
+from tribodyn.gear.flank_gap import (
+    flank_gap,
+    hunting_period,
+    lead_gap,
+    pitch_gap,
+    profile_gap,
+    run_out_gap,
+    tooth_positions,
+)
 from tribodyn.gear.mass_properties import MassProperties, Material, mass_properties, section_moments
 from tribodyn.gear.mesh_geometry import (
     FlankRange,
@@ -29,14 +33,12 @@ from tribodyn.gear.mesh_geometry import (
     tip_shortening_coefficient,
     zero_backlash_center_distance,
 )
-from tribodyn.gear.modification import FlankModification
+from tribodyn.gear.modification import FlankModification, ProfileMap
 from tribodyn.gear.outline import gear_outline, half_tooth, tooth_outline
 from tribodyn.gear.pair_factory import spur_pair
-from tribodyn.gear.profile_map import ProfileMap
-from tribodyn.gear.rack import BasicRack
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.spur_pair import SpurPair
-from tribodyn.gear.tooth_form import ToothForm
+from tribodyn.gear.tooth_form import BasicRack, ToothForm
 
 __all__ = [
     "BasicRack",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -45,7 +46,7 @@ class Material:
         require_between("poissons_ratio", self.poissons_ratio, 0.0, 0.499)
         require_positive("density", self.density, "kg/m^3")
 
-    @property
+    @cached_property
     def shear_modulus(self) -> float:
         """Shear modulus E / (2 (1 + nu)) [Pa]."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))

@@ -21,10 +21,8 @@ def operating_pressure_angle(
     ----------
     teeth_sum : int
         Sum of the numbers of teeth.
-    normal_module : float
-        Module [m].
-    normal_pressure_angle : float
-        Pressure angle of the rack [rad].
+    normal_module, normal_pressure_angle : float [m], [rad]
+        Module, and pressure angle of the rack.
     center_distance : float
         Distance of the axes [m].
 
@@ -72,12 +70,8 @@ def zero_backlash_center_distance(
 
     Parameters
     ----------
-    teeth_sum : int
-        Sum of the numbers of teeth.
-    normal_module : float
-        Module [m].
-    normal_pressure_angle : float
-        Pressure angle of the rack [rad].
+    teeth_sum, normal_module, normal_pressure_angle
+        As for :func:`operating_pressure_angle`, in [m] and [rad].
     shift_sum : float
         Sum of the profile shift coefficients.
 
@@ -121,10 +115,8 @@ def tip_shortening_coefficient(
 
     Parameters
     ----------
-    teeth_sum : int
-        Sum of the numbers of teeth.
-    normal_module : float
-        Module [m].
+    teeth_sum, normal_module
+        As for :func:`operating_pressure_angle`, in [m].
     shift_sum : float
         Sum of the profile shift coefficients.
     center_distance : float
@@ -172,12 +164,12 @@ class MeshGeometry:
     wheel: ToothForm
     center_distance: float
 
-    @property
+    @cached_property
     def ratio(self) -> float:
         """Gear ratio z_wheel / z_pinion, at least one."""
         return self.wheel.teeth / self.pinion.teeth
 
-    @property
+    @cached_property
     def base_pitch(self) -> float:
         """Distance of neighbouring flanks along the line of action [m]."""
         return self.pinion.base_pitch
@@ -192,25 +184,25 @@ class MeshGeometry:
             self.center_distance,
         )
 
-    @property
+    @cached_property
     def line_of_action_length(self) -> float:
         """Distance of the two base tangent points, a sin(alpha_wt) [m]."""
         return self.center_distance * math.sin(self.operating_pressure_angle)
 
-    @property
+    @cached_property
     def path_limits(self) -> tuple[float, float]:
         """Ends of the path of contact as ``path`` [m]: at the wheel's tip, at the pinion's tip."""
         wheel_reach = self.wheel.roll_angle(self.wheel.tip_radius) * self.wheel.base_radius
         pinion_reach = self.pinion.roll_angle(self.pinion.tip_radius) * self.pinion.base_radius
         return self.line_of_action_length - wheel_reach, pinion_reach
 
-    @property
+    @cached_property
     def transverse_contact_ratio(self) -> float:
         """Length of the path of contact over the base pitch."""
         first, last = self.path_limits
         return (last - first) / self.base_pitch
 
-    @property
+    @cached_property
     def backlash(self) -> float:
         """Total play on the line of action [m]; rounding of the shifts below zero counts as zero.
 
@@ -228,7 +220,7 @@ class MeshGeometry:
         thickness = self.pinion.tooth_thickness(radii[0]) + self.wheel.tooth_thickness(radii[1])
         return (2.0 * math.pi * radii[0] / self.pinion.teeth - thickness) * cosine
 
-    @property
+    @cached_property
     def tip_shortening_coefficient(self) -> float:
         """Shortening of the addenda that default tip diameters have, over the module."""
         return tip_shortening_coefficient(

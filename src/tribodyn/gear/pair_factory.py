@@ -14,7 +14,6 @@ from tribodyn.gear.mesh_geometry import (
     zero_backlash_center_distance,
 )
 from tribodyn.gear.modification import FlankModification
-from tribodyn.gear.rack import BasicRack
 from tribodyn.gear.spur_gear import GearData, SpurGear, shape_problems
 from tribodyn.gear.spur_pair import (
     ROUNDING_WARNING,
@@ -24,6 +23,7 @@ from tribodyn.gear.spur_pair import (
     mesh_problems,
     misalignment_problems,
 )
+from tribodyn.gear.tooth_form import BasicRack
 
 #: Stands in for a tip diameter that is not known yet; any positive value will do.
 _UNKNOWN_TIP = 1.0

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 
 from tribodyn.errors import Argument, InputError, Problem, warn
 from tribodyn.gear.mesh_geometry import (
@@ -14,8 +15,12 @@ from tribodyn.gear.mesh_geometry import (
     flank_ranges,
     zero_backlash_center_distance,
 )
-from tribodyn.gear.modification import FlankModification, amount_problems
-from tribodyn.gear.profile_map import LARGEST_AMOUNT, ProfileMap
+from tribodyn.gear.modification import (
+    LARGEST_AMOUNT,
+    FlankModification,
+    ProfileMap,
+    amount_problems,
+)
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
 
@@ -94,48 +99,48 @@ class SpurPair(MeshGeometry):
             f"contact ratio {self.transverse_contact_ratio:.4g}, {self.driver} drives)"
         )
 
-    @property
+    @cached_property
     def driving(self) -> SpurGear:
         """The gear that drives."""
         return self.pinion if self.driver == "pinion" else self.wheel
 
-    @property
+    @cached_property
     def driven(self) -> SpurGear:
         """The gear that is driven."""
         return self.wheel if self.driver == "pinion" else self.pinion
 
-    @property
+    @cached_property
     def common_face_width(self) -> float:
         """Face width in contact [m]."""
         return min(self.pinion.face_width, self.wheel.face_width)
 
-    @property
+    @cached_property
     def has_profile_modification(self) -> bool:
         """Whether the gap of a flank changes over its profile."""
         return any(gear.modification.changes_profile for gear in (self.pinion, self.wheel))
 
-    @property
+    @cached_property
     def has_lead_modification(self) -> bool:
         """Whether the gap changes over the face width."""
         leads = any(gear.modification.changes_lead for gear in (self.pinion, self.wheel))
         return leads or self.misalignment != 0.0
 
-    @property
+    @cached_property
     def has_pitch_deviation(self) -> bool:
         """Whether tooth pairs differ by the places of their teeth."""
         return any(gear.modification.changes_pitch for gear in (self.pinion, self.wheel))
 
-    @property
+    @cached_property
     def has_run_out(self) -> bool:
         """Whether a gear turns about an axis that is not its own."""
         return any(gear.modification.run_out != 0.0 for gear in (self.pinion, self.wheel))
 
-    @property
+    @cached_property
     def teeth_differ(self) -> bool:
         """Whether one mesh cycle differs from the next."""
         return any(gear.modification.teeth_differ for gear in (self.pinion, self.wheel))
 
-    @property
+    @cached_property
     def has_modification(self) -> bool:
         """Whether anything makes the flanks differ from involutes in their places."""
         shape = self.has_profile_modification or self.has_lead_modification

@@ -12,7 +12,140 @@ from functools import cached_property
 
 from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear.curves import Trochoid, form_point, involute
-from tribodyn.gear.rack import BasicRack
+
+
+@dataclass(frozen=True)
+class BasicRack:
+    """Basic rack tooth profile; the defaults are profile A of ISO 53.
+
+    Parameters
+    ----------
+    addendum_coefficient : float
+        Addendum divided by the module.
+    dedendum_coefficient : float
+        Dedendum divided by the module: the depth to which the generating rack cuts.
+    tip_radius_coefficient : float
+        Tip radius of the generating rack divided by the module.
+
+    Raises
+    ------
+    InputError
+        If a coefficient is not finite, the addendum or dedendum is not positive, or the tip
+        radius is negative.
+
+    Examples
+    --------
+    >>> round(BasicRack().largest_tip_radius_coefficient(math.radians(20.0)), 4)
+    0.4719
+    """
+
+    addendum_coefficient: float = 1.0
+    dedendum_coefficient: float = 1.25
+    tip_radius_coefficient: float = 0.38
+
+    def __post_init__(self) -> None:
+        limits = {
+            "addendum_coefficient": (self.addendum_coefficient, False),
+            "dedendum_coefficient": (self.dedendum_coefficient, False),
+            "tip_radius_coefficient": (self.tip_radius_coefficient, True),
+        }
+        problems = [
+            Problem(
+                what=f"{name} = {value:.6g}",
+                where=Argument(name),
+                why="It must be finite and " + ("not negative" if zero else "greater than zero"),
+                remedy="ISO 53 profile A has 1.0, 1.25 and 0.38",
+            )
+            for name, (value, zero) in limits.items()
+            if not math.isfinite(value) or value < 0.0 or (value == 0.0 and not zero)
+        ]
+        if problems:
+            raise InputError(problems)
+
+    def tip_half_width_coefficient(self, pressure_angle: float) -> float:
+        """Half width of the sharp rack tooth at its tip line, over the module.
+
+        Parameters
+        ----------
+        pressure_angle : float
+            Pressure angle of the rack [rad].
+
+        Returns
+        -------
+        float
+            pi/4 - h_fP* tan(alpha); not positive when the flanks meet before the tip line.
+        """
+        return math.pi / 4.0 - self.dedendum_coefficient * math.tan(pressure_angle)
+
+    def largest_tip_radius_coefficient(self, pressure_angle: float) -> float:
+        """Tip radius over the module at which the rack tip is one full round.
+
+        Parameters
+        ----------
+        pressure_angle : float
+            Pressure angle of the rack [rad].
+
+        Returns
+        -------
+        float
+            Radius of the circle that touches both flanks and the tip line, over the module.
+        """
+        width = self.tip_half_width_coefficient(pressure_angle)
+        return width * math.cos(pressure_angle) / (1.0 - math.sin(pressure_angle))
+
+    def fitting_tip_radius_coefficient(self, pressure_angle: float) -> float:
+        """Tip radius over the module that is cut: the given one, or the full round if smaller.
+
+        Parameters
+        ----------
+        pressure_angle : float
+            Pressure angle of the rack [rad].
+
+        Returns
+        -------
+        float
+            Smaller one of the given and the largest tip radius coefficient.
+        """
+        largest = self.largest_tip_radius_coefficient(pressure_angle)
+        return min(self.tip_radius_coefficient, largest)
+
+    def shape_problems(self, pressure_angle: float) -> list[Problem]:
+        """Find why a rack of this pressure angle has no tip line, or no flank below its round.
+
+        Parameters
+        ----------
+        pressure_angle : float
+            Pressure angle of the rack [rad].
+
+        Returns
+        -------
+        list of Problem
+        """
+        if self.tip_half_width_coefficient(pressure_angle) <= 0.0:
+            limit = math.pi / 4.0 / math.tan(pressure_angle)
+            return [
+                Problem(
+                    what=f"dedendum_coefficient = {self.dedendum_coefficient:.6g}",
+                    where=Argument("rack"),
+                    why=f"The flanks of the rack meet at a depth of {limit:.6g} modules",
+                    remedy="Reduce the dedendum or the pressure angle",
+                )
+            ]
+        height = self.fitting_tip_radius_coefficient(pressure_angle) * (
+            1.0 - math.sin(pressure_angle)
+        )
+        if height <= self.dedendum_coefficient:
+            return []
+        return [
+            Problem(
+                what=f"tip_radius_coefficient = {self.tip_radius_coefficient:.6g}",
+                where=Argument("rack"),
+                why=f"The tip round is {height:.6g} modules high, more than the dedendum "
+                f"of {self.dedendum_coefficient:.6g} modules",
+                remedy="Reduce the tip radius",
+            )
+        ]
+
 
 #: Units of the messages: name, and what a value in SI is multiplied by.
 MILLIMETRES, DEGREES, PURE = ("mm", 1e3), ("deg", math.degrees(1.0)), ("", 1.0)
@@ -141,34 +274,34 @@ class ToothForm:
             )
         ]
 
-    @property
+    @cached_property
     def generating_shift_coefficient(self) -> float:
         """Profile shift that is cut, tooth thinning included."""
         infeed = self.tooth_thinning / (2.0 * math.sin(self.normal_pressure_angle))
         return self.profile_shift_coefficient - infeed / self.normal_module
 
-    @property
+    @cached_property
     def reference_radius(self) -> float:
         """Radius of the reference circle m z / 2 [m]."""
         return 0.5 * self.normal_module * self.teeth
 
-    @property
+    @cached_property
     def base_radius(self) -> float:
         """Radius of the base circle [m]."""
         return self.reference_radius * math.cos(self.normal_pressure_angle)
 
-    @property
+    @cached_property
     def tip_radius(self) -> float:
         """Radius of the tip circle [m]."""
         return 0.5 * self.tip_diameter
 
-    @property
+    @cached_property
     def root_radius(self) -> float:
         """Radius of the root circle that the rack cuts [m]."""
         depth = self.rack.dedendum_coefficient - self.generating_shift_coefficient
         return self.reference_radius - depth * self.normal_module
 
-    @property
+    @cached_property
     def base_pitch(self) -> float:
         """Distance of neighbouring flanks along the line of action [m]."""
         return math.pi * self.normal_module * math.cos(self.normal_pressure_angle)
@@ -269,7 +402,7 @@ class ToothForm:
         """
         return 2.0 * radius * self.half_tooth_angle(radius)
 
-    @property
+    @cached_property
     def tip_thickness(self) -> float:
         """Tooth thickness along the tip circle [m]."""
         return self.tooth_thickness(self.tip_radius)
@@ -292,7 +425,7 @@ class ToothForm:
             center_depth=depth * module,
         )
 
-    @property
+    @cached_property
     def undercut(self) -> bool:
         """Whether the rack tip removes involute near the base circle."""
         return self.trochoid.undercuts

@@ -101,10 +101,8 @@ def walther_slope(temperature: float, points: tuple[TemperaturePoint, Temperatur
 
     Parameters
     ----------
-    temperature : float [K]
-        Wanted temperature.
-    points : tuple of two (float [K], float [m^2/s])
-        Temperature and kinematic viscosity, the colder point first.
+    temperature, points
+        As for :func:`walther_viscosity`, in [K] and [m^2/s].
 
     Returns
     -------

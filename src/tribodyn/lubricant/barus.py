@@ -36,10 +36,8 @@ def barus_viscosity(
     ----------
     pressure : float or array [Pa]
         Pressure above ambient, not negative.
-    dynamic_viscosity : float [Pa*s]
-        Viscosity at ambient pressure.
-    pressure_viscosity_coefficient : float [1/Pa]
-        Slope of ln(viscosity) over pressure.
+    dynamic_viscosity, pressure_viscosity_coefficient : float [Pa*s], [1/Pa]
+        Viscosity at ambient pressure, and slope of its logarithm over the pressure.
 
     Returns
     -------

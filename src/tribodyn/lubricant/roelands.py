@@ -78,10 +78,8 @@ def roelands_viscosity(
     ----------
     pressure : float or array [Pa]
         Pressure above ambient, not negative.
-    dynamic_viscosity : float [Pa*s]
-        Viscosity at ambient pressure.
-    pressure_viscosity_coefficient : float [1/Pa]
-        Slope of ln(viscosity) over pressure at ambient pressure.
+    dynamic_viscosity, pressure_viscosity_coefficient : float [Pa*s], [1/Pa]
+        As for :func:`roelands_index`.
 
     Returns
     -------

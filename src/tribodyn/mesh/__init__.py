@@ -2,12 +2,16 @@
 
 from tribodyn.mesh.build import build
 from tribodyn.mesh.columns import MeshColumns
-from tribodyn.mesh.comprehensive import ComprehensiveStiffness, comprehensive_stiffness
 from tribodyn.mesh.film.film_columns import film_columns, moving_film
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import LOADS, MeshFriction, MeshFunctions, mesh_friction
 from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction, PhaseGrid, phase_grid
-from tribodyn.mesh.operation import FilmOverOperation, film_over_operation
+from tribodyn.mesh.operation import (
+    ComprehensiveStiffness,
+    FilmOverOperation,
+    comprehensive_stiffness,
+    film_over_operation,
+)
 from tribodyn.mesh.table import MeshTable
 
 __all__ = [

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, path_of_contact
 from tribodyn.errors import require_positive
+from tribodyn.friction import pitch_point
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import mesh_cycle, pairs_in_contact
@@ -19,9 +20,9 @@ from tribodyn.mesh.loads import (
     tribological_contact,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.sharing import shared_load_columns, teeth_of
+from tribodyn.mesh.sharing import ToothContact, shared_load_columns, teeth_of
 from tribodyn.mesh.table import MeshTable
-from tribodyn.mesh.tooth_contact import NO_OPTIONS, ToothContact
+from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
 from tribodyn.types import Array, Mask
@@ -49,26 +50,19 @@ def build(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position, and which one drives.
-    material : Material
-        Material of both gears.
-    stiffness_model : str
-        Name in ``tribodyn.stiffness.MODELS``.
-    stiffness_options : mapping
-        Options of the stiffness model.
+    pair, material : SpurPair, Material
+        Both gears in their working position with the one that drives, and their material.
+    stiffness_model, stiffness_options
+        Name in ``tribodyn.stiffness.MODELS``, and options of that model.
     lubricant : Lubricant
         Oil at working temperature.
-    friction_law : str
-        Name in ``tribodyn.friction.LAWS``.
-    friction_options : mapping
-        Options of the friction law.
+    friction_law, friction_options
+        Name in ``tribodyn.friction.LAWS``, and options of that law.
     composite_roughness : float [m]
         Root of the sum of squares of both roughnesses; zero for ideal flanks.
-    film_model : str
-        Name in ``tribodyn.ehl.FILM_MODELS``.
-    film_options : mapping
-        Options of the film model; its ``stiffness`` puts the film in series with the teeth.
+    film_model, film_options
+        Name in ``tribodyn.ehl.FILM_MODELS``, and options of that model, whose ``stiffness`` puts
+        the film in series with the teeth.
     pinion_speed : float [rad/s]
         Speed of the pinion in the running sense.
     pinion_torque : float [N*m]
@@ -161,8 +155,9 @@ def mesh_table(
     loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)
     warn_of_rigid_films(loads.film_at)
     roughness = settings.composite_roughness
-    contact = tribological_contact(motion, pairs, loads.tribological, roughness)
     films = loads.film_at(loads.tribological)
+    pitch = pitch_point(pair, pinion_speed, pinion_torque)
+    contact = tribological_contact(motion, pairs, loads.tribological, roughness, pitch, films)
     reported = reported_films(films, loads, teeth.least_share * teeth.load_per_width)
     columns: dict[str, Array] = {
         **_motion_columns(motion, cycle.sliding_direction),

@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, PathOfContact, effective_modulus, hertz_line
 from tribodyn.ehl import FILM_MODELS, moes_central
-from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import require_between
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant

@@ -181,10 +181,8 @@ class MeshForceLaw:
 
         Parameters
         ----------
-        phase : float or array
-            Mesh phase, taken modulo one.
-        deflection : float or array [m]
-            Deflection; shapes are broadcast.
+        phase, deflection : float or array [mesh cycles], [m]
+            Mesh phase, taken modulo one, and deflection; shapes are broadcast.
 
         Returns
         -------
@@ -197,10 +195,8 @@ class MeshForceLaw:
 
         Parameters
         ----------
-        phase : float or array
-            Mesh phase, taken modulo one.
-        deflection : float or array [m]
-            Deflection; shapes are broadcast.
+        phase, deflection : float or array [mesh cycles], [m]
+            Mesh phase, taken modulo one, and deflection; shapes are broadcast.
 
         Returns
         -------
@@ -213,10 +209,8 @@ class MeshForceLaw:
 
         Parameters
         ----------
-        phase : float or array
-            Mesh phase, taken modulo one.
-        deflection : float or array [m]
-            Deflection; shapes are broadcast.
+        phase, deflection : float or array [mesh cycles], [m]
+            Mesh phase, taken modulo one, and deflection; shapes are broadcast.
 
         Returns
         -------
@@ -235,10 +229,9 @@ class MeshForceLaw:
 
         Parameters
         ----------
-        phase : float or array
-            Mesh phase, taken modulo one.
-        force : float or array [N]
-            Total normal force, not negative; shapes are broadcast.
+        phase, force : float or array [mesh cycles], [N]
+            Mesh phase, taken modulo one, and total normal force, not negative; shapes are
+            broadcast.
 
         Returns
         -------

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
-from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ComputationError, quiet, warn
-from tribodyn.friction import TribologicalContact
+from tribodyn.friction import PitchPoint, TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
+from tribodyn.mesh.film.film_columns import smallest_film
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
 from tribodyn.mesh.film.path_film import FilmAt, film_of
-from tribodyn.mesh.sharing import SharedLoad, Teeth
-from tribodyn.mesh.tooth_contact import ToothContact
+from tribodyn.mesh.sharing import SharedLoad, Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Mask
 
@@ -80,7 +80,12 @@ def warn_of_rigid_films(film_at: FilmAt) -> None:
 
 
 def tribological_contact(
-    motion: Kinematics, pairs: PairsInContact, load_per_width: Array, composite_roughness: float
+    motion: Kinematics,
+    pairs: PairsInContact,
+    load_per_width: Array,
+    composite_roughness: float,
+    pitch: PitchPoint,
+    films: Films,
 ) -> TribologicalContact:
     """Loaded contacts as the friction laws see them."""
     hertz = hertz_line(load_per_width, motion.equivalent_radius, pairs.effective_modulus)
@@ -93,6 +98,9 @@ def tribological_contact(
         equivalent_radius=motion.equivalent_radius,
         dynamic_viscosity=pairs.lubricant.dynamic_viscosity,
         composite_roughness=composite_roughness,
+        oil_density=pairs.lubricant.density,
+        film_thickness=smallest_film(films),
+        pitch=pitch,
     )
 
 

@@ -115,7 +115,7 @@ def basins(
     kept = signal if system.contacts else name
     survey = Survey(cycles, max(64, cycles), 2, kept, keep_partial, tolerance=_NEAR, width=_WIDTH)
     catalogue = Catalogue(survey, _REST * float(np.abs(starts[:, : system.size]).max()))
-    progress.start("Marching the starts", len(starts) * (1 + bool(verdict)))
+    progress.start("Motions", len(starts) * (1 + bool(verdict)))
     beat = float(mesh_frequency)
     motions = _motions(compiled, starts, beat, force)
     survey.settle(motions, np.arange(len(starts)), progress)

@@ -143,7 +143,7 @@ def bifurcation(
     first = None if start is None else read_start(values.systems[0], start)
     branches = _BRANCHES[sweep]
     work = values.count * len(branches) * (1 + bool(verdict))
-    progress.start("Marching over the parameter", work)
+    progress.start("Motions", work)
     rows = _rows(values, branches, first, survey, progress)
     finer = values.refined(_refined_steps(values))
     fine = [_begin(values, row, keep) for row in rows]

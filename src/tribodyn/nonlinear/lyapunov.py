@@ -210,7 +210,7 @@ def lyapunov_exponents(
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     state = static_start(compiled) if start is None else read_start(system, start)
     carrier = _Carrier(tables, state, np.broadcast_to(extra, (system.size,)))
-    progress.start("Carrying disturbances", int(cycles + transient))
+    progress.start("Mesh cycles", int(cycles + transient))
     align = min(int(transient), _ALIGN)
     carrier.settle(int(transient) - align)
     progress.advance(int(transient) - align)

@@ -147,7 +147,7 @@ def parameter_map(
     survey = Survey(
         transient, cycles, max(2, cycles), kept, keep_partial, tolerance=_NEAR, width=_WIDTH
     )
-    progress.start("Marching over two parameters", points.count * (1 + bool(verdict)))
+    progress.start("Motions", points.count * (1 + bool(verdict)))
     outcomes = Outcomes(points.count, survey.keep, points.size)
     outcomes.first[:] = np.nan if begin is None else begin
     march_points(points, survey, outcomes, None, progress)

@@ -32,20 +32,24 @@ from tribodyn.stiffness.models.rectangular import rectangular_stiffness
 from tribodyn.stiffness.models.table import tabulated_stiffness
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import LoadPoint, load_point
-from tribodyn.stiffness.teeth.sainsot import (
-    sainsot_coefficients,
-    sainsot_compliance,
-    wind_up_compliance,
-)
 from tribodyn.stiffness.teeth.tooth_bending import (
     ToothBendingCompliance,
     tooth_bending_compliance,
 )
-from tribodyn.stiffness.teeth.tooth_compliance import ToothCompliance, tooth_compliance
+from tribodyn.stiffness.teeth.tooth_compliance import (
+    ToothCompliance,
+    sainsot_coefficients,
+    sainsot_compliance,
+    tooth_compliance,
+    wind_up_compliance,
+)
 from tribodyn.stiffness.teeth.weber import weber_banaschek_compression
 from tribodyn.stiffness.tip_relief.harris import HarrisMap, transmission_error_over_torque
-from tribodyn.stiffness.tip_relief.result import TipReliefOptimum
-from tribodyn.stiffness.tip_relief.search import optimize_tip_relief, with_tip_relief
+from tribodyn.stiffness.tip_relief.search import (
+    TipReliefOptimum,
+    optimize_tip_relief,
+    with_tip_relief,
+)
 
 __all__ = [
     "MODELS",

@@ -126,3 +126,18 @@ def test_a_table_with_nan_is_named_with_its_phase(name):
                  (np.zeros(6), np.zeros(6)))  # fmt: skip
     text = str(caught.value)
     assert f"contacts[0].{name} is NaN or infinite at the mesh phase 0.25" in text
+
+
+def test_strong_friction_is_told_before_any_other_cause():
+    """With a coefficient of 3 neither a parametric resonance nor a sign is the first suspect."""
+    rub = 3.0 * np.array([0.0, 1.0])
+    contact = Contact([1.0, 0.0], lambda phase: 4e4 * (1 + 0.6 * np.cos(2 * np.pi * phase)),
+                      friction=rub)  # fmt: skip
+    system = _pair(damping=(0.01, 1.0), contacts=[contact])
+    nodes = compile_for(system, 64.0, 256).nodes
+    text, remedy = probable_cause(system, nodes, 0.1, np.ones(6))
+    assert text.startswith("Friction is 3 times the contact force")
+    assert "friction coefficient" in remedy
+    weak = np.ones(6)
+    weak[2] = 0.05
+    assert "parametric resonance" in probable_cause(system, nodes, 0.1, weak)[0]

@@ -303,7 +303,7 @@ def test_wrong_input_is_refused():
     with pytest.raises(InputError, match='It belongs to "dormand-prince"'):
         simulate(OSCILLATOR, 1.0, 1, start, rtol=1e-6)
     jump = Contact([1.0], stiffness=lambda phase: np.where(phase < 0.37, 1.0, 2.0))
-    with pytest.raises(InputError, match=r"jumps at the mesh phase 0\.37"):
+    with pytest.raises(InputError, match=r"jumps by 1 at the mesh phase 0\.37"):
         solve_adaptive(System([[1.0]], [[0.1]], [[0.0]], [0.5], [jump]), 1.0, 1, start)
 
 

@@ -13,8 +13,7 @@ from tribodyn.ehl.steady.contact_case import moes_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem, Outcome
 from tribodyn.ehl.steady.grid import choose_domain, estimate_film
 from tribodyn.ehl.steady.newton_engine import first_intervals, newton_engine
-from tribodyn.ehl.steady.rescue import ENGINES, continue_to, solve_problem
-from tribodyn.ehl.steady.verification import verify
+from tribodyn.ehl.steady.rescue import ENGINES, continue_to, solve_problem, verify
 from tribodyn.errors import ComputationError
 
 

@@ -7,9 +7,18 @@ import dataclasses
 import numpy as np
 import pytest
 
+from known_pairs import pair_of
 from tribodyn.ehl import FilmState
 from tribodyn.errors import InputError
-from tribodyn.friction import LAWS, TribologicalContact, benedict_kelly, constant, none, xu_2007
+from tribodyn.friction import (
+    LAWS,
+    TribologicalContact,
+    benedict_kelly,
+    constant,
+    none,
+    pitch_point,
+    xu_2007,
+)
 from tribodyn.lubricant import Lubricant
 
 OPTIONS = {"constant": {"coefficient": 0.05}}
@@ -39,14 +48,22 @@ def contact(**changes):
         "dynamic_viscosity": 0.082,
         "composite_roughness": 0.4e-6,
         "film": hertz_film(),
+        "oil_density": 880.0,
+        "film_thickness": np.array([0.5e-6, 0.6e-6, 0.7e-6]),
+        "pitch": pitch_point(pair_of(), 1400.0 * np.pi / 30.0, 150.0),
     }
     return TribologicalContact(**{**values, **changes})
 
 
 def test_names():
-    assert set(LAWS.names()) >= {"none", "constant", "benedict-kelly", "xu-2007", "ehl"}
+    assert set(LAWS.names()) >= {
+        "none", "constant", "benedict-kelly", "xu-2007", "ehl", "exponential", "schlenk",
+        "iso-14179", "iso-6336-22", "niemann", "matsumoto", "drozdov", "misharin",
+        "odonoghue-cameron", "mixed-ehl", "measured",
+    }  # fmt: skip
 
 
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 @pytest.mark.parametrize("name", LAWS.names())
 def test_every_law_gives_a_coefficient_for_every_contact(name):
     law = LAWS[name]
@@ -57,6 +74,7 @@ def test_every_law_gives_a_coefficient_for_every_contact(name):
     assert law.source
 
 
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 @pytest.mark.parametrize("name", LAWS.names())
 def test_no_law_sees_the_direction_of_sliding(name):
     here = contact()
@@ -165,7 +183,8 @@ def test_no_contact_at_all_is_refused():
     empty = {
         field.name: np.array([])
         for field in dataclasses.fields(TribologicalContact)
-        if field.name not in {"dynamic_viscosity", "composite_roughness"}
+        if field.name
+        not in {"dynamic_viscosity", "composite_roughness", "oil_density", "film", "pitch"}
     }
     with pytest.raises(InputError, match="no contact"):
         contact(**empty)
@@ -181,3 +200,25 @@ def test_single_contact_as_numbers():
     one = TribologicalContact(150e3, 0.8e9, -1.0, 2.0, -0.5, 7e-3, 0.082, 0.4e-6)
     assert one.size == 1
     assert LAWS["xu-2007"](one) == pytest.approx(LAWS["xu-2007"](contact())[0])
+
+
+@pytest.mark.parametrize(
+    ("law", "field", "remedy"),
+    [
+        ("mixed-ehl", "film_thickness", r"\[film\] model"),
+        ("matsumoto", "film_thickness", r"\[film\] model"),
+        ("drozdov", "oil_density", "density of the oil"),
+        ("schlenk", "pitch", "pitch_point"),
+        ("measured", "pitch", "pitch_point"),
+    ],
+)
+def test_a_law_names_what_it_lacks(law, field, remedy):
+    with pytest.raises(InputError, match=f"{field} is not known.*{remedy}"):
+        LAWS[law](contact(**{field: None, "film": None}))
+
+
+def test_film_ratio_and_kinematic_viscosity():
+    c = contact()
+    assert c.film_ratio == pytest.approx([1.25, 1.5, 1.75])
+    assert np.all(np.isinf(contact(composite_roughness=0.0).film_ratio))
+    assert c.kinematic_viscosity == pytest.approx(0.082 / 880.0)

@@ -10,7 +10,7 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import Material
 from tribodyn.stiffness import wind_up_compliance
-from tribodyn.stiffness.teeth.ring_fourier import ring_compliance
+from tribodyn.stiffness.teeth.analytic import ring_compliance
 
 INNER, OUTER = 0.015, 0.034
 
@@ -116,7 +116,7 @@ def test_a_body_that_is_no_ring_is_refused(steel, inner):
 @pytest.mark.parametrize("ratio", [0.1, 0.6, 0.97])
 def test_waves_that_do_not_reach_the_bore_are_continued_without_it(steel, ratio, monkeypatch):
     found = ring_compliance(ratio * OUTER, OUTER, steel, 1500)
-    module = importlib.import_module("tribodyn.stiffness.teeth.ring_fourier")
+    module = importlib.import_module("tribodyn.stiffness.teeth.analytic")
     monkeypatch.setattr(module, "_DECAYED", 1e9)
     all_felt = ring_compliance(ratio * OUTER, OUTER, steel, 1500)
     assert found.waves == pytest.approx(all_felt.waves, rel=2e-10)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tribodyn.errors import InputError
-from tribodyn.stiffness.teeth.ring_fourier import foot_compliance, foot_stresses, ring_compliance
+from tribodyn.stiffness.teeth.analytic import foot_compliance, foot_stresses, ring_compliance
 
 INNER, OUTER, FOOT = 0.015, 0.034, 0.17
 

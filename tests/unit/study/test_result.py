@@ -14,6 +14,7 @@ from broken import SOUND
 import tribodyn as td
 from tribodyn.errors import ComputationError, OutputExistsError
 from tribodyn.study import SUMMARY, read_case
+from tribodyn.study.pipeline.run import rehearse
 from tribodyn.study.pipeline.save import RESULT_FILES
 
 _NAMED = """
@@ -238,9 +239,10 @@ def test_faults_found_while_running_name_their_key(old: str, new: str, place: st
     case = read_case(SOUND.replace(old, new), "pair.toml")
     if place.startswith("replace"):
         case = case.replace({"gears.composite_roughness": "1.2 um"})
-    with pytest.raises(td.InputError) as caught:
-        td.run(case)
-    assert str(caught.value).startswith(place)
+    for asked in (rehearse, td.run):
+        with pytest.raises(td.InputError) as caught:
+            asked(case)
+        assert str(caught.value).startswith(place)
 
 
 def test_a_result_says_that_it_is_not_pickled(result: Any) -> None:

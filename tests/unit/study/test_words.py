@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import ast
+import json
+import math
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import tribodyn
 from tribodyn.cli import call
-from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
+from tribodyn.contact import hertz_line
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.study import SUMMARY
+from tribodyn.study.case.reference import (
+    case_keys,
+    choice_meanings,
+    explanations,
+    warning_meanings,
+)
+from tribodyn.study.case.words import listed, word
 
 _SOURCE = Path(tribodyn.__file__).parent
 _PAGE = Path(__file__).resolve().parents[3] / "docs" / "command-line.md"
@@ -67,3 +79,72 @@ def test_warning_codes_are_explained(capsys: pytest.CaptureFixture[str]) -> None
     words = [word.strip() for word in remedy.split(" or ")]
     assert "backlash" in words
     assert len(set(words)) == len(words)
+
+
+def _told(capsys: pytest.CaptureFixture[str], *words: str) -> list[dict[str, Any]]:
+    assert call(["explain", *words, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_what_is_explained_exists_and_every_warning_has_a_remedy() -> None:
+    told, keys = explanations(), [key for key, _, _ in case_keys()]
+    known = {*keys, *(key.rpartition(".")[2] for key in keys), *QUANTITIES, *SUMMARY}
+    assert set(told["equations"]) <= known | set(choice_meanings())
+    assert set(told["ranges"]) <= set(choice_meanings())
+    assert set(told["remedies"]) == set(warning_meanings())
+    assert {entry.key for entry in map(word, listed()) if entry and entry.key} <= known
+
+
+def test_pages_that_are_named_exist() -> None:
+    named = {*explanations()["pages"].values(), *(said.page for w in listed() if (said := word(w)))}
+    for name in named:
+        file, _, anchor = name.partition("#")
+        text = (_PAGE.parent / file).read_text(encoding="utf-8")
+        headings = {h.lower().replace(" ", "-") for h in re.findall(r"^#+ (.*)$", text, re.M)}
+        assert not anchor or anchor in headings
+
+
+@pytest.mark.parametrize(
+    ("words", "first"),
+    [
+        (("lambda",), {"quantity": "film_ratio", "equation": "Lambda = h_min / S"}),
+        (("LAMBDA",), {"quantity": "film_ratio"}),
+        (("tip", "relief"), {"quantity": "tip_relief", "unit": "um"}),
+        (("Ra",), {"see": "roughness_ra"}),
+        (("c_gamma",), {"page": "docs/stiffness.md"}),
+        (("helix",), {"page": "docs/scope.md"}),
+        (("Kv",), {"see": "dynamic_factor_peak"}),
+        (("XU-2007",), {"choice": "xu-2007", "page": "docs/friction.md"}),
+        (("[mixed-lubrication]",), {"warning": "mixed-lubrication"}),
+        (("gears.pinion.modification.tip_relief",), {"page": "docs/modifications.md"}),
+        (("hertz",), {"warning": "hertz-pressure"}),
+    ],
+)
+def test_what_engineers_ask_for_is_answered_first(
+    words: tuple[str, ...], first: dict[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = _told(capsys, *words)
+    assert first.items() <= told[0].items()
+
+
+def test_whole_words_come_before_parts_of_words_and_the_screen_stays_short(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    names = [str(next(iter(entry.values()))) for entry in _told(capsys, "pitch")]
+    whole = ["pitch" in re.split(r"[^a-z]", name.lower()) for name in names]
+    assert whole == sorted(whole, reverse=True)
+    assert call(["explain", "mesh"]) == 0
+    out = capsys.readouterr().out
+    assert out.count("page:") == 8
+    assert "more have these words" in out
+    assert call(["explain", "Ra"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) < 40
+
+
+def test_hertz_equations_are_those_of_the_package() -> None:
+    names = {"w": 147802.0, "R": 8e-3, "E_": 2.2e11, "pi": math.pi, "sqrt": math.sqrt}
+    dry = hertz_line(names["w"], names["R"], names["E_"])
+    for name, value in (("hertz_pressure", dry.maximum_pressure), ("half_width", dry.half_width)):
+        text = explanations()["equations"][name].partition(" = ")[2].replace("E'", "E_")
+        text = re.sub(r"(?<=\w) (?=\w)", "*", text)
+        assert eval(text, dict(names)) == pytest.approx(float(value), rel=1e-12)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
+from tribodyn.compiled import announced, source_digest
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     INNER,
@@ -440,4 +440,7 @@ def _build(digest: str) -> Any:
     return march_adaptive_block
 
 
-march_adaptive_block = _build(source_digest(Path(__file__).parent, _SOURCES))
+march_adaptive_block = announced(
+    _build(source_digest(Path(__file__).parent, _SOURCES)),
+    "the adaptive engine", "half a minute",
+)  # fmt: skip

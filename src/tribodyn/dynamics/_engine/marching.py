@@ -10,7 +10,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from tribodyn.compiled import source_digest
+from tribodyn.compiled import announced, source_digest
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -248,4 +248,6 @@ def _build(digest: str) -> Any:
     return march_block
 
 
-march_block = _build(source_digest(Path(__file__).parent, _SOURCES))
+march_block = announced(
+    _build(source_digest(Path(__file__).parent, _SOURCES)), "the engine", "a quarter of a minute"
+)

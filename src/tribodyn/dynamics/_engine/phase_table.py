@@ -30,9 +30,8 @@ _NOTICED = 1e-14
 _NOISE = 2e-11
 #: Rounding of a sum, over the sum of the sizes of its terms.
 _CANCELLED = 1e-14
-#: Cells below this width are not halved; an entry that still jumps there has an unknown event.
+#: Cells below this width are not halved.
 _NARROWEST = 1e-10
-_JUMP = 1e-3
 #: Cells are not halved further when this many halvings in a row did not help.
 _STALLED = 3
 #: Cells below this width are those beside a kink; jump of a slope that counts as one, over the
@@ -222,7 +221,6 @@ def _refine(rows: _Rows, events: Array) -> PhaseTable:
         stalled = np.where((ratio > 0.7 * parent) & (ratio < 1e4), stalled + 1, 0)
         many = sum(item[0].size for item in done) + 2 * left.size > _MOST
         narrow = (right - left) < _NARROWEST
-        _refuse_jump(level.deviation[narrow] / scale, left[narrow])
         kept = (ratio <= 1.0) | (stalled >= _STALLED) | narrow | many
         done.append((left[kept], right[kept], level.spectrum[kept], level.deviation[kept] / scale))
         split = ~kept
@@ -236,19 +234,6 @@ def _refine(rows: _Rows, events: Array) -> PhaseTable:
         )
     parts = (np.concatenate(part) for part in zip(*done, strict=True))
     return _assemble(rows, events, *parts)
-
-
-def _refuse_jump(deviation: Array, phase: Array) -> None:
-    jumping = np.flatnonzero(deviation.max(axis=1, initial=0.0) > _JUMP)
-    if jumping.size:
-        at = np.unique(np.round(phase[jumping], 9))
-        listed = ", ".join(f"{item:.9g}" for item in at[:4])
-        raise InputError(
-            f"an entry jumps at the mesh phase {listed}, which is not an event",
-            where="argument system",
-            why="A step across a jump loses its order, and steps end at events only",
-            remedy="Give these phases to Contact(events=...)",
-        )
 
 
 def _assemble(

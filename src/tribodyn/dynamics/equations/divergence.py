@@ -21,6 +21,8 @@ _SUSPECT_STEP = 2.0
 _SAMPLE = 64
 #: Negative eigenvalues smaller than this share of the largest are rounding.
 _ROUNDING = 1e-9
+#: Friction over contact force, both as accelerations, above which it is the first suspect.
+_STRONG = 0.4
 #: A state above this has grown beyond all bounds; contact forces are then not to blame.
 _HUGE = 1e100
 
@@ -155,19 +157,9 @@ def probable_cause(
                 f"The {kind} matrix has a negative eigenvalue, in a motion of {found}",
                 f"Look for a wrong sign or place in {where}",
             )
-    mass = np.asarray(system.mass)
-    if np.abs(push).max(initial=0.0) > 0.0:
-        rub_spring, rub_damper = push
-        growth, still = (
-            _growth(mass, spring + part * rub_spring, damper + part * rub_damper)
-            for part in (1.0, 0.0)
-        )
-        if growth > max(10.0 * still, _ROUNDING):
-            return (
-                "Friction feeds energy in: with it a motion about the static load grows, without "
-                "it none does",
-                "Look for the sign of the sliding direction, or add damping",
-            )
+    rubbing = _friction_cause(system, nodes, factors[2], (spring, damper, push))
+    if rubbing is not None:
+        return rubbing
     if step_number > _SUSPECT_STEP:
         return (
             "Nothing in the system makes its motion grow, but the step is near the stability limit",
@@ -185,15 +177,56 @@ def probable_cause(
     )
 
 
+def _friction_cause(
+    system: System, nodes: Nodes, rub: float, mean: tuple[Array, Array, Array]
+) -> tuple[str, str] | None:
+    """What to say of friction that feeds energy in, or that is too strong for a tooth."""
+    strength, phase = _friction_strength(system, nodes, rub)
+    strong = (
+        f"Friction is {strength:.3g} times the contact force as it moves the coordinates, most of "
+        f"all at the mesh phase {phase:.4g}"
+    )
+    look = "Look for the friction coefficient, lubricated steel hardly exceeds 0.2"
+    spring, damper, push = mean
+    if np.abs(push).max(initial=0.0) > 0.0:
+        mass = np.asarray(system.mass)
+        growth, still = (
+            _growth(mass, spring + part * push[0], damper + part * push[1]) for part in (1.0, 0.0)
+        )
+        if growth > max(10.0 * still, _ROUNDING):
+            cause = (
+                "Friction feeds energy in: with it a motion about the static load grows, without "
+                "it none does"
+            )
+            if strength > _STRONG:
+                return f"{strong}. {cause}", f"{look}, and for the sign of the sliding direction"
+            return cause, "Look for the sign of the sliding direction, or add damping"
+    return (f"{strong}: it can drive a motion by itself", look) if strength > _STRONG else None
+
+
+def _friction_strength(system: System, nodes: Nodes, rub: float) -> tuple[float, float]:
+    """Greatest friction over contact force, both as accelerations, and its mesh phase."""
+    push, along = _push(system, nodes), nodes.direction
+    inverse = np.linalg.inv(np.linalg.cholesky(np.asarray(system.mass)))
+    size = [np.linalg.norm(part @ inverse.T, axis=-1) for part in (rub * (push - along), along)]
+    ratio = size[0] / np.maximum(size[1], 1e-300) * (size[1] > 0.0)
+    at = np.unravel_index(int(np.argmax(ratio)), ratio.shape) if ratio.size else (0, 0)
+    return float(ratio.max(initial=0.0)), float(nodes.phase[at[0], at[1]])
+
+
+def _push(system: System, nodes: Nodes) -> Array:
+    """Generalized force per contact force; frictions as they change about their nominal load."""
+    if not system.frictions:
+        return nodes.force_direction
+    nominal = np.array([one.load for one in system.frictions])
+    ratio = friction_tangent(system, nodes.friction_coefficients, nominal)
+    return push_with_friction(system, nodes, ratio)
+
+
 def _mean_matrices(system: System, nodes: Nodes, factors: Array) -> tuple[Array, Array, Array]:
     """Stiffness and damping with all contacts closed, and what friction adds to both."""
     stiff, damp, rub = factors[:3]
-    push = nodes.force_direction
-    if system.frictions:
-        nominal = np.array([one.load for one in system.frictions])
-        ratio = friction_tangent(system, nodes.friction_coefficients, nominal)
-        push = push_with_friction(system, nodes, ratio)
-    along = nodes.direction
+    push, along = _push(system, nodes), nodes.direction
     spring, damper = (
         np.einsum("rs,rsj,rsji,rsjk->ik", nodes.weight, part, along, along)
         for part in (stiff * nodes.stiffness, damp * nodes.damping)

@@ -7,13 +7,19 @@ the fourth order of the integrator survives, and nothing is interpolated in the 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 
-from tribodyn.dynamics.equations.system import Entry, System
+from tribodyn.dynamics.equations.entry import (
+    Entry,
+    entry_values,
+    refuse_chance,
+    refuse_jumps,
+    varies,
+)
+from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index, Mask
 
@@ -35,7 +41,7 @@ class Grid:
     segment_left: Array  #: [-]
     segment_right: Array  #: [-]
 
-    @property
+    @cached_property
     def steps(self) -> int:
         """Number of steps in a mesh cycle."""
         return int(self.left.size)
@@ -104,45 +110,28 @@ class RowEvaluator:
         self._high = grid.segment_right[:, None] - _SIDE
         self.nodes = np.clip(nodes, self._low, self._high)
 
-    def _call(self, where: str, entry: Any, phases: Array, size: int) -> Array:
-        """Evaluate on any phases; returns phases.shape + (size,)."""
-        flat = phases.reshape(-1)
-        if callable(entry):
-            values = _oriented(where, entry, flat, size)
-        else:
-            values = _constant(where, entry, flat, size)
-        if not np.all(np.isfinite(values)):
-            at = flat[np.flatnonzero(~np.isfinite(values).all(axis=1))[0]]
-            raise InputError(
-                f"{where} is NaN or infinite at the mesh phase {at:.6g}",
-                where=where,
-                remedy="Check the table or function there; declare jumps as events",
-            )
-        return values.reshape(*phases.shape, size)
-
     def values(self, where: str, entry: Entry, size: int = 1) -> Array:
-        """Values on the nodes."""
-        return self._call(where, entry, self.nodes, size)
+        """Values on the nodes, of an entry that jumps at events only."""
+        flat = entry_values(where, entry, self.nodes.reshape(-1), size)
+        values = flat.reshape(*self.nodes.shape, size)
+        if varies(entry):
+            refuse_chance(where, entry, self.nodes.reshape(-1), flat)
+            refuse_jumps(where, entry, self.nodes, values)
+        return values
 
     def derivatives(self, where: str, entry: Entry, size: int = 1) -> Array:
         """Derivatives with respect to phase on the nodes, from a five-point stencil."""
-        if not _varies(entry):
+        if not varies(entry):
             return np.zeros((*self.nodes.shape, size))
         span = self._high - self._low
         step = np.minimum(_STENCIL, span / 8.0)
         centre = np.clip(self.nodes, self._low + 2.0 * step, self._high - 2.0 * step)
         shift = (self.nodes - centre) / step
         points = centre[..., None] + step[..., None] * np.arange(-2, 3)
-        values = self._call(where, entry, points, size)
+        values = entry_values(where, entry, points.reshape(-1), size).reshape(*points.shape, size)
         weights = _stencil_derivative(shift)
         result: Array = np.einsum("rspk,rsp->rsk", values, weights) / step[..., None]
         return result
-
-
-def _varies(entry: Any) -> bool:
-    if callable(entry):
-        return True
-    return isinstance(entry, list | tuple) and any(callable(item) for item in entry)
 
 
 def _stencil_derivative(shift: Array) -> Array:
@@ -156,56 +145,3 @@ def _stencil_derivative(shift: Array) -> Array:
             rest = np.delete(others, k)
             weights[..., i] += np.prod(shift[..., None] - rest, axis=-1) / scale
     return weights
-
-
-def _constant(where: str, entry: Any, phases: Array, size: int) -> Array:
-    if _varies(entry):
-        columns = [
-            _oriented(where, item, phases, 1)[:, 0]
-            if callable(item)
-            else np.full(phases.size, float(item))
-            for item in entry
-        ]
-        return _broadcast(where, np.stack(columns, axis=1), phases.size, size)
-    value = np.asarray(entry, dtype=float)
-    if value.ndim > 1 or (value.ndim == 1 and value.size != size):
-        raise InputError(
-            f"{where} has the shape {value.shape}",
-            where=where,
-            why=f"It must be a number or have the shape ({size},)",
-        )
-    return np.broadcast_to(value, (phases.size, size)).astype(float)
-
-
-def _broadcast(where: str, values: Array, count: int, size: int) -> Array:
-    if values.shape != (count, size):
-        raise InputError(
-            f"{where} gives the shape {values.shape}",
-            where=where,
-            why=f"It must be ({count}, {size}) for {count} mesh phases",
-        )
-    return values
-
-
-def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size: int) -> Array:
-    """Call a function of phase; accept (p, size), (size, p), (p,), (size,) and scalars."""
-    # One more or one less phase than components makes the orientation unambiguous.
-    probe = phases if phases.size not in (1, size) else np.resize(phases, size + 2)
-    try:
-        values = np.asarray(function(probe), dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{where} is not a vectorized function of the mesh phase: {error}",
-            where=where,
-            why="It is called with an array of phases and returns an array",
-            remedy="Use numpy.where instead of if, and functions that take arrays",
-        ) from error
-    if values.ndim == 0:
-        values = np.full((probe.size, 1), float(values))
-    elif values.ndim == 1 and values.size == probe.size and size == 1:
-        values = values[:, None]
-    elif values.ndim == 1 and values.size == size:
-        values = np.broadcast_to(values, (probe.size, size))
-    elif values.shape == (size, probe.size):
-        values = values.T
-    return _broadcast(where, np.asarray(values, dtype=float), probe.size, size)[: phases.size]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.dynamics.equations.system import LoadFriction, System
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, real_numbers
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
     """Number of coefficients of one row."""
     given = friction.coefficients
     probe = (np.arange(_PROBE) + 0.5) / _PROBE
-    values = np.asarray(given(probe) if callable(given) else given, dtype=float)
+    values = real_numbers(where, given(probe) if callable(given) else given, "rows of numbers")
     shape = values.shape
     if callable(given) and _PROBE in shape:
         shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())

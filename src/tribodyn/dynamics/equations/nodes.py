@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
 from tribodyn.dynamics.equations.load_friction import friction_coefficients, friction_directions
-from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.equations.system import System, no_direction
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index, Mask
 
@@ -60,6 +60,8 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         return out
 
     direction = vector("direction", rows.values)
+    for j in np.flatnonzero(~direction.any(axis=(0, 1, 3))):
+        raise no_direction(f"contacts[{j}].direction")
     gap = scalar("gap", rows.values)
     if np.any(gap < 0.0):
         raise InputError(

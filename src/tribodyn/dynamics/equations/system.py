@@ -9,32 +9,16 @@ already carries the sign of sliding, the friction coefficients and the load shar
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, require_positive
+from tribodyn.dynamics.equations.entry import Entry, read_events, varies
+from tribodyn.errors import InputError, real_numbers, require_positive
 from tribodyn.types import Array
-
-#: A constant, or a vectorized function of the mesh phase in [0, 1).
-Entry = float | ArrayLike | Callable[[Array], Any]
-
-
-def read_events(given: Any, where: str) -> tuple[float, ...]:
-    """Check mesh phases at which an entry jumps."""
-    events = tuple(float(event) for event in given)
-    bad = [event for event in events if not 0.0 <= event < 1.0]
-    if bad:
-        raise InputError(
-            f"events holds {bad[0]:g}",
-            where=where,
-            why="Events are mesh phases and lie in [0, 1)",
-            remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
-        )
-    return events
 
 
 @dataclass(frozen=True)
@@ -60,14 +44,15 @@ class Contact:
         Generalized friction force per unit contact force [1 or m].
     events : tuple of float
         Mesh phases at which an entry jumps. They become grid points, and values there are taken
-        from the left and from the right separately.
+        from the left and from the right separately. The beginning of the mesh cycle always is one;
+        a function that jumps anywhere else, or is not one of the phase alone, is refused.
     damping_in_gap : bool
         Keep the damping in free flight. Unphysical; for comparison with published models.
 
     Raises
     ------
     InputError
-        If an event lies outside [0, 1).
+        If an event lies outside [0, 1), or the direction is zero.
 
     Examples
     --------
@@ -86,6 +71,9 @@ class Contact:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
+        where = "Contact.direction"
+        if not varies(self.direction) and not real_numbers(where, self.direction).any():
+            raise no_direction(where)
 
     def __repr__(self) -> str:
         """One line."""
@@ -159,8 +147,18 @@ class LoadFriction:
         return f"LoadFriction(load={self.load}, contacts={self.contacts})"
 
 
+def no_direction(where: str) -> InputError:
+    """Error of a contact that no motion compresses."""
+    return InputError(
+        "the direction is zero",
+        where=where,
+        why="No coordinate compresses the contact, so that it could never carry",
+        remedy="Give the derivative of the compression with respect to each coordinate",
+    )
+
+
 def _matrix(name: str, value: ArrayLike) -> Array:
-    matrix = np.array(value, dtype=float, ndmin=2)
+    matrix = np.array(real_numbers(f"System.{name}", value), ndmin=2)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise InputError(
             f"{name} has the shape {matrix.shape}",
@@ -237,14 +235,14 @@ class System:
         _refuse_singular(matrices["mass"], names)
         _refuse_missing_contacts(self)
         if self.balance is not None:
-            balance = np.asarray(self.balance, dtype=float)
+            balance = real_numbers("System.balance", self.balance)
             if balance.shape != (size,):
                 raise InputError(
                     f"balance has the shape {balance.shape}, not ({size},)", where="System.balance"
                 )
             object.__setattr__(self, "balance", balance)
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of coordinates."""
         return int(np.asarray(self.mass).shape[0])

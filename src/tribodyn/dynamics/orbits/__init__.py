@@ -14,4 +14,5 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 | ``speed_sweep``, ``speed_sweep_follow`` | what a slow sweep of the speed meets, up and down |
 | ``start`` | where a search begins |
 | ``steady_state`` | the orbit at one speed, with a certified error |
+| ``step_error`` | how far the orbit at half the step lies away |
 """

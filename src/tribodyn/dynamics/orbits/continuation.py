@@ -142,7 +142,7 @@ def continuation(
     low = min(between) if isinstance(start, SpecialPoint) else between[0]
     family = Family(make_system, mesh_frequency, steps, min(between))
     function = FamilyMap(family, int(periods), (float(low), float(sum(between) - low)))
-    progress.start("Following the branch", None)
+    progress.start("Points of the branch", None)
     names = signal_names(function.at(low).compiled.system, signals)
     first = _first(function, start, between, tolerance)
     stepping = Stepping(longest_step, points, tolerance)

@@ -13,10 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, warn
 from tribodyn.types import Array
 
 _RANK = 1e-9
+#: Part of the acceleration by the forces that goes into free motions and is told.
+_UNBALANCED = 1e-3
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,29 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
     elastic = _row_space([spring, used])
     moving = _row_space([spring, used, damper])
     free = _complement(moving)
+    _warn_of_unbalanced(compiled, inverse, free)
     return OrbitCoordinates(lower, elastic, moving, free, 2.0 * np.pi * mesh_frequency)
+
+
+def _warn_of_unbalanced(compiled: Compiled, inverse: Array, free: Array) -> None:
+    """Say where forces drive a free motion of the whole drive that no torque balances."""
+    system, nodes = compiled.system, compiled.nodes
+    if system.balance is not None or not 0 < free.shape[1] < system.size:
+        return
+    force = np.einsum("rs,rsi->i", nodes.weight, nodes.force)
+    pushed = inverse @ force
+    gained = (free.T @ pushed) @ free.T @ inverse
+    if np.linalg.norm(free.T @ pushed) <= _UNBALANCED * np.linalg.norm(pushed):
+        return
+    most = int(np.argmax(np.abs(gained) * np.sqrt(np.diag(np.asarray(system.mass)))))
+    warn(
+        "unbalanced-drive",
+        f"the forces of the system do not balance: the whole drive speeds up, {system.names[most]} "
+        f"by {gained[most]:.4g} rad/s^2 (m/s^2 where it moves straight), and the orbit leaves this "
+        "out. Look for a wrong size or sign in System.force, or give System.balance, the torque "
+        "whose size is to be found",
+        stacklevel=5,
+    )
 
 
 def refuse_disconnected(compiled: Compiled) -> None:

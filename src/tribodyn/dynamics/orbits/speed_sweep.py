@@ -140,7 +140,7 @@ def _follow_all(
 ) -> list[list[Followed]]:
     """Motions of every direction in the order of the speeds."""
     count = family.frequency.size
-    progress.start("Sweeping the speed", count * (1 if family.affine else len(directions)))
+    progress.start("Speeds", count * (1 if family.affine else len(directions)))
     closed = family.all_at_once(tolerance)
     if family.affine:
         mapping = family.mapping(0, 1)

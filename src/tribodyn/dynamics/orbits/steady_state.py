@@ -21,6 +21,7 @@ from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.periods import find_any_orbit, shortest_period
 from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit
 from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.orbits.step_error import step_error
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, warn
@@ -29,6 +30,8 @@ from tribodyn.types import Array
 
 #: An orbit whose certified error is above this is not converged.
 TOLERANCE = 1e-8
+#: Distance to the orbit at half the step, over the size of the orbit, that is told.
+STEP_LIMIT = 1e-2
 
 
 def steady_state(
@@ -64,10 +67,11 @@ def steady_state(
     Returns
     -------
     Response
-        With ``steps * periods`` rows, ``error``, ``converged``, ``stable``,
+        With ``steps * periods`` rows, ``error``, ``step_error``, ``converged``, ``stable``,
         ``floquet_multipliers`` and ``period``, the mesh cycles after which it repeats. A warning
         is issued when the orbit is not converged (``steady-state``) or not stable
-        (``unstable-orbit``).
+        (``unstable-orbit``), when that at half the step is more than 1 % of its size away
+        (``step-size``), or when the forces speed the whole drive up (``unbalanced-drive``).
 
     Raises
     ------
@@ -95,7 +99,7 @@ def steady_state(
     mapping = OrbitMap(compiled, mesh_frequency, count or 1)
     state = static_start(compiled) if start is None else read_start(system, start)
     y = mapping.start(state)
-    progress.start("Searching the steady state", None)
+    progress.start("Steady motion", None)
     if count is None:
         any_orbit = find_any_orbit(mapping, y, tolerance)
         mapping, orbit, apart = any_orbit.mapping, any_orbit.orbit, any_orbit.apart
@@ -115,6 +119,19 @@ def _whole_periods(periods: int | str) -> int | None:
             f"periods = {periods!r}", where="argument periods", why='A whole number >= 1, or "auto"'
         )
     return int(periods)
+
+
+def _told_step(mapping: OrbitMap, cost: float) -> str:
+    steps, number = mapping.compiled.grid.steps, mapping.compiled.step_number
+    finding = (
+        f"the motion is {100.0 * cost:.2g} % of its size away from that at half the step"
+        if np.isfinite(cost)
+        else "this motion does not exist at half the step"
+    )
+    return (
+        f"{finding}, limit {100.0 * STEP_LIMIT:g} %: {steps} steps per mesh cycle, omega_max*dt = "
+        f"{number:.3g}. Use {2 * steps} steps or more"
+    )
 
 
 def _advice(mapping: OrbitMap, apart: Array) -> str:
@@ -160,12 +177,16 @@ def _finish(
             stacklevel=3,
         )
     states, extra = mapping.record(orbit.point)
+    cost = step_error(mapping, orbit, frequency) if converged else float("nan")
+    if cost > STEP_LIMIT:
+        warn("step-size", _told_step(mapping, cost), stacklevel=3)
     return build_response(
         mapping.compiled,
         frequency,
         states,
         extra,
         error=error,
+        step_error=cost,
         converged=converged,
         floquet_multipliers=orbit.multipliers,
         cycles_used=mapping.cycles,

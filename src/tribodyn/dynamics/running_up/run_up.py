@@ -125,7 +125,7 @@ def run_up(
     state = _begin(marcher, path, start)
     count = max(math.ceil(path.cycles - 1e-9), 1)
     kept = Samples(systems, frequency, count, int(samples))
-    progress.start("Marching the run-up", count)
+    progress.start("Mesh cycles of the run-up", count)
     figures = _march(marcher, path, count, state, kept, progress)
     progress.finish()
     return RunUp(

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
-from tribodyn.dynamics.equations.system import Contact, Entry
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import Contact
 from tribodyn.errors import InputError
 from tribodyn.types import Array
 

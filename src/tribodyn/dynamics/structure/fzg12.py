@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.system import Entry, System
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried
 from tribodyn.dynamics.structure.gear_pair import (
     Driver,

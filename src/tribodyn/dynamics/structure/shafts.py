@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.system import Contact, Entry, System
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.structure.gear_pair import Driver, row_of
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array

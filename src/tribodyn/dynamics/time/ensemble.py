@@ -185,7 +185,7 @@ def simulate_ensemble(
     compiled = marcher.compiled
     linear = np.zeros((0, 2 * size)) if outputs is None else np.asarray(outputs, float)
     statistics = Statistics.of(compiled, linear, lanes, harmonics)
-    progress.start("Marching the ensemble", cycles)
+    progress.start("Mesh cycles", cycles)
     early = cycles - averaged
     for count, gathered, elapsed in ((early, None, 0), (averaged, statistics, early)):
         if count:

@@ -109,6 +109,9 @@ class Response(Record):
         Generalized force that the torque balance added [N or N*m].
     period : int
         Mesh cycles after which the orbit repeats, at most ``periods``; 0 for a transient.
+    step_error : float
+        Distance to the orbit at half the step over its size [-]: what the step costs; infinite
+        where there is no such orbit, NaN for a transient and an orbit that is not converged.
     """
 
     time: Array = quantity("time", unit="s", axis=True)
@@ -130,6 +133,7 @@ class Response(Record):
     search_cycles: int = 0
     extra_force: Array = field(default_factory=lambda: np.zeros(0))
     period: int = 0
+    step_error: float = fact(default=float("nan"))
 
     @property
     def duration(self) -> float:
@@ -162,6 +166,8 @@ class Response(Record):
         """One line."""
         kind = "orbit" if self.floquet_multipliers.size else "transient"
         state = f", error {self.error:.1e}" if kind == "orbit" else ""
+        if not np.isnan(self.step_error):
+            state += f", step error {self.step_error:.1e}"
         return (
             f"Response({kind} of {self.periods} mesh cycle{'s' if self.periods != 1 else ''} at "
             f"{self.mesh_frequency:.6g} Hz, {self.position.shape[1]} coordinates, "

@@ -126,7 +126,7 @@ def simulate(
     marcher = prepare(method, setting, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
     skipped = cycles - min(kept or cycles, cycles)
     record = np.empty(((cycles - skipped) * steps + 1, 2 * system.size, 1))
-    progress.start("Marching over time", cycles)
+    progress.start("Mesh cycles", cycles)
     elapsed = 0
     while elapsed < cycles:
         count = min(_CHUNK, (skipped if elapsed < skipped else cycles) - elapsed)

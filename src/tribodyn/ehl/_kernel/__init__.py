@@ -5,7 +5,6 @@
 | ``elementary`` | how kernels are compiled; exponential and logarithm as vector instructions |
 | ``reynolds`` | oil, fluxes, residual and exact tangent of the discrete equation |
 | ``film_sum`` | elastic deflection by Fourier transforms |
-| ``factors`` | LU factors of band and dense matrices |
 | ``linear_solver`` | GMRES with the tangent, preconditioned by its band and a coarse grid |
 | ``newton`` | Newton's method on one grid, with the free outlet and with cavities |
 | ``transfer`` | free outlet, and a solution carried to other grids |

@@ -27,6 +27,9 @@ INNER: dict[str, Any] = {**JIT, "no_cfunc_wrapper": True}
 BURIED: dict[str, Any] = {**INNER, "no_cpython_wrapper": True}
 
 
+#: Files whose code ends up in every compiled kernel of a film, beside its own.
+SOURCES = ("elementary", "reynolds", "film_sum", "linear_solver", "transfer", "inlet", "newton")
+
 #: Sums must keep their order: the rounding below would be optimised away. For the same reason
 #: the functions are inlined by the compiler's back end, which keeps these flags, never by Numba.
 STRICT = {**INNER, "fastmath": {"contract"}}

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
-from tribodyn.ehl._kernel.elementary import INNER, JIT
+from tribodyn.compiled import announced, source_digest
+from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.multigrid_levels import (
     LEFT,
@@ -37,12 +37,6 @@ from tribodyn.ehl._kernel.newton import CONVERGED, NOT_FINITE, ROUNDED, STALLED
 from tribodyn.ehl._kernel.steady import SteadyContact
 from tribodyn.ehl._kernel.transfer import central, cut_negative, extend, refine
 from tribodyn.types import Array, Index
-
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "inlet",
-    "newton", "steady", "multigrid_levels", "multigrid",
-)  # fmt: skip
 
 #: Columns of the record of cycles: intervals, change of pressure, flux error, load error, least
 #: residual of the cavity per length, last free node.
@@ -327,4 +321,6 @@ def _build(digest: str) -> Any:
     return multigrid_solve
 
 
-multigrid_solve = _build(source_digest(Path(__file__).parent, _SOURCES))
+_FILES = (*SOURCES, "steady", "multigrid_levels", "multigrid")
+multigrid_solve = _build(source_digest(Path(__file__).parent, _FILES))
+multigrid_solve = announced(multigrid_solve, "the multigrid film solver", "half a minute")

@@ -15,8 +15,8 @@ import numba as nb
 import numpy as np
 
 from tribodyn.ehl._kernel.elementary import INNER
-from tribodyn.ehl._kernel.factors import lu_factor, lu_solve
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, influence
+from tribodyn.ehl._kernel.linear_solver import lu_factor, lu_solve
 from tribodyn.ehl._kernel.newton import CONVERGED, GAP, SINGULAR
 from tribodyn.ehl._kernel.reynolds import Fields, fill_oil, fill_tangent, make_fields, residual
 from tribodyn.types import Array, Index

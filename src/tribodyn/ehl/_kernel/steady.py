@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
-from tribodyn.ehl._kernel.elementary import BURIED, JIT
+from tribodyn.compiled import announced, source_digest
+from tribodyn.ehl._kernel.elementary import BURIED, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import make_grid
 from tribodyn.ehl._kernel.inlet import cold_start, free_nodes
 from tribodyn.ehl._kernel.linear_solver import (
@@ -31,12 +31,6 @@ from tribodyn.ehl._kernel.newton import (
 from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
 from tribodyn.ehl._kernel.transfer import central, refine
 from tribodyn.types import Array
-
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "inlet",
-    "newton", "steady",
-)  # fmt: skip
 
 #: Intervals from which on the linear solver has a coarse grid, and about how many that has.
 _TWO_GRIDS, _COARSE = 2048, 128
@@ -166,6 +160,6 @@ def _build_tangent(digest: str) -> Any:
     return tangent_of_film
 
 
-_DIGEST = source_digest(Path(__file__).parent, _SOURCES)
-newton_solve = _build(_DIGEST)
+_DIGEST = source_digest(Path(__file__).parent, (*SOURCES, "steady"))
+newton_solve = announced(_build(_DIGEST), "the film solver", "one to two minutes")
 tangent_of_film = _build_tangent(_DIGEST)

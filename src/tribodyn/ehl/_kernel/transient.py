@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
-from tribodyn.ehl._kernel.elementary import BURIED, JIT
+from tribodyn.compiled import announced, source_digest
+from tribodyn.ehl._kernel.elementary import BURIED, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, influence
 from tribodyn.ehl._kernel.inlet import flooded_inlet
 from tribodyn.ehl._kernel.linear_solver import no_coarse
@@ -29,12 +29,6 @@ from tribodyn.ehl._kernel.newton import (
 from tribodyn.ehl._kernel.reynolds import oil_state
 from tribodyn.ehl._kernel.transfer import central
 from tribodyn.types import Array
-
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "elementary", "reynolds", "film_sum", "factors", "linear_solver", "transfer", "inlet",
-    "newton", "transient",
-)  # fmt: skip
 
 # What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
 
@@ -348,4 +342,5 @@ def _build(digest: str) -> Any:
     return follow_contact
 
 
-follow_contact = _build(source_digest(Path(__file__).parent, _SOURCES))
+follow_contact = _build(source_digest(Path(__file__).parent, (*SOURCES, "transient")))
+follow_contact = announced(follow_contact, "the transient film solver", "one to two minutes")

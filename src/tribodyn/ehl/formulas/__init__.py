@@ -2,8 +2,7 @@
 
 | module | what it answers |
 |---|---|
-| ``dimensionless_groups`` | which numbers describe a contact |
-| ``lubrication_regimes`` | which of the four regimes of Moes it lies in |
+| ``dimensionless_groups`` | which numbers describe a contact, and its regime after Moes |
 | ``power_laws`` | film in the elastic-piezoviscous regime: Dowson, Dowson-Toyoda, Pan-Hamrock |
 | ``moes`` | central film in all regimes, and how it follows the load |
 """

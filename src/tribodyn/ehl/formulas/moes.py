@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.formulas.dimensionless_groups import Groups, film_formula
-from tribodyn.ehl.formulas.lubrication_regimes import (
+from tribodyn.ehl.formulas.dimensionless_groups import (
+    Groups,
     elastic_isoviscous,
     elastic_piezoviscous,
+    film_formula,
     rigid_isoviscous,
     rigid_piezoviscous,
 )

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from tribodyn.ehl.formulas.dimensionless_groups import Groups, film_formula
-from tribodyn.ehl.formulas.lubrication_regimes import warn_outside_elastic_piezoviscous
+from tribodyn.ehl.formulas.dimensionless_groups import (
+    Groups,
+    film_formula,
+    warn_outside_elastic_piezoviscous,
+)
 from tribodyn.types import Array
 
 

@@ -4,12 +4,10 @@
 |---|---|
 | ``line_contact`` | pressure and film of one contact |
 | ``batch`` | films of many contacts at once |
-| ``solved_films`` | what a film model hands over for many contacts |
 | ``solution`` | the result: pressure, film and their errors |
 | ``contact_case`` | is what the user gave a contact, and what are its dimensionless numbers |
 | ``grid`` | how far the grid reaches, the inlet before it, and how many nodes it has |
 | ``contact_problem`` | what an engine is asked, and what it answers |
 | ``newton_engine``, ``multigrid_engine`` | the two engines |
-| ``rescue`` | what is tried when an engine fails |
-| ``verification`` | does a solution meet the equations |
+| ``rescue`` | does a solution meet the equations, and what is tried when an engine fails |
 """

@@ -16,7 +16,7 @@ from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.stiffness.film_stiffness import central_film_slope
-from tribodyn.errors import InputError, Problem, TribodynError, require_positive, warn
+from tribodyn.errors import InputError, Problem, TribodynError, quiet, require_positive, warn
 from tribodyn.interrupt import Threads
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
@@ -98,30 +98,14 @@ def solve_line_contacts(
 
     Parameters
     ----------
-    load_per_width : float or array [N/m]
-        Normal load per face width.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature.
-    entrainment_speed : float or array [m/s]
-        HALF the sum of the surface speeds.
-    lubricant : Lubricant
-        Oil at the temperature of the inlet.
-    effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-    nodes : "auto" or int
-        Nodes of each grid.
-    method : {"newton", "multigrid"}
-        Engine.
-    domain : "auto" or (float, float) [-]
-        First and last position, in half widths of each dry contact.
-    inlet : {"flooded", "zero"}
-        Oil everywhere before the contact, or pressure zero at the first position.
-    viscosity_law : {"roelands", "barus", "isoviscous"}
-        How the viscosity rises with pressure.
-    compressible : bool
-        Whether the density rises with pressure.
-    tolerance, flux_tolerance, film_tolerance : float
-        As for one contact.
+    load_per_width, equivalent_radius, entrainment_speed : float or array [N/m], [m], [m/s]
+        Loads, radii and speeds that broadcast.
+    lubricant, effective_modulus : Lubricant, float [Pa]
+        Oil and modulus of all contacts.
+    nodes, method, domain, inlet, viscosity_law, compressible
+        As for :func:`solve_line_contact`; the domain in half widths of each contact [-].
+    tolerance, flux_tolerance, film_tolerance
+        As there.
     stiffness : bool
         Whether to compute the film stiffness, one or two linear solves a contact.
     length : float [m]
@@ -174,7 +158,7 @@ def solve_line_contacts(
 
     size = columns[0].size
     table, solutions = np.empty((8, size)), np.empty(size, dtype=object)
-    progress.start("Solving oil films", size)
+    progress.start("Oil films", size)
     for index, (row, solution) in enumerate(_in_order(solve, size, threads)):
         table[:, index], solutions[index] = row, solution
         progress.advance()
@@ -273,3 +257,77 @@ def _in_order(work: Callable[[int], Value], size: int, threads: int | None) -> I
                     # A wait with an end lets Ctrl-C through on every system.
                     wait([future], timeout=0.2)
                 yield future.result()
+
+
+@dataclass(frozen=True, eq=False)
+class Films:
+    """Oil films of loaded contacts: arrays of one shape, ``None`` where a model has none."""
+
+    central_film: Array | None  #: [m]
+    minimum_film: Array | None  #: [m]
+    film_pressure: Array | None  #: greatest pressure in the film [Pa]
+    film_stiffness: Array | None  #: stiffness of the film over the length of the contact line [N/m]
+    solutions: tuple[Any, ...] = field(default=(), repr=False)
+
+
+def solved_films(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    lubricant: Lubricant,
+    effective_modulus: float,
+    *,
+    length: float,
+    method: str,
+    stiffness: str,
+    nodes: int,
+    inlet: str,
+    domain: tuple[float, float] | None,
+    progress: Progress = SILENT,
+) -> Films:
+    """Solve many contacts in threads."""
+    tangent = stiffness in ("none", "tangent")
+    with quiet("film-stiffness"):
+        # Whoever uses the stiffness says what a negative one means for it.
+        batch = solve_line_contacts(
+            load_per_width,
+            equivalent_radius,
+            entrainment_speed,
+            lubricant,
+            effective_modulus,
+            nodes=nodes,
+            method=method,
+            inlet=inlet,
+            domain="auto" if domain is None else domain,
+            stiffness=tangent,
+            keep_solutions=True,
+            progress=progress,
+        )
+    solutions = tuple(np.ravel(batch.solutions))
+    pressures = np.array([solution.pressure.max() for solution in solutions])
+    if tangent:
+        film_stiffness = length * batch.film_stiffness
+    else:
+        film_stiffness = _sums(solutions, length, stiffness).reshape(batch.central_film.shape)
+    if stiffness == "seed":
+        warn(
+            "seed-film-stiffness",
+            "the film stiffness is the sum as one source prints it: a length, which doubles when "
+            f"the {nodes} nodes are doubled. It is shown and not put in series with the teeth. "
+            'Take film.stiffness = "tangent", or "secant" for a sum that is sound',
+            stacklevel=4,
+        )
+    return Films(
+        central_film=batch.central_film,
+        minimum_film=batch.minimum_film,
+        film_pressure=pressures.reshape(batch.central_film.shape),
+        film_stiffness=film_stiffness,
+        solutions=solutions,
+    )
+
+
+def _sums(solutions: tuple[Any, ...], length: float, kind: str) -> Array:
+    """Secant or printed sum of every solution; what the latter has to say is said once."""
+    with quiet("seed-film-stiffness"):
+        each = [solution.film_stiffness(length, kind=kind) for solution in solutions]
+    return np.array(each)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.ehl.formulas.lubrication_regimes import (
+from tribodyn.ehl.formulas.dimensionless_groups import (
     elastic_isoviscous,
     elastic_piezoviscous,
     rigid_isoviscous,

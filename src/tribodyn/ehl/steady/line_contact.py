@@ -94,12 +94,9 @@ def solve_line_contact(
         How the viscosity rises with pressure.
     compressible : bool
         Whether the density rises with pressure, after Dowson and Higginson.
-    tolerance : float
-        Relative change of the pressure in the last step.
-    flux_tolerance : float
-        Greatest relative deviation of the mass flux from its mean.
-    film_tolerance : float
-        Relative error of the central film by the grid, for automatic nodes.
+    tolerance, flux_tolerance, film_tolerance : float
+        Relative change of the pressure in the last step; greatest relative deviation of the mass
+        flux from its mean; relative error of the central film by the grid, for automatic nodes.
     levels : int, optional
         Number of grids, each half as fine as the next; by the film if absent.
     start : LineContactSolution, optional
@@ -180,25 +177,10 @@ def solve_line_contact_moes(
     pressure_viscosity_coefficient : float [1/Pa]
         Slope of ln(viscosity) over pressure; it sets the Hertz pressure
         ``L sqrt(M/2pi)/alpha``, on which Roelands' law and the density depend.
-    compressible : bool
-        Whether the density rises with pressure, after Dowson and Higginson.
-    domain : "auto" or (float, float) [-]
-        First and last position, in half widths of the dry contact.
-    inlet : {"flooded", "zero"}
-        Oil everywhere before the contact, or pressure zero at the first position of the domain.
-    nodes : "auto" or int
-        Nodes of the grid, 65 to 16385, preferably 2^k + 1.
-    method : {"newton", "multigrid"}
-        Multilevel Newton-Krylov, or full multigrid.
-    viscosity_law : {"roelands", "barus", "isoviscous"}
-        How the viscosity rises with pressure.
-    tolerance, flux_tolerance, film_tolerance : float
-        Relative change of the pressure in the last step, flux error, and error of the central
-        film by the grid for automatic nodes.
-    levels : int, optional
-        Number of grids; by the film if absent.
-    start : LineContactSolution, optional
-        Solution of a similar contact to start from.
+    compressible, domain, inlet, nodes, method, viscosity_law
+        As for :func:`solve_line_contact`; the domain in half widths [-].
+    tolerance, flux_tolerance, film_tolerance, levels, start
+        As there.
     profile : callable, optional
         Heights in b^2/R that are added to the gap, as a function of the position in b.
 

@@ -4,8 +4,7 @@
 |---|---|
 | ``traction`` | tangential forces of the oil on both surfaces |
 | ``film_state`` | pressure and film of many contacts, as traction needs them |
-| ``shear_models`` | shear models by name |
-| ``newtonian``, ``ree_eyring``| shear stress of an oil |
+| ``shear_models`` | shear stress of an oil, models by name |
 | ``film_temperature`` | viscosity of warm oil, flash temperature, balance of heat |
 | ``inlet_heating`` | thinner film by a heated inlet |
 """

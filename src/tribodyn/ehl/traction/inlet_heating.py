@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, require_between, require_positive, warn
+from tribodyn.checks import positive
+from tribodyn.errors import InputError, require_between, warn
 from tribodyn.types import Array
 
 #: Thermal loading beyond which the fit was not made: bearings reach several tens.
@@ -71,24 +72,15 @@ def inlet_heating_factor(
     >>> round(float(factor), 3)
     0.789
     """
-    require_positive("entrainment_speed", entrainment_speed, "m/s")
     require_between("slide_to_roll_ratio", slide_to_roll_ratio, -np.inf, np.inf)
-    require_positive("hertz_pressure", hertz_pressure, "Pa")
-    require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
-    require_positive("temperature_viscosity_coefficient", temperature_viscosity_coefficient, "1/K")
-    require_positive("thermal_conductivity", thermal_conductivity, "W/m/K")
-    require_positive("effective_modulus", effective_modulus, "Pa")
-    speed, ratio, pressure, viscosity, coefficient, conductivity, modulus = (
-        np.asarray(a, dtype=float)
-        for a in (
-            entrainment_speed,
-            slide_to_roll_ratio,
-            hertz_pressure,
-            dynamic_viscosity,
-            temperature_viscosity_coefficient,
-            thermal_conductivity,
-            effective_modulus,
-        )
+    ratio = np.asarray(slide_to_roll_ratio, dtype=float)
+    speed, pressure, viscosity, coefficient, conductivity, modulus = positive(
+        entrainment_speed=entrainment_speed,
+        hertz_pressure=hertz_pressure,
+        dynamic_viscosity=dynamic_viscosity,
+        temperature_viscosity_coefficient=temperature_viscosity_coefficient,
+        thermal_conductivity=thermal_conductivity,
+        effective_modulus=effective_modulus,
     )
     loading = viscosity * coefficient * speed**2 / conductivity
     numerator = 1.0 - 13.2 * pressure / modulus * loading**0.42

@@ -4,5 +4,4 @@
 |---|---|
 | ``transient`` | film over time |
 | ``moving_contact`` | series, scale and grid of the contact, and the state it starts from |
-| ``transient_result`` | the result: films, loads and pressures over time |
 """

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.formulas.lubrication_regimes import (
+from tribodyn.ehl.formulas.dimensionless_groups import (
     elastic_isoviscous,
     elastic_piezoviscous,
     rigid_isoviscous,

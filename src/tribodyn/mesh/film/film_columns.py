@@ -6,19 +6,19 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import Problem, TribodynError, require_between
 from tribodyn.friction import TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.table import MeshTable
+from tribodyn.model import NO_OPTIONS
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from tribodyn.gear import Material
     from tribodyn.lubricant import Lubricant
 
-
-_NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 #: Columns that a film model may fill.
 FILM_COLUMNS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
@@ -40,7 +38,7 @@ def film_columns(
     lubricant: Lubricant,
     *,
     common_face_width: float = 1.0,
-    film_options: Mapping[str, Any] = _NO_OPTIONS,
+    film_options: Mapping[str, Any] = NO_OPTIONS,
 ) -> dict[str, Array]:
     """Films of the loaded contacts, as far as the model gives them; every contact on its own.
 
@@ -50,10 +48,8 @@ def film_columns(
         Name in ``tribodyn.ehl.FILM_MODELS``.
     contact : TribologicalContact
         Loaded contacts.
-    material : Material
-        Material of both gears.
-    lubricant : Lubricant
-        Oil at working temperature.
+    material, lubricant : Material, Lubricant
+        Of both gears, and the oil at working temperature.
     common_face_width : float [m]
         Length of the contact line, for the film stiffness.
     film_options : mapping
@@ -101,10 +97,16 @@ def film_columns(
 def as_columns(films: Films, composite_roughness: float) -> dict[str, Array]:
     """Name the films as columns and add their ratio to the roughness."""
     known = {name: getattr(films, name, None) for name in FILM_COLUMNS}
-    thin = [film for film in (films.central_film, films.minimum_film) if film is not None]
-    if thin and composite_roughness > 0.0:
-        known["film_ratio"] = np.min(thin, axis=0) / composite_roughness
+    thickness = smallest_film(films)
+    if thickness is not None and composite_roughness > 0.0:
+        known["film_ratio"] = thickness / composite_roughness
     return {name: values for name, values in known.items() if values is not None}
+
+
+def smallest_film(films: Films) -> Array | None:
+    """Smallest film known: the minimum, or in its place that in the centre."""
+    thin = [film for film in (films.central_film, films.minimum_film) if film is not None]
+    return np.asarray(np.min(thin, axis=0)) if thin else None
 
 
 #: How the batch of contacts names the one that failed.
@@ -149,10 +151,8 @@ def moving_film(
     ----------
     mesh : MeshTable
         Loads, radii and speeds of the pair over the mesh cycle.
-    lubricant : Lubricant
-        Oil at working temperature.
-    material : Material
-        Material of both gears.
+    lubricant, material : Lubricant, Material
+        Oil at working temperature, and material of both gears.
     steps : int
         Time steps from entry to exit; where the number of pairs changes, one of them spreads the
         jump of the load.

@@ -15,7 +15,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.steady.solved_films import Films
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.errors import quiet, warn
 from tribodyn.friction import LAWS, TribologicalContact
@@ -43,8 +43,7 @@ from tribodyn.mesh.film.film_refinement import (
     places_of,
 )
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
-from tribodyn.mesh.sharing import Teeth
-from tribodyn.mesh.tooth_contact import ToothContact
+from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Index, Mask
 

@@ -21,8 +21,11 @@ from tribodyn.stiffness.fe2d.flank_load import flank_loads, remainder_loads
 from tribodyn.stiffness.fe2d.ring import Ring, plane_stress
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, tooth_mesh
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.sainsot import LARGEST_RATIO, wind_up_compliance
-from tribodyn.stiffness.teeth.tooth_compliance import check_reference
+from tribodyn.stiffness.teeth.tooth_compliance import (
+    LARGEST_RATIO,
+    check_reference,
+    wind_up_compliance,
+)
 from tribodyn.types import Array, Mask
 
 #: Places along the flank.
@@ -109,8 +112,8 @@ def _carried_to_tip(rho: Array, support: Array, self_compliance: Array, near: Ma
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
     (".", "flank_load provider ring tooth_mesh"),
-    ("../teeth", "load_point sainsot"),
-    ("../../gear", "curves rack tooth_form"),
+    ("../teeth", "load_point tooth_compliance"),
+    ("../../gear", "curves tooth_form"),
 )
 
 
@@ -127,10 +130,8 @@ def fe2d_influence(
 
     Parameters
     ----------
-    gear : SpurGear
-        The gear.
-    material : Material
-        Its material.
+    gear, material : SpurGear, Material
+        The gear and its material.
     reference : str
         ``"bore"``: the bore is held; ``"rim"``: the wind-up of the body is taken off.
     neighbours : int

@@ -3,8 +3,7 @@
 | module | what it answers |
 | --- | --- |
 | `contact` | from a gear pair, a torque and a model's name to the loaded contact |
-| `load_points` | where tooth pairs may touch, and how far their flanks are apart there |
-| `problem` | compliance of all pairs together; loads at an approach and approach at a load |
+| `problem` | where pairs may touch; loads at an approach, and approach at a load |
 | `kernel` | the compiled solver of that problem |
 | `result` | load sharing, transmission error, stiffness, harmonics, loads at the foot |
 | `models` | stiffness models whose pairs are solved together |

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -12,28 +11,25 @@ from numpy.typing import ArrayLike
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.loaded.load_points import (
+from tribodyn.model import NO_OPTIONS
+from tribodyn.stiffness.loaded.problem import (
+    Compliance,
     ContactPlaces,
+    ContactProblem,
+    Equilibrium,
     contact_places,
+    coupled_compliance,
     extended_places,
+    independent_compliance,
+    local_coefficients,
     mesh_period,
     on_path_places,
     slice_gaps,
     slice_widths,
 )
-from tribodyn.stiffness.loaded.problem import (
-    Compliance,
-    ContactProblem,
-    Equilibrium,
-    coupled_compliance,
-    independent_compliance,
-    local_coefficients,
-)
 from tribodyn.stiffness.loaded.result import LoadedContact
 from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
 from tribodyn.types import Array, Mask
-
-NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
 def compliance_of(
@@ -79,19 +75,14 @@ def contact_problem(
     pair : SpurPair
         Both gears in their working position, with their deviations.
     provider : str
-        Name in ``tribodyn.stiffness.MODELS``.
+        As ``extended_contact``, ``material``, ``options`` and ``slices`` for
+        :func:`loaded_contact`.
     phase : array (p,)
         Mesh phases; the whole part counts mesh cycles, where teeth differ.
     total_force : float [N]
         Normal force of all pairs.
-    extended_contact : bool
-        Let tip corners touch outside of the path of contact.
-    material : Material
-        Material of both gears.
-    options : mapping
-        Options of the provider.
-    slices : int, optional
-        Slices of the face width; by default one, or 21 where flanks vary over the width.
+    extended_contact, material, options, slices
+        As there.
 
     Returns
     -------
@@ -136,20 +127,16 @@ def mesh_problem(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position, with their deviations.
-    provider : str
-        Name in ``tribodyn.stiffness.MODELS``.
+    pair, provider
+        As for :func:`contact_problem`.
     places : tuple
         Phase (p,), path (p, n) [m] and whether each pair is between A and E (p, n).
     total_force : float [N]
         Normal force of all pairs.
     extended_contact : bool
         Let tip corners touch outside of the path of contact; then there are two pairs more.
-    material : Material
-        Material of both gears.
-    options : mapping
-        Options of the provider.
+    material, options
+        As for :func:`contact_problem`.
 
     Returns
     -------

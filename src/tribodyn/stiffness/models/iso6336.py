@@ -37,16 +37,12 @@ def iso6336_single_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material : SpurPair, Material
+        Both gears in their working position, and their material.
     normal_force : float [N]
         Force along the line of action.
-    application_factor : float
-        ``K_A``.
-    gear_blank_factor : float
-        ``C_R``; 1 for solid discs.
+    application_factor, gear_blank_factor : float
+        ``K_A``, and ``C_R``, which is 1 for solid discs.
 
     Returns
     -------
@@ -162,10 +158,8 @@ def iso6336_pair_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material
+        As for :func:`iso6336_single_stiffness`.
     path : array [m]
         Distance of the contact from the pinion's base tangent point.
     normal_force : float [N]

@@ -11,14 +11,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
 from tribodyn.errors import ComputationError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
 from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
-from tribodyn.stiffness.teeth.weber import weber_banaschek_compression
+from tribodyn.stiffness.teeth.weber import local_terms
 from tribodyn.types import Array, Mask
 
 #: The load share settles to this relative change; each pass gains more than one digit.
@@ -30,38 +29,34 @@ class _PairContacts(NamedTuple):
     """What the deflection of tooth pairs at given places depends on, their load excepted."""
 
     structure: Array
-    equivalent_radius: Array
-    depths: tuple[Array, Array]
+    terms: Array  #: of :func:`local_terms`
+    scale: float
     face_width: float
-    material: Material
 
     def stiffness(self, force: Array) -> Array:
         """Secant stiffness [N/m] of each pair under its own force [N]."""
         load = force / self.face_width
-        modulus = effective_modulus(self.material, self.material)
-        half_width = np.asarray(hertz_line(load, self.equivalent_radius, modulus).half_width)
-        local = sum(
-            weber_banaschek_compression(load, half_width, depth, self.material)
-            for depth in self.depths
-        )
-        return force / (force * self.structure + local)
+        brackets = self.terms - 0.5 * np.log(load)
+        if np.any(brackets <= 0.0):
+            raise ComputationError(
+                f"under {np.max(load):.4g} N/m the contact is as wide as the teeth are thick",
+                where="Weber-Banaschek compression",
+                why="The formula holds for a half width much smaller than the depth",
+                remedy="Lower the load",
+            )
+        local = self.scale * load * brackets.sum(axis=0)
+        return np.asarray(force / (force * self.structure + local))
 
 
 def _contacts(pair: SpurPair, material: Material, path: Array, reference: str) -> _PairContacts:
-    radii = (path, pair.line_of_action_length - path)
-    loads = [load_point(g, r) for g, r in zip((pair.pinion, pair.wheel), radii, strict=True)]
+    gears, radii = (pair.pinion, pair.wheel), (path, pair.line_of_action_length - path)
     width = pair.common_face_width
-    structure = [
-        tooth_compliance(gear, load, width, material, reference).total
-        for gear, load in zip((pair.pinion, pair.wheel), loads, strict=True)
-    ]
-    return _PairContacts(
-        structure=structure[0] + structure[1],
-        equivalent_radius=path_of_contact(pair).kinematics(path, 1.0).equivalent_radius,
-        depths=(loads[0].depth, loads[1].depth),
-        face_width=width,
-        material=material,
+    structure = sum(
+        tooth_compliance(gear, load_point(gear, radius), width, material, reference).total
+        for gear, radius in zip(gears, radii, strict=True)
     )
+    terms, scale = local_terms(gears, radii, material)
+    return _PairContacts(np.asarray(structure), terms, scale, width)
 
 
 def single_pair_stiffness(
@@ -75,10 +70,8 @@ def single_pair_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material : SpurPair, Material
+        Both gears in their working position, and their material.
     path : float or array [m]
         Distance of the contact from the pinion's base tangent point.
     normal_force : float or array [N]
@@ -127,10 +120,8 @@ def potential_energy_influence(
 
     Parameters
     ----------
-    gear : SpurGear
-        The gear.
-    material : Material
-        Its material.
+    gear, material : SpurGear, Material
+        The gear and its material.
     reference : str
         ``"bore"`` or ``"rim"``: where the gear body is held.
 
@@ -174,10 +165,8 @@ def potential_energy_stiffness(
 
     Parameters
     ----------
-    pair : SpurPair
-        Both gears in their working position.
-    material : Material
-        Material of both gears.
+    pair, material
+        As for :func:`single_pair_stiffness`.
     path : array (n, pairs) [m]
         Distance of each contact from the pinion's base tangent point.
     in_contact : bool array (n, pairs)
@@ -185,7 +174,7 @@ def potential_energy_stiffness(
     normal_force : float [N]
         Force that all pairs carry together.
     reference : str
-        ``"bore"`` or ``"rim"``: where the gear bodies are held.
+        As there.
 
     Returns
     -------

@@ -5,9 +5,7 @@
 | `load_point` | where the normal force meets a tooth, and which places of a flank are tabulated |
 | `influence` | what a load on a tooth does there and at the other teeth (any provider) |
 | `tooth_bending` | bending, shear and compression of a tooth as a beam on its true outline |
-| `sainsot` | foundation of a tooth, and wind-up of the body down to its bore |
-| `tooth_compliance` | tooth, foundation and body of one gear together |
+| `tooth_compliance` | foundation of a tooth, wind-up of the body; all of one gear together |
 | `weber` | local compression of the flanks; a tooth on a half plane |
-| `ring_fourier` | the ring under the teeth: what one foot does to another |
-| `analytic` | influence of a gear from beam teeth on that ring |
+| `analytic` | influence of a gear from beam teeth on an elastic ring |
 """

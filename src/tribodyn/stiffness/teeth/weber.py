@@ -7,6 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from tribodyn.contact import effective_modulus
 from tribodyn.errors import ComputationError, InputError, require_between, require_positive
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.teeth.influence import GearInfluence
@@ -79,6 +80,22 @@ def weber_banaschek_compression(
     modulus = material.youngs_modulus / (1.0 - nu**2)
     compression: Number = 2.0 * load_per_width / (np.pi * modulus) * bracket
     return compression
+
+
+def local_terms(
+    gears: tuple[SpurGear, SpurGear], radii: tuple[Array, Array], material: Material
+) -> tuple[Array, float]:
+    """Terms ``L`` (2, ...) and factor ``B`` of both compressions ``B f (L - ln(f)/2)`` under Hertz.
+
+    The half width of the contact of two flanks with these radii of curvature goes with the root
+    of the load per width ``f``. Source: :func:`weber_banaschek_compression`; Hertz (1881).
+    """
+    nu = material.poissons_ratio
+    reduced = radii[0] * radii[1] / (radii[0] + radii[1])
+    square = 8.0 * reduced / (np.pi * effective_modulus(material, material))
+    depths = np.stack([load_point(g, r).depth for g, r in zip(gears, radii, strict=True)])
+    terms = np.log(2.0 * depths) - 0.5 * np.log(square) - nu / (2.0 * (1.0 - nu))
+    return terms, 2.0 * (1.0 - nu**2) / (np.pi * material.youngs_modulus)
 
 
 def half_plane_compliance(

@@ -3,6 +3,5 @@
 | module | what it answers |
 | --- | --- |
 | `harris` | static transmission error over phase and torque |
-| `search` | which amount and length of tip relief is best over a range of torques |
-| `result` | what that search found, and the map that it searched |
+| `search` | which amount and length of tip relief is best over torques, and the map of all |
 """

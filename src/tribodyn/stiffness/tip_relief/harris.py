@@ -8,12 +8,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import Argument, InputError, require_positive
+from tribodyn.checks import one_or_more
+from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material, SpurPair
+from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded import loaded_contact
-from tribodyn.stiffness.loaded.contact import NO_OPTIONS
-from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
+from tribodyn.stiffness.loaded.problem import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.result import harmonic_amplitudes
 from tribodyn.types import Array, Index
 
@@ -102,20 +103,6 @@ class HarrisMap(Record):
         )
 
 
-def increasing_torques(torque: ArrayLike) -> Array:
-    """Check torques and put them in order."""
-    torques = np.atleast_1d(np.asarray(torque, dtype=float))
-    require_positive("torque", torques, "N*m")
-    if torques.ndim != 1 or torques.size == 0:
-        raise InputError(
-            f"torque has the shape {torques.shape}",
-            where=Argument("torque"),
-            why="It is one value or a list of values",
-            remedy="Give a list of torques in N*m",
-        )
-    return np.unique(torques)
-
-
 def transmission_error_over_torque(
     pair: SpurPair,
     torque: ArrayLike,
@@ -144,16 +131,8 @@ def transmission_error_over_torque(
         or the hunting tooth period multiply the work.
     harmonics : int, optional
         Number of mesh harmonics, less than half the phases; 10 by default, or all that there are.
-    extended_contact : bool
-        Let tip corners touch before A and after E.
-    reference : str, optional
-        ``"bore"`` or ``"rim"``; by default that of the provider.
-    material : Material, optional
-        Material of both gears; steel by default.
-    slices : int, optional
-        Slices of the face width; by default one, or 21 where flanks vary over the width.
-    options : mapping
-        Further options of the provider.
+    extended_contact, reference, material, slices, options
+        As for :func:`tribodyn.stiffness.loaded_contact`.
 
     Returns
     -------
@@ -182,7 +161,7 @@ def transmission_error_over_torque(
     >>> found.transmission_error.shape
     (2, 256)
     """
-    torques = increasing_torques(torque)
+    torques = np.unique(one_or_more(torque=torque)[0])
     work = mesh_period(pair) * slice_widths(pair, slices).size
     if phases is None:
         phases = _PHASES if work == 1 else _PHASES // 4

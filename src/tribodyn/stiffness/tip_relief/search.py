@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import one_or_more
 from tribodyn.errors import Argument, InputError, Problem, quiet
 from tribodyn.gear import (
     FlankModification,
@@ -19,19 +20,103 @@ from tribodyn.gear import (
     flank_ranges,
     profile_gap,
 )
-from tribodyn.gear.profile_map import LARGEST_AMOUNT
+from tribodyn.gear.modification import LARGEST_AMOUNT
+from tribodyn.model import NO_OPTIONS
+from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded.contact import (
-    NO_OPTIONS,
     contact_problem,
     contact_settings,
     phases_of,
 )
-from tribodyn.stiffness.loaded.load_points import mesh_period, slice_widths
-from tribodyn.stiffness.loaded.problem import ContactProblem
+from tribodyn.stiffness.loaded.problem import ContactProblem, mesh_period, slice_widths
 from tribodyn.stiffness.model import MODELS
-from tribodyn.stiffness.tip_relief.harris import increasing_torques
-from tribodyn.stiffness.tip_relief.result import TipReliefOptimum
 from tribodyn.types import Array
+
+
+@record
+class TipReliefOptimum(Record):
+    """Best tip relief over torques; made by :func:`tribodyn.stiffness.optimize_tip_relief`.
+
+    Parameters
+    ----------
+    gear_pair, modified_pair : SpurPair
+        As it was given, and with the relief that was found.
+    gears : str
+        Which gears are relieved: ``"both"``, ``"pinion"`` or ``"wheel"``.
+    shape : str
+        ``"linear"`` or ``"parabolic"``.
+    amount, length : float [m]
+        The relief that was found: material taken away at the tip, and roll length.
+    torque : array (t,) [N*m]
+        Torques on the pinion.
+    weight : array (t,)
+        Parts of the torques in a mean objective: pure numbers that sum to one.
+    objective_kind : str
+        ``"largest"`` or ``"mean"`` peak-to-peak transmission error over the torques.
+    objective, objective_before : float [m]
+        With the relief that was found, and as the pair was given.
+    phase : array (p,)
+        Mesh phase.
+    transmission_error_before, transmission_error_after : array (t, p) [m]
+        Approach of the gears along the line of action under load at rest.
+    map_amount, map_length : array (a,), array (l,) [m]
+        Where the objective was mapped before the search.
+    map_objective : array (a, l) [m]
+        The objective there; a first amount of zero is the pair without tip relief.
+    """
+
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "peak_to_peak_before": Labels(("torque",), "m"),
+        "peak_to_peak_after": Labels(("torque",), "m"),
+    }
+
+    gear_pair: SpurPair
+    modified_pair: SpurPair
+    gears: str = fact()
+    shape: str = fact()
+    amount: float = fact("best_amount")
+    length: float = fact("best_length")
+    torque: Array = quantity("torque", unit="N*m", axis=True)
+    weight: Array
+    objective_kind: str = fact()
+    objective: float = fact("best_objective")
+    objective_before: float = fact()
+    phase: Array = quantity("phase", unit="1", axis=True)
+    transmission_error_before: Array = quantity("torque", "phase", unit="m")
+    transmission_error_after: Array = quantity("torque", "phase", unit="m")
+    map_amount: Array = quantity("amount", unit="m", axis=True, name="amount")
+    map_length: Array = quantity("length", unit="m", axis=True, name="length")
+    map_objective: Array = quantity("amount", "length", unit="m", name="objective")
+
+    @property
+    def peak_to_peak_before(self) -> Array:
+        """Peak-to-peak transmission error of the pair as it was given (t,) [m]."""
+        return np.asarray(np.ptp(self.transmission_error_before, axis=1))
+
+    @property
+    def peak_to_peak_after(self) -> Array:
+        """Peak-to-peak transmission error with the relief that was found (t,) [m]."""
+        return np.asarray(np.ptp(self.transmission_error_after, axis=1))
+
+    @property
+    def on_edge(self) -> bool:
+        """Whether amount or length is at the edge of its range: a wider one may hold a better."""
+        edges = [
+            abs(value - edge) < 1e-3 * np.ptp(axis)
+            for value, axis in ((self.amount, self.map_amount), (self.length, self.map_length))
+            for edge in axis[[0, -1]]
+        ]
+        return any(edges)
+
+    def __repr__(self) -> str:
+        """One line with the figures that matter."""
+        return (
+            f"TipReliefOptimum({self.shape}, {self.gears}, {self.amount * 1e6:.4g} um over "
+            f"{self.length * 1e3:.4g} mm, {self.objective_kind} peak to peak "
+            f"{self.objective_before * 1e6:.4g} -> {self.objective * 1e6:.4g} um from "
+            f"{self.torque[0]:g} to {self.torque[-1]:g} N*m)"
+        )
+
 
 #: Torques of a range that is given by its ends.
 _TORQUES = 5
@@ -69,9 +154,8 @@ def check_choices(grid: tuple[int, int], **chosen: str) -> None:
 
 def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Array, Array]:
     """Torques of a range and their weights."""
-    given = np.atleast_1d(np.asarray(torque, dtype=float))
-    ordered = increasing_torques(given)
-    torques = ordered
+    (given,) = one_or_more(torque=torque)
+    torques = ordered = np.unique(given)
     if ordered.size == 2:
         torques = np.linspace(ordered[0], ordered[1], _TORQUES)
     if weight is None:
@@ -128,14 +212,10 @@ def with_tip_relief(
     ----------
     pair : SpurPair
         Both gears in their working position.
-    amount : float [m]
-        Material taken away at the tip; zero for no relief.
-    length : float [m]
-        Roll length of the relief.
-    gears : str
-        ``"both"``, ``"pinion"`` or ``"wheel"``.
-    shape : str
-        ``"linear"`` or ``"parabolic"``.
+    amount, length : float [m]
+        Material taken away at the tip, zero for no relief, and roll length of the relief.
+    gears, shape : str
+        ``"both"``, ``"pinion"`` or ``"wheel"``; ``"linear"`` or ``"parabolic"``.
 
     Returns
     -------
@@ -278,20 +358,12 @@ def optimize_tip_relief(
     grid : tuple of int
         Amounts and lengths of the map with which the search begins.
     provider : str
-        Where the tooth compliances come from.
+        As the five last ones those of :func:`tribodyn.stiffness.loaded_contact`.
     phases : int, optional
         Evenly spaced phases of a mesh cycle; by default 512, and fewer where slices of the face
         width or the hunting tooth period multiply the work, but 64 at least.
-    extended_contact : bool
-        Let tip corners touch before A and after E.
-    reference : str, optional
-        ``"bore"`` or ``"rim"``; by default that of the provider.
-    material : Material, optional
-        Material of both gears; steel by default.
-    slices : int, optional
-        Slices of the face width; by default one, or 21 where flanks vary over the width.
-    options : mapping
-        Further options of the provider.
+    extended_contact, reference, material, slices, options
+        As there.
 
     Returns
     -------

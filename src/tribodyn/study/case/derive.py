@@ -327,6 +327,17 @@ def case_problems(case: Case) -> list[tuple[str, Problem]]:
     return found + _bores(case)
 
 
+def chosen_options(case: Case, section: str) -> dict[str, Any]:
+    """Options in force of the model that a table names, called as the model calls them."""
+    model, values = getattr(case, section).chosen, case._effective
+    found = {
+        option.argument or name: values[f"{section}.{name}"]
+        for name, option in model.declared.items()
+        if option.in_case
+    }
+    return {name: value for name, value in found.items() if value is not None}
+
+
 def _bores(case: Case) -> list[tuple[str, Problem]]:
     """A gear body without a bore has nothing that holds it."""
     model = case.stiffness.model

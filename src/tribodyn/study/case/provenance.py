@@ -11,7 +11,7 @@ from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
 from tribodyn.study.case.section import Section, in_force, section_at
-from tribodyn.study.case.stated import same
+from tribodyn.study.case.stated import differing, same
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -180,12 +180,8 @@ def changed_keys(case: Case) -> tuple[str, ...]:
         for key in values
         if key in given and key not in base and case.assumed.get(key) != DEFAULT_MARK
     }
-    before = {**new, **base}
-    return tuple(
-        key
-        for key in (*values, *(key for key in base if key not in values))
-        if key in before and key not in _WORDS and not same(before[key], values.get(key))
-    )
+    changed = differing({**new, **base}, values) - set(_WORDS)
+    return tuple(key for key in dict.fromkeys((*values, *base)) if key in changed)
 
 
 def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:

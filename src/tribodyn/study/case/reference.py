@@ -108,3 +108,19 @@ def warning_meanings() -> Mapping[str, str]:
 
     text = files("tribodyn.study.case").joinpath("warnings.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)["warnings"]  # type: ignore[no-any-return]
+
+
+@lru_cache(maxsize=1)
+def explanations() -> Mapping[str, Mapping[str, str]]:
+    """Equations, ranges of use, remedies and pages by name."""
+    import tomllib
+
+    place = files("tribodyn.study.case").joinpath("explanations.toml")
+    return tomllib.loads(place.read_text(encoding="utf-8"))
+
+
+def page_of(key: str) -> str:
+    """Page of the documentation on a key of the case file."""
+    pages = explanations()["pages"]
+    found = [pages[part] for part in key.split(".") if part in pages]
+    return f"docs/{found[-1] if found else 'case-file.md'}"

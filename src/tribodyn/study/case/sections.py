@@ -126,11 +126,7 @@ class Stiffness(Section):
 class Friction(Section):
     """The ``[friction]`` table."""
 
-    law: str = model_choice(
-        "none",
-        _laws,
-        meaning="friction law of the tooth contact",
-    )
+    law: str = model_choice("none", _laws, meaning="friction law of the tooth contact")
 
 
 class Dynamics(Section):

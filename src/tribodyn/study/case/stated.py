@@ -36,6 +36,11 @@ class Stated(NamedTuple):
     base: dict[str, Any]
 
 
+def differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> set[str]:
+    """Keys of values that are not equal to rounding any more."""
+    return {key for key, value in before.items() if not same(value, now.get(key))}
+
+
 def same(one: Any, other: Any) -> bool:
     """Whether two values in SI are equal to rounding."""
     if isinstance(one, tuple) and isinstance(other, tuple):
@@ -136,7 +141,7 @@ def settled(
     # A reason without a recorded value belongs to the value that it came with.
     reasons = case.assumed
     marks = {key: stated.marks.get(key, values.get(key)) for key in reasons}
-    stale = {key for key, value in marks.items() if not same(value, values.get(key))}
+    stale = differing(marks, values)
     said = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
     kept = {key: value for key, value in marks.items() if key not in stale}
     if stated.base and case.origin in (None, stated.base.get("origin")):

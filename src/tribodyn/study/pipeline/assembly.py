@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.derive import chosen_options, mesh_law_of
 from tribodyn.study.pipeline.damping import damping_of
 from tribodyn.study.pipeline.geometry import geometry
-from tribodyn.study.pipeline.tooth_contact import chosen_options, load_friction_of
+from tribodyn.study.pipeline.tooth_contact import load_friction_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.errors import ModelWarning, collected
+from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
 from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
 from tribodyn.study.pipeline.record import (
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 
 #: Hertzian pressure that case-hardened steel does not survive [Pa].
 _STEEL = 3e9
+#: Relief over the deflection of one pair under the whole load that is told.
+_RELIEVED = 3.0
+#: Friction coefficient above which friction is the first suspect where a motion runs away.
+_RUBS = 0.3
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
 #: Ratio of a given mass or inertia to that of the solid, or the inverse, that is told: of a value
@@ -123,7 +128,25 @@ def _is_stated(case: Case, name: str, key: str) -> bool:
 
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
     """Find a load that no gear stands, and flanks that the film does not keep apart."""
-    return (*_pressure(mesh), *_mixed(mesh))
+    return (*_pressure(mesh), *_mixed(mesh), *_relieved(mesh))
+
+
+@contextmanager
+def friction_suspected(mesh: MeshTable) -> Iterator[None]:
+    """Name friction that no lubricated tooth has before any other cause of a motion that fails."""
+    try:
+        yield
+    except ComputationError as error:
+        greatest = float(np.nanmax(mesh.friction_coefficient, initial=0.0))
+        if greatest <= _RUBS:
+            raise
+        suspect = Problem(
+            f"the friction coefficient reaches {greatest:.3g}",
+            "friction.law",
+            "Lubricated steel hardly exceeds 0.2, and such friction can drive the motion by itself",
+            "Check roughness and speed, or choose another friction law",
+        )
+        raise ComputationError([suspect, *error.problems]) from None
 
 
 def friction_cautions(
@@ -143,6 +166,29 @@ def friction_cautions(
             f"Friction is known up to {friction.limit:g} times: above, its coefficient is kept",
         ),
     )
+
+
+def _relieved(mesh: MeshTable) -> Iterator[ModelWarning]:
+    """Relief far beyond what a loaded tooth gives way takes pairs out of contact."""
+    if mesh.gears is None or not mesh.gear_pair.has_profile_modification:
+        return
+    gears = {"pinion": mesh.gear_pair.pinion, "wheel": mesh.gear_pair.wheel}
+    amount, name, end = max(
+        (getattr(gear.modification, end), name, end)
+        for name, gear in gears.items()
+        for end in ("tip_relief", "root_relief")
+    )
+    given_way = mesh.total_normal_force / mesh.maximum_single_pair_stiffness
+    if amount > _RELIEVED * given_way:
+        pairs = float(mesh.grid.mean((mesh.load_per_width > 0.0).sum(axis=1).astype(float)))
+        yield ModelWarning(
+            "relief-large",
+            f"{end} = {1e6 * amount:.4g} um of the {name} is {amount / given_way:.3g} times the "
+            f"{1e6 * given_way:.3g} um by which a pair gives way under the whole load: "
+            f"{pairs:.3g} tooth pairs carry on average instead of "
+            f"{mesh.transverse_contact_ratio:.3g}. Usual is about once this deflection; check the "
+            "unit",
+        )
 
 
 def _pressure(mesh: MeshTable) -> Iterator[ModelWarning]:

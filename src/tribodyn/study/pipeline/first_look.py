@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, collected
+from tribodyn.study.case.derive import chosen_options
 from tribodyn.study.pipeline.loaded_teeth import loaded_settings
-from tribodyn.study.pipeline.tooth_contact import chosen_options
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System

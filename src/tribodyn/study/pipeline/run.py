@@ -12,12 +12,13 @@ from tribodyn.study.pipeline.assembly import system_of
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
     friction_cautions,
+    friction_suspected,
     mesh_cautions,
     motion_cautions,
     teeth_cautions,
 )
 from tribodyn.study.pipeline.damping import damping_of
-from tribodyn.study.pipeline.motion import motion_of
+from tribodyn.study.pipeline.motion import motion_of, steps_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
 
@@ -65,16 +66,28 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     return result
 
 
+def rehearse(case: Case) -> None:
+    """Refuse what a run would refuse because of the case alone."""
+    from tribodyn.dynamics.equations.compiled import compile_for
+
+    with placed(case), collected():
+        mesh = mesh_of(case, rehearsal=True)
+        system = system_of(case, mesh, damping_of(case, mesh))
+        steps = steps_of(case, system, mesh.mesh_frequency)
+        compile_for(system, mesh.mesh_frequency, steps)
+
+
 def computed(case: Case, progress: Progress = SILENT) -> Result:
     """Compute a case; what the models said is kept in the result alone."""
     with placed(case), collected() as found:
-        progress.start("tooth contact")
+        progress.start("Tooth contact")
         mesh = mesh_of(case, progress)
         friction = load_friction_of(case, mesh)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
         progress.finish()
-        response = motion_of(case, system, mesh.mesh_frequency, progress)
+        with friction_suspected(mesh):
+            response = motion_of(case, system, mesh.mesh_frequency, progress)
         compared = None
         if friction is not None:
             table = system_of(case, mesh, damping)

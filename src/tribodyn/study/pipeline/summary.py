@@ -147,6 +147,8 @@ def summarize(result: Result) -> dict[str, float]:
     values["omega_max_dt"] = result.response.step_number
     if is_steady(result.response):
         values["steady_state_error"] = result.response.error
+        if np.isfinite(result.response.step_error):
+            values["step_error"] = result.response.step_error
     values |= load_figures(result.case, result.mesh, values)
     measures = MEASURES.all().items()
     values |= {name: measure(result) for name, measure in measures}

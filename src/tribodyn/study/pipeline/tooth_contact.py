@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
-from tribodyn.study.case.derive import friction_of_table, mesh_law_of
-from tribodyn.study.case.provenance import effective
+from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_law_of
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
@@ -17,17 +17,8 @@ if TYPE_CHECKING:
 
 #: Load over the nominal load below which friction may be missing.
 _LIGHT = 0.3
-
-
-def chosen_options(case: Case, section: str) -> dict[str, Any]:
-    """Options in force of the model that a table names, called as the model calls them."""
-    model, values = getattr(case, section).chosen, effective(case)
-    found = {
-        option.argument or name: values[f"{section}.{name}"]
-        for name, option in model.declared.items()
-        if option.in_case
-    }
-    return {name: value for name, value in found.items() if value is not None}
+#: Phase intervals of a rehearsal.
+_FEWEST = 16
 
 
 def model_settings(case: Case) -> dict[str, Any]:
@@ -43,10 +34,16 @@ def model_settings(case: Case) -> dict[str, Any]:
     }
 
 
-def mesh_of(case: Case, progress: Progress = SILENT, *, load: float = 1.0) -> MeshTable:
-    """Compute the tooth contact of a case over one mesh cycle."""
+def mesh_of(
+    case: Case, progress: Progress = SILENT, *, load: float = 1.0, rehearsal: bool = False
+) -> MeshTable:
+    """Compute the tooth contact of a case over one mesh cycle.
+
+    A rehearsal has few places and no film: only what is refused matters.
+    """
+    from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
-    from tribodyn.mesh.tooth_contact import ToothContact
+    from tribodyn.mesh.sharing import ToothContact
 
     if case.mesh_table is not None:
         return case.mesh_table.table(
@@ -61,9 +58,14 @@ def mesh_of(case: Case, progress: Progress = SILENT, *, load: float = 1.0) -> Me
         friction_options=chosen_options(case, "friction"),
         **model_settings(case),
     )
+    if rehearsal:
+        settings = replace(settings, film_model="none", film_options={})
+        if LAWS[case.friction.law].needs_film:
+            settings = replace(settings, friction_law="none", friction_options={})
     return mesh_table(
         case.gear_pair,
         settings,
+        steps=_FEWEST if rehearsal else None,
         pinion_speed=case.pinion_speed,
         pinion_torque=case.pinion_torque * load,
         force_law=mesh_law_of(case) == "force-law",

@@ -37,7 +37,7 @@ def built(case: Case) -> Member:
 def varied(case: Case, changes: Sequence[Mapping[str, Any]], progress: Progress) -> list[Member]:
     """Tooth contact and structure of a case under each of some changes, in their order."""
     members: dict[int, Member] = {}
-    progress.start("tooth contact", len(changes))
+    progress.start("Tooth contacts", len(changes))
     over_cases(lambda change: built(case.replace(change)), changes, members, progress)
     progress.finish()
     return [members[index] for index in range(len(changes))]

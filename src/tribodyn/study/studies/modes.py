@@ -118,7 +118,7 @@ def campbell(
 def system_of_case(case: Case, progress: Progress) -> tuple[System, float]:
     """Structure of a case, and its mesh frequency."""
     with placed(case), collected():
-        progress.start("tooth contact")
+        progress.start("Tooth contact")
         member = built(case)
         progress.finish()
     return member.system, member.mesh.mesh_frequency

@@ -75,7 +75,7 @@ def sweep(
     axes = read_axes(case, _asked(over, between, points), by=by)
     grid = list(product(*(axis.values for axis in axes)))
     done: dict[int, SweepPoint] = {}
-    progress.start("computing", len(grid))
+    progress.start("Values", len(grid))
     try:
         over_cases(lambda values: _point(case, axes, values), grid, done, progress)
     except KeyboardInterrupt:

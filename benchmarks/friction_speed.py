@@ -1,0 +1,59 @@
+"""How long do all friction laws take over a million contact states?
+
+Processor time of one core, each law alone, with its range checked; the law that shears the
+solved film needs films and is left out.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from race import arguments
+from reference_pair import path
+from tribodyn.errors import quiet
+from tribodyn.friction import LAWS, TribologicalContact, pitch_point
+
+OPTIONS = {"constant": {"coefficient": 0.05}}
+
+
+def contacts(count: int) -> TribologicalContact:
+    """Seeded states like those of gears."""
+    random = np.random.default_rng(1)
+    entrainment = random.uniform(1.0, 20.0, count)
+    ratio = random.uniform(-1.0, 1.0, count)
+    return TribologicalContact(
+        load_per_width=random.uniform(5e4, 5e5, count),
+        hertz_pressure=random.uniform(0.5e9, 1.5e9, count),
+        sliding_speed=ratio * entrainment,
+        entrainment_speed=entrainment,
+        slide_to_roll_ratio=ratio,
+        equivalent_radius=random.uniform(5e-3, 5e-2, count),
+        dynamic_viscosity=0.03,
+        composite_roughness=0.4e-6,
+        oil_density=880.0,
+        film_thickness=random.uniform(1e-7, 1e-6, count),
+        pitch=pitch_point(path().pair, 150.0, 150.0),
+    )
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Print seconds of each law and their sum."""
+    count = 10_000 if arguments(__doc__, words).quick else 1_000_000
+    contact, total = contacts(count), 0.0
+    for name in LAWS:
+        if LAWS[name].needs_film:
+            continue
+        start = time.process_time()
+        with quiet():
+            LAWS[name](contact, **OPTIONS.get(name, {}))
+        spent = time.process_time() - start
+        total += spent
+        print(f"{name:<20} {spent:6.3f} s for {count} states")
+    print(f"{'all laws':<20} {total:6.3f} s")
+
+
+if __name__ == "__main__":
+    main()

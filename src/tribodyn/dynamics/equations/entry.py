@@ -1,0 +1,153 @@
+"""What a part of a contact can be given as: a constant or a function of the mesh phase."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.errors import InputError, real_numbers
+from tribodyn.types import Array
+
+#: A constant, or a vectorized function of the mesh phase in [0, 1).
+Entry = float | ArrayLike | Callable[[Array], Any]
+
+#: Steps looked at for a jump by each of two signs; how often they are halved, and how often before
+#: a bend has to stay; part of a bend that stays at a jump; least jump over the size of the entry.
+_SUSPECTS, _CUTS, _FREE, _KEPT, _JUMP = 8, 16, 4, 0.8, 1e-7
+#: Difference of two calls with the same phases, over the size of the entry, that is rounding.
+_ROUNDING = 1e-9
+
+
+def read_events(given: Any, where: str) -> tuple[float, ...]:
+    """Check mesh phases at which an entry jumps."""
+    events = tuple(real_numbers(where, given, "mesh phases").reshape(-1).tolist())
+    bad = [event for event in events if not 0.0 <= event < 1.0]
+    if bad:
+        raise InputError(
+            f"events holds {bad[0]:g}",
+            where=where,
+            why="Events are mesh phases and lie in [0, 1)",
+            remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
+        )
+    return events
+
+
+def varies(entry: Any) -> bool:
+    """Whether an entry is a function of the mesh phase, or holds one."""
+    return callable(entry) or (
+        isinstance(entry, list | tuple) and any(callable(item) for item in entry)
+    )
+
+
+def entry_values(where: str, entry: Any, phases: Array, size: int) -> Array:
+    """Values (p, size) of an entry at mesh phases (p,)."""
+    if callable(entry):
+        values = _oriented(where, entry, phases, size)
+    elif varies(entry):
+        columns = [entry_values(where, item, phases, 1)[:, 0] for item in entry]
+        values = _shaped(where, np.stack(columns, axis=1), phases.size, size)
+    else:
+        value = real_numbers(where, entry, "a number, numbers or a function of the mesh phase")
+        if value.ndim > 1 or (value.ndim == 1 and value.size != size):
+            raise InputError(
+                f"{where} has the shape {value.shape}",
+                where=where,
+                why=f"It must be a number or have the shape ({size},)",
+            )
+        values = np.broadcast_to(value, (phases.size, size)).astype(float)
+    if not np.all(np.isfinite(values)):
+        at = phases[np.flatnonzero(~np.isfinite(values).all(axis=1))[0]]
+        raise InputError(
+            f"{where} is NaN or infinite at the mesh phase {at:.6g}",
+            where=where,
+            remedy="Check the table or function there; declare jumps as events",
+        )
+    return values
+
+
+def refuse_chance(where: str, entry: Any, phases: Array, values: Array) -> None:
+    """Refuse a function whose values do not follow from the mesh phase alone."""
+    some = np.arange(0, phases.size, max(1, phases.size // 31))[::-1]
+    apart = np.abs(entry_values(where, entry, phases[some], values.shape[1]) - values[some])
+    if np.any(apart > _ROUNDING * np.abs(values).max(axis=0)):
+        row = int(apart.max(axis=1).argmax())
+        raise InputError(
+            f"{where} gives other values when it is called again: "
+            f"{apart[row].max():.4g} apart at the mesh phase {phases[some][row]:.6g}",
+            where=where,
+            why="The motion repeats only if every value follows from the mesh phase alone",
+            remedy="Draw random numbers once, before, and look them up by the phase",
+        )
+
+
+def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
+    """Refuse a function that jumps between events; ``nodes`` (s, 3), ``values`` (s, 3, size).
+
+    The bend over a jump stays when the step is cut, that of a kink halves, others fall faster.
+    """
+    size = np.abs(values).max(axis=(0, 1)) + 1e-300
+    bend = (values[:, 0] - 2.0 * values[:, 1] + values[:, 2]) / size
+    sharp = np.abs(np.diff(bend, 2, axis=0, prepend=bend[-1:], append=bend[:1])).max(axis=1)
+    bend = np.abs(bend).max(axis=1)
+    likely = np.unique(np.concatenate([np.argsort(-key)[:_SUSPECTS] for key in (bend, sharp)]))
+    likely = likely[bend[likely] > _JUMP]
+    low, high, kept = nodes[likely, 0], nodes[likely, 2], bend[likely]
+    for cut in range(_CUTS):
+        if not low.size:
+            return
+        at = low[:, None] + (high - low)[:, None] * np.arange(5) / 4.0
+        flat = entry_values(where, entry, at.reshape(-1), size.size)
+        parts = (flat / size).reshape(*at.shape, -1)
+        bends = np.abs(parts[:, :-2] - 2.0 * parts[:, 1:-1] + parts[:, 2:]).max(axis=2)
+        rows, first = np.arange(low.size), bends.argmax(axis=1)
+        most = bends[rows, first]
+        stays = (most > _JUMP) & ((most > _KEPT * kept) | (cut < _FREE))
+        low, high, kept = (x[stays] for x in (at[rows, first], at[rows, first + 2], most))
+    if low.size:
+        row = int(kept.argmax())
+        ends = entry_values(where, entry, np.array([low[row], high[row]]), size.size)
+        raise InputError(
+            f"{where} jumps by {np.ptp(ends, 0).max():.4g} at the mesh phase "
+            f"{0.5 * (low[row] + high[row]):.7g}, which is not an event",
+            where=where,
+            why="A step across a jump loses its order, and steps end at events only",
+            remedy="Give this phase to events of the contact or the friction",
+        )
+
+
+def _shaped(where: str, values: Array, count: int, size: int) -> Array:
+    if values.shape != (count, size):
+        raise InputError(
+            f"{where} gives the shape {values.shape}",
+            where=where,
+            why=f"It must be ({count}, {size}) for {count} mesh phases",
+        )
+    return values
+
+
+def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size: int) -> Array:
+    """Call a function of phase; accept (p, size), (size, p), (p,), (size,) and scalars."""
+    # One more or one less phase than components makes the orientation unambiguous.
+    probe = phases if phases.size not in (1, size) else np.resize(phases, size + 2)
+    try:
+        given = function(probe)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{where} is not a vectorized function of the mesh phase: {error}",
+            where=where,
+            why="It is called with an array of phases and returns an array",
+            remedy="Use numpy.where instead of if, and functions that take arrays",
+        ) from error
+    values = real_numbers(where, given, "real numbers, whatever the mesh phase")
+    if values.ndim == 0:
+        values = np.full((probe.size, 1), float(values))
+    elif values.ndim == 1 and values.size == probe.size and size == 1:
+        values = values[:, None]
+    elif values.ndim == 1 and values.size == size:
+        values = np.broadcast_to(values, (probe.size, size))
+    elif values.shape == (size, probe.size):
+        values = values.T
+    return _shaped(where, values, probe.size, size)[: phases.size]

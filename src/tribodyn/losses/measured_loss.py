@@ -1,0 +1,486 @@
+"""Friction coefficient and its uncertainty from measured torque losses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tribodyn import units
+from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
+from tribodyn.types import Array, Index
+
+_RPM = math.pi / 30.0
+#: Relative standard uncertainty up to which a value is sound, and beyond which it tells nothing.
+_SOUND, _LOST = 0.1, 0.3
+#: Standard uncertainties by which a loss may lie below the loss without load, as scatter.
+_SCATTER = 3.0
+_SAME_SPEED = 0.01  # relative difference of speeds that count as one
+
+#: Columns of a table and their units.
+COLUMNS = {"speed": "rad/s", "torque": "N*m", "torque_loss": "N*m"}
+
+
+@dataclass(frozen=True)
+class PowerLossTable:
+    """Measured torque losses, one row for each run, repeats as rows of one speed and torque.
+
+    All torques are of one shaft. Rows of at most ``no_load_torque`` tell the loss without load at
+    their speed, which is taken off the others.
+
+    Parameters
+    ----------
+    speed : array [rad/s]
+        Speed of each run, shape (n,).
+    torque : array [N*m]
+        Torque of each run.
+    torque_loss : array [N*m]
+        Torque that the loss asks for.
+    gear_loss_factor : float
+        H_V of the gears, see :func:`gear_loss_factor`.
+    no_load_torque : float [N*m]
+        Torque up to which a row counts as without load.
+    other_loss : array or float [N*m]
+        What bearings and seals lose more than without load, in each row, as torque.
+    gear_sets : float
+        Gear sets in the loop that share the loss, a pure number: 1 where the slave gears are in
+        ``other_loss``, 2 where they are like those tested.
+    torque_loss_uncertainty : float [N*m]
+        Standard uncertainty of one reading; by default that of the repeats.
+    torque_uncertainty : float [N*m]
+        Standard uncertainty of the torque.
+    other_loss_uncertainty : float [N*m]
+        Standard uncertainty of ``other_loss``.
+    gear_loss_factor_uncertainty : float
+        Standard uncertainty of H_V, a pure number.
+
+    Raises
+    ------
+    InputError
+        Listing every row that is not as long as the others, not finite or not positive.
+
+    Examples
+    --------
+    >>> table = PowerLossTable([146.6, 146.6], [5.0, 150.0], [1.0, 3.0], gear_loss_factor=0.3)
+    >>> len(table.speed)
+    2
+    """
+
+    speed: Array
+    torque: Array
+    torque_loss: Array
+    gear_loss_factor: float
+    no_load_torque: float = 5.0
+    other_loss: Any = 0.0
+    gear_sets: float = 1.0
+    torque_loss_uncertainty: float | None = None
+    torque_uncertainty: float = 0.0
+    other_loss_uncertainty: float = 0.0
+    gear_loss_factor_uncertainty: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Make arrays of the columns and look at every row."""
+        for name in (*COLUMNS, "other_loss"):
+            object.__setattr__(self, name, np.atleast_1d(np.asarray(getattr(self, name), float)))
+        counts = {name: np.size(getattr(self, name)) for name in COLUMNS}
+        if len(set(counts.values())) > 1 or not counts["speed"]:
+            listed = ", ".join(f"{count} of {name}" for name, count in counts.items())
+            why, remedy = "Each row has one of each", "Give columns of one length"
+            raise InputError(listed, where="PowerLossTable", why=why, remedy=remedy)
+        object.__setattr__(self, "other_loss", np.broadcast_to(self.other_loss, self.speed.shape))
+        problems = [
+            Problem(
+                f"{name} = {value:.6g} {unit}", f"row {row + 1}", "It must be finite and above 0"
+            )
+            for name, unit in COLUMNS.items()
+            for row, value in enumerate(getattr(self, name))
+            if not (np.isfinite(value) and value > 0.0)
+        ]
+        if problems:
+            raise InputError(problems)
+        require_between("other_loss", self.other_loss, 0.0, np.inf, "N*m")
+        require_positive("gear_loss_factor", self.gear_loss_factor)
+        require_between("gear_sets", self.gear_sets, 1.0, 2.0)
+        for name in (
+            "torque_uncertainty",
+            "other_loss_uncertainty",
+            "gear_loss_factor_uncertainty",
+        ):
+            require_between(name, getattr(self, name), 0.0, np.inf)
+        if self.torque_loss_uncertainty is not None:
+            require_between(
+                "torque_loss_uncertainty", self.torque_loss_uncertainty, 0.0, np.inf, "N*m"
+            )
+
+
+@dataclass(frozen=True)
+class FrictionFromLoss:
+    """Friction coefficients from measured losses: one row for each speed and torque under load.
+
+    Parameters
+    ----------
+    speed : array [rad/s]
+        Speed.
+    torque : array [N*m]
+        Torque.
+    friction_coefficient : array
+        Mean friction coefficient.
+    standard_uncertainty : array
+        Its standard uncertainty of first order, a pure number.
+    degrees_of_freedom : array
+        Effective degrees of freedom of that uncertainty (Welch and Satterthwaite), a pure number.
+    monte_carlo_uncertainty : array
+        The same standard uncertainty by drawing every input, a pure number.
+    low, high : array
+        Band that holds the coefficient with 95 %, pure numbers.
+    sensitivity : array [1/(N*m)]
+        Change of the coefficient with the torque loss.
+    verdict : tuple of str
+        How far each row can be trusted.
+
+    Examples
+    --------
+    >>> table = PowerLossTable([146.6, 146.6], [5.0, 150.0], [1.0, 3.25], gear_loss_factor=0.3,
+    ...                        torque_loss_uncertainty=0.05)
+    >>> found = friction_from_power_loss(table)
+    >>> found.friction_coefficient.round(4).tolist(), found.verdict
+    ([0.05], ('sound',))
+    """
+
+    speed: Array
+    torque: Array
+    friction_coefficient: Array
+    standard_uncertainty: Array
+    degrees_of_freedom: Array
+    monte_carlo_uncertainty: Array
+    low: Array
+    high: Array
+    sensitivity: Array
+    verdict: tuple[str, ...]
+
+
+def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any) -> PowerLossTable:
+    r"""Read measured torque losses from a CSV file.
+
+    Parameters
+    ----------
+    path : str or Path
+        File whose first line names ``speed``, ``torque`` and ``torque_loss`` with their units in
+        brackets; lines with # are left out.
+    gear_loss_factor : float
+        H_V of the gears.
+    **more : object
+        Further arguments of :class:`PowerLossTable`.
+
+    Returns
+    -------
+    PowerLossTable
+
+    Raises
+    ------
+    InputError
+        Naming file and line of what is no number, or the column that is missing.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "losses.csv"
+    ...     _ = file.write_text("speed [rpm], torque [N*m], torque_loss [N*m]\n1400, 50, 2.5\n")
+    ...     print(read_power_loss_table(file, 0.3).speed.round(1))
+    [146.6]
+    """
+    file = Path(path)
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        remedy = "Give the path of a CSV file"
+        raise InputError(
+            "the table cannot be read", where=str(file), why=str(error), remedy=remedy
+        ) from None
+    lines = [
+        (number, [cell.strip() for cell in line.split(",")])
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise InputError("the table is empty", where=str(file), remedy="Write a head and its rows")
+    columns = _columns(file, lines[0][1])
+    problems: list[Problem] = []
+    values = {name: _column(file, lines[1:], columns[name], problems) for name in COLUMNS}
+    if problems:
+        raise InputError(problems)
+    speed, torque, loss = (np.array(values[name]) * columns[name][1] for name in COLUMNS)
+    return PowerLossTable(speed, torque, loss, gear_loss_factor, **more)
+
+
+def _columns(file: Path, head: Iterable[str]) -> Mapping[str, tuple[int, float]]:
+    """Place of each column and what its unit is in SI."""
+    found = {}
+    for place, cell in enumerate(head):
+        name, _, unit = cell.partition("[")
+        if name.strip() in COLUMNS:
+            written = unit.rstrip("] ") or COLUMNS[name.strip()]
+            try:
+                found[name.strip()] = (place, units.parse(f"1 {written}", COLUMNS[name.strip()]))
+            except units.UnitProblemError as error:
+                raise InputError(f'column "{cell}"', where=f"{file}:1", why=str(error)) from None
+    missing = [name for name in COLUMNS if name not in found]
+    if missing:
+        raise InputError(
+            f"no column {', '.join(missing)}",
+            where=f"{file}:1",
+            remedy="Name the columns: speed [rpm], torque [N*m], torque_loss [N*m]",
+        )
+    return found
+
+
+def _column(
+    file: Path,
+    lines: Iterable[tuple[int, list[str]]],
+    column: tuple[int, float],
+    problems: list[Problem],
+) -> list[float]:
+    values = []
+    for number, cells in lines:
+        try:
+            values.append(float(cells[column[0]]))
+        except (IndexError, ValueError):
+            shown = cells[column[0]] if column[0] < len(cells) else "nothing"
+            why = f"Column {column[0] + 1} holds a number"
+            problems.append(Problem(f'"{shown}" is no number', f"{file}:{number}", why))
+    return values
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Readings of one speed and torque: mean, variance of the mean, its degrees of freedom."""
+
+    rows: list[int]
+    mean: float
+    variance: float
+    freedom: float
+
+
+def friction_from_power_loss(
+    table: PowerLossTable, *, draws: int = 20000, seed: int = 0
+) -> FrictionFromLoss:
+    """Mean friction coefficient of each loaded point of a table, with its uncertainty.
+
+    ``mu = (T_loss - T_0 - T_other)/(k T H_V)`` with the loss T_0 without load at that speed and k
+    gear sets.
+
+    Parameters
+    ----------
+    table : PowerLossTable
+        Measured losses.
+    draws : int
+        Number of draws of the Monte Carlo propagation.
+    seed : int
+        Seed of the draws, an index.
+
+    Returns
+    -------
+    FrictionFromLoss
+        One row for each speed and torque under load, in the order of the table.
+
+    Raises
+    ------
+    InputError
+        Naming each row that has no row without load at its speed, or a loss below that by more
+        than its scatter; and where neither repeats nor an uncertainty tell the scatter.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``friction-from-loss`` naming the rows whose coefficient is negative.
+
+    Source: power balance of back-to-back rigs; uncertainty after the GUM (JCGM 100) and its
+    supplement 1.
+
+    Examples
+    --------
+    >>> table = PowerLossTable([146.6, 146.6], [5.0, 50.0], [1.0, 1.4], gear_loss_factor=0.3024,
+    ...                        torque_loss_uncertainty=0.1)
+    >>> found = friction_from_power_loss(table)
+    >>> found.sensitivity.round(4).tolist(), found.verdict
+    ([0.0661], ('ill-conditioned: 35 % standard uncertainty',))
+    """
+    idle = table.torque <= table.no_load_torque
+    points = [_point(table, rows) for rows in _runs(table, np.flatnonzero(~idle))]
+    idles = [_point(table, rows) for rows in _runs(table, np.flatnonzero(idle))]
+    if not points:
+        raise InputError(
+            f"no row has more than {table.no_load_torque:g} N*m",
+            where="PowerLossTable",
+            why="Rows up to no_load_torque count as without load",
+            remedy="Lower no_load_torque, or add rows under load",
+        )
+    pairs = _matched(table, points, idles)
+    torque = np.array([table.torque[point.rows].mean() for point in points])
+    other = np.array([table.other_loss[point.rows].mean() for point in points])
+    loss = np.array([point.mean - rest.mean for point, rest in pairs])
+    slope = 1.0 / (table.gear_sets * torque * table.gear_loss_factor)
+    mu = (loss - other) * slope
+    parts = _variances(table, pairs, torque, slope, mu)
+    uncertainty = np.sqrt(parts.sum(axis=0))
+    freedom = _freedom(parts, pairs)
+    from scipy.stats import t
+
+    reach = t.ppf(0.975, freedom) * uncertainty
+    found = FrictionFromLoss(
+        speed=np.array([table.speed[point.rows].mean() for point in points]),
+        torque=torque,
+        friction_coefficient=mu,
+        standard_uncertainty=uncertainty,
+        degrees_of_freedom=freedom,
+        monte_carlo_uncertainty=_drawn(table, pairs, torque, other, (draws, seed)),
+        low=mu - reach,
+        high=mu + reach,
+        sensitivity=slope,
+        verdict=tuple(_verdict(*row) for row in zip(mu, uncertainty, strict=True)),
+    )
+    _warn_of_negative(points, mu)
+    return found
+
+
+def _runs(table: PowerLossTable, rows: Index) -> list[list[int]]:
+    """Rows of one speed and torque, in the order of the table."""
+    runs: list[list[int]] = []
+    for row in rows:
+        for run in runs:
+            same_speed = math.isclose(table.speed[row], table.speed[run[0]], rel_tol=_SAME_SPEED)
+            if same_speed and math.isclose(table.torque[row], table.torque[run[0]], rel_tol=0.01):
+                run.append(int(row))
+                break
+        else:
+            runs.append([int(row)])
+    return runs
+
+
+def _point(table: PowerLossTable, rows: list[int]) -> _Point:
+    readings, given = table.torque_loss[rows], table.torque_loss_uncertainty
+    count = len(rows)
+    if given is not None:
+        return _Point(rows, float(readings.mean()), given**2 / count, math.inf)
+    if count > 1:
+        variance = float(readings.var(ddof=1)) / count
+        return _Point(rows, float(readings.mean()), variance, count - 1.0)
+    raise InputError(
+        f"one reading at {table.torque[rows[0]]:g} N*m and {table.speed[rows[0]] / _RPM:.4g} rpm",
+        where=f"row {rows[0] + 1}",
+        why="One reading tells no scatter",
+        remedy="Repeat it, or give torque_loss_uncertainty",
+    )
+
+
+def _matched(
+    table: PowerLossTable, points: list[_Point], idles: list[_Point]
+) -> list[tuple[_Point, _Point]]:
+    """Each point with that without load at its speed; every fault is told with its row."""
+    pairs, problems = [], []
+    for point in points:
+        speed = table.speed[point.rows[0]]
+        rest = [
+            idle
+            for idle in idles
+            if math.isclose(table.speed[idle.rows[0]], speed, rel_tol=_SAME_SPEED)
+        ]
+        where = f"row {point.rows[0] + 1}"
+        if not rest:
+            known = sorted({round(table.speed[idle.rows[0]] / _RPM, 1) for idle in idles})
+            problems.append(
+                Problem(
+                    f"no run without load at {speed / _RPM:.4g} rpm",
+                    where,
+                    f"Without load there are {', '.join(f'{k:g} rpm' for k in known) or 'no rows'}",
+                    f"Measure one there, with at most {table.no_load_torque:g} N*m",
+                )
+            )
+            continue
+        scatter = math.sqrt(point.variance + rest[0].variance)
+        if point.mean < rest[0].mean - _SCATTER * scatter:
+            problems.append(
+                Problem(
+                    f"torque_loss = {point.mean:.4g} N*m is below the {rest[0].mean:.4g} N*m "
+                    f"without load at {speed / _RPM:.4g} rpm",
+                    where,
+                    "A load can only add to the loss",
+                    "Check columns, zero of the torque meter and oil temperature of both runs",
+                )
+            )
+        pairs.append((point, rest[0]))
+    if problems:
+        raise InputError(problems)
+    return pairs
+
+
+def _variances(
+    table: PowerLossTable,
+    pairs: list[tuple[_Point, _Point]],
+    torque: Array,
+    slope: Array,
+    mu: Array,
+) -> Array:
+    """Variance of the coefficient by loss, loss without load, and all that has no repeats."""
+    rest = (slope * table.other_loss_uncertainty) ** 2
+    rest += (mu * table.torque_uncertainty / torque) ** 2
+    rest += (mu * table.gear_loss_factor_uncertainty / table.gear_loss_factor) ** 2
+    loaded, idle = np.array([[point.variance, base.variance] for point, base in pairs]).T
+    return np.stack([slope**2 * loaded, slope**2 * idle, rest])
+
+
+def _freedom(parts: Array, pairs: list[tuple[_Point, _Point]]) -> Array:
+    """Effective degrees of freedom after Welch and Satterthwaite."""
+    freedom = np.array([[point.freedom, base.freedom, math.inf] for point, base in pairs]).T
+    spread = np.sum(parts**2 / freedom, axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = parts.sum(axis=0) ** 2 / spread
+    return np.where(spread > 0.0, found, np.inf)
+
+
+def _drawn(
+    table: PowerLossTable,
+    pairs: list[tuple[_Point, _Point]],
+    torque: Array,
+    other: Array,
+    draws: tuple[int, int],
+) -> Array:
+    """Standard deviation of the coefficient when every input is drawn anew."""
+    random = np.random.default_rng(draws[1])
+
+    def around(value: Any, deviation: Any) -> Array:
+        return np.asarray(value + deviation * random.standard_normal((draws[0], len(pairs))))
+
+    loaded = around([p.mean for p, _ in pairs], np.sqrt([p.variance for p, _ in pairs]))
+    idle = around([b.mean for _, b in pairs], np.sqrt([b.variance for _, b in pairs]))
+    rest = around(other, table.other_loss_uncertainty)
+    factor = around(table.gear_loss_factor, table.gear_loss_factor_uncertainty)
+    load = around(torque, table.torque_uncertainty)
+    mu = (loaded - idle - rest) / (table.gear_sets * load * factor)
+    return np.asarray(mu.std(axis=0, ddof=1))
+
+
+def _verdict(mu: float, uncertainty: float) -> str:
+    if mu <= 0.0:
+        return "negative: what was taken off is more than the load adds"
+    relative = uncertainty / mu
+    if relative <= _SOUND:
+        return "sound"
+    kind = "uncertain" if relative <= _LOST else "ill-conditioned"
+    return f"{kind}: {100.0 * relative:.0f} % standard uncertainty"
+
+
+def _warn_of_negative(points: list[_Point], coefficients: Array) -> None:
+    rows = [p.rows[0] + 1 for p, mu in zip(points, coefficients, strict=True) if mu <= 0.0]
+    if rows:
+        warn(
+            "friction-from-loss",
+            f"the friction coefficient of row {', '.join(map(str, rows))} is not positive: "
+            "bearings, seals, slave gears and the loss without load are more than the loss "
+            "measured. Check other_loss, which must not hold what is lost without load as well.",
+        )

@@ -1,0 +1,70 @@
+"""What is seen while something is computed: counts, time left, and what is compiled once."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from tribodyn.cli.bar import Bar, counted, left
+
+_KERNEL = """
+import sys
+import numba as nb
+from tribodyn.compiled import announced, telling
+
+told = []
+double = announced(nb.njit(cache=True)(lambda x: 2.0 * x), "the doubling", "no time")
+with telling(told.append):
+    double(1.0)
+    double(2)
+print(told)
+"""
+
+
+@pytest.mark.parametrize(
+    ("done", "total", "text"), [(31, 60, "31 of 60"), (0, 1, "0 of 1"), (5, None, "")]
+)
+def test_counts_are_told_where_they_are_known(done: int, total: int | None, text: str) -> None:
+    assert counted(done, total) == text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (None, ""),
+        (12.4, "about 12 s left"),
+        (130.0, "about 2 min 10 s left"),
+        (7260.0, "about 2 h 1 min left"),
+    ],
+)
+def test_the_time_that_is_left(seconds: float | None, text: str) -> None:
+    assert left(seconds) == text
+
+
+def test_the_bar_draws_them() -> None:
+    bar = Bar()
+    with bar as progress:
+        progress.start("Motions", 60)
+        progress.advance(31)
+        drawn = Console(width=120, color_system=None)
+        with drawn.capture() as caught:
+            drawn.print(bar._screen.get_renderable())
+        progress.finish()
+    assert "Motions" in caught.get()
+    assert "31 of 60" in caught.get()
+
+
+def test_a_compilation_is_announced_once_and_never_when_it_is_kept(tmp_path: Path) -> None:
+    script = tmp_path / "kernel.py"
+    script.write_text(_KERNEL)
+    told = [
+        subprocess.run(
+            [sys.executable, str(script)], capture_output=True, text=True, check=True
+        ).stdout.strip()
+        for _ in range(2)
+    ]
+    assert told == ["['compiling the doubling, once on this machine, about no time']", "[]"]

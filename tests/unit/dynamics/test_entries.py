@@ -1,0 +1,86 @@
+"""Entries of contacts: numbers or functions of the mesh phase alone, that jump at events only."""
+
+import numpy as np
+import pytest
+
+from tribodyn.dynamics import Contact, LoadFriction, System, steady_state
+from tribodyn.errors import InputError
+
+FULL = 2.0 * np.pi
+
+
+def _orbit(force=(1.0,), frictions=(), **parts):
+    contact = Contact(**({"direction": [1.0], "stiffness": 9.0} | parts))
+    system = System([[1.0]], [[1.0]], [[0.0]], force, [contact], frictions=frictions)
+    return steady_state(system, 1.0, steps=256)
+
+
+SMOOTH = {
+    "harmonic": lambda phase: 9.0 + np.cos(FULL * phase),
+    "kinks": lambda phase: 9.0 + np.abs(np.cos(FULL * phase)),
+    "steep": lambda phase: 9.0 + np.tanh(2000.0 * (phase - 0.377)),
+    "saw": lambda phase: 9.0 + phase,
+    "narrow pulse": lambda phase: 9.0 + np.exp(-(((phase - 0.4) / 0.01) ** 2)),
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_continuous_functions_are_taken(name):
+    assert _orbit(stiffness=SMOOTH[name]).converged
+
+
+@pytest.mark.parametrize("height", [1.0, -1e-2, 1e-3, -1e-4])
+@pytest.mark.parametrize("place", [0.377, 0.25, 0.9996])
+def test_a_jump_where_no_event_is(height, place):
+    """Refused with its place, whatever it stands on; as an event it is taken."""
+    for name, smooth in SMOOTH.items():
+
+        def jumping(phase, smooth=smooth):
+            return smooth(phase) + np.where(phase < place, 0.0, height)
+
+        if abs(height) < 0.1 and name in ("steep", "narrow pulse"):
+            continue
+        with pytest.raises(InputError, match=r"contacts\[0\].stiffness jumps by") as caught:
+            _orbit(stiffness=jumping)
+        told = float(str(caught.value).split("mesh phase ")[1].split(",")[0])
+        assert told == pytest.approx(place, abs=1e-6)
+        assert _orbit(stiffness=jumping, events=(0.0, place)).converged
+
+
+@pytest.mark.parametrize("name", ["stiffness", "damping", "error", "gap", "direction", "friction"])
+def test_every_entry_is_looked_at(name):
+    def jumping(phase):
+        return np.where(phase < 0.3, 0.5, 0.6)
+
+    with pytest.raises(InputError, match=rf"contacts\[0\].{name} jumps by 0.1"):
+        _orbit(**{name: jumping})
+    with pytest.raises(InputError, match=r"force jumps by 0.1 at the mesh phase 0.3"):
+        _orbit(force=lambda phase: jumping(phase)[:, None])
+    with pytest.raises(InputError, match=r"frictions\[0\].coefficients jumps by 0.1"):
+        _orbit(frictions=[LoadFriction([1.0], jumping, 1.0)])
+
+
+def test_functions_that_are_none_of_the_phase():
+    generator, calls = np.random.default_rng(1), []
+
+    def counted(phase):
+        calls.append(1)
+        return 9.0 + 0.1 * len(calls) + 0.0 * phase
+
+    for function in (counted, lambda phase: 9.0 + generator.random(phase.size),
+                     lambda phase: 9.0 + 1e-3 * np.arange(phase.size)):  # fmt: skip
+        with pytest.raises(InputError, match="other values when it is called again"):
+            _orbit(stiffness=function)
+
+
+@pytest.mark.parametrize("bad", ["9", 9.0 + 1j, None, {}, [[1.0], [1.0, 2.0]], b"9", object()])
+def test_what_is_no_real_number(bad):
+    for entry in (bad, lambda phase: bad, lambda phase: np.full(phase.shape, bad)):
+        with pytest.raises(InputError, match=r"contacts\[0\].stiffness"):
+            _orbit(stiffness=entry)
+
+
+@pytest.mark.parametrize("nothing", [None, 0, 0.0, [0.0], (0,), lambda phase: 0.0 * phase])
+def test_a_contact_without_direction(nothing):
+    with pytest.raises(InputError, match="direction"):
+        _orbit(direction=nothing)

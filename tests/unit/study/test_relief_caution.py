@@ -1,0 +1,35 @@
+"""Relief far beyond the deflection of the teeth is told, with the pairs that are left."""
+
+import warnings
+
+import pytest
+
+import tribodyn as td
+from tribodyn.study.pipeline.cautions import mesh_cautions
+from tribodyn.study.pipeline.tooth_contact import mesh_of
+
+
+def _told(**relief):
+    changes = {f"gears.{key.replace('__', '.')}.tip_relief": value for key, value in relief.items()}
+    case = td.load_case("fzg-roughness").replace(
+        {"stiffness.model": "weber", "friction.law": "none", "stiffness.reference": "rim"} | changes
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", td.ModelWarning)
+        mesh = mesh_of(case)
+    found = [each.message for each in mesh_cautions(mesh) if each.code == "relief-large"]
+    return found[0] if found else "", mesh
+
+
+@pytest.mark.parametrize("modified", [{}, {"pinion__modification": "20 um"}])
+def test_usual_relief_is_not_told(modified):
+    assert not _told(**modified)[0]
+
+
+def test_far_too_large_relief_leaves_one_pair():
+    """With tips taken off on both gears one pair carries at any phase."""
+    text, mesh = _told(pinion__modification="300 um", wheel__modification="300 um")
+    assert "tip_relief = 300 um" in text
+    pairs = float(mesh.grid.mean((mesh.load_share > 0.0).sum(axis=1).astype(float)))
+    assert float(text.split(": ")[1].split(" tooth pairs")[0]) == pytest.approx(pairs, rel=0.01)
+    assert 1.0 <= pairs < 1.05 < 1.3 < mesh.transverse_contact_ratio

@@ -1,0 +1,100 @@
+"""A rehearsal refuses what a run refuses because of the case alone; a run-away names friction."""
+
+import warnings
+
+import pytest
+
+import tribodyn as td
+from tribodyn.cli import main
+from tribodyn.errors import ComputationError, InputError, ModelWarning
+from tribodyn.friction import LAWS
+from tribodyn.study.pipeline.run import computed, rehearse
+
+
+def _said(asked, case):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        try:
+            asked(case)
+        except InputError as error:
+            return str(error)
+    return ""
+
+
+_REFUSED = {
+    "friction.law": ["benedict-kelly", "xu-2007"],
+    "gears.composite_roughness": ["0.5 um", "1.2 um", "3.2 um"],
+    "stiffness.model": ["potential-energy", "weber", "iso6336", "analytic"],
+    "operation.speed": ["1000 rpm", "0.02 rpm"],
+}
+
+
+@pytest.mark.parametrize("law", _REFUSED["friction.law"])
+@pytest.mark.parametrize("roughness", _REFUSED["gears.composite_roughness"])
+def test_a_rehearsal_says_what_the_run_says(law, roughness):
+    case = td.load_case("fzg-roughness").replace(
+        {"friction.law": law, "gears.composite_roughness": roughness}
+    )
+    said = _said(rehearse, case)
+    assert said == _said(computed, case)
+    assert bool(said) == (roughness == "3.2 um" or (roughness, law) == ("1.2 um", "benedict-kelly"))
+
+
+@pytest.mark.parametrize("model", _REFUSED["stiffness.model"])
+@pytest.mark.parametrize("speed", _REFUSED["operation.speed"])
+def test_models_and_speeds(model, speed):
+    """The tooth of "weber" has no bore; a speed may be too slow to be marched."""
+    case = td.load_case("fzg-roughness").replace(
+        {"stiffness.model": model, "operation.speed": speed, "stiffness.reference": "bore"}
+        if model == "weber"
+        else {"stiffness.model": model, "operation.speed": speed}
+    )
+    said = _said(rehearse, case)
+    assert bool(said) == (model == "weber" or speed == "0.02 rpm")
+    if said:
+        assert said.split(" ")[0] == _said(computed, case).split(" ")[0]
+
+
+def test_check_rehearses(tmp_path, capsys):
+    path = tmp_path / "rough.toml"
+    rough = td.load_case("fzg-roughness").replace({"gears.composite_roughness": "1.2 um"})
+    path.write_text(rough.to_toml(), encoding="utf-8")
+    with pytest.raises(SystemExit) as left:
+        main(["check", str(path)])
+    assert left.value.code == 2
+    assert "diverges at 1.13 um" in capsys.readouterr().err
+
+
+def test_a_law_of_a_third_party_is_asked_too():
+    """One mechanism for all models: the model itself says no."""
+
+    @LAWS.define("shy", source="test", meaning="refuses rough flanks", needs_oil=True)
+    def shy(contact):
+        if contact.composite_roughness > 1e-7:
+            raise InputError("too rough for the shy law", "argument roughness", "", "Polish")
+        return 0.0 * contact.load_per_width + 0.05
+
+    try:
+        case = td.load_case("fzg-roughness").replace({"friction.law": "shy"})
+        assert "too rough for the shy law" in _said(rehearse, case)
+        assert not _said(rehearse, case.replace({"gears.composite_roughness": "0.05 um"}))
+    finally:
+        LAWS._items.pop("shy")
+
+
+def test_a_run_away_names_the_friction_first(monkeypatch):
+    case = td.load_case("fzg-roughness").replace({"gears.composite_roughness": "1.1 um",
+                                                  "friction.law": "benedict-kelly"})  # fmt: skip
+
+    def fails(*_):
+        raise ComputationError("the motion grew beyond all bounds", why="a parametric resonance")
+
+    monkeypatch.setattr("tribodyn.study.pipeline.run.motion_of", fails)
+    with pytest.raises(ComputationError) as caught:
+        td.run(case)
+    first, second = caught.value.problems
+    assert first.what.startswith("the friction coefficient reaches 3.")
+    assert second.why == "a parametric resonance"
+    with pytest.raises(ComputationError) as caught:
+        td.run(td.load_case("fzg-roughness"))
+    assert len(caught.value.problems) == 1
