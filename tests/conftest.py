@@ -3,11 +3,34 @@
 from __future__ import annotations
 
 import os
+import random
 import tempfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
+
+import pytest
 
 
 def pytest_configure() -> None:
     """Share one folder among all workers."""
     folder = Path(tempfile.gettempdir()) / "tribodyn-tests"
     os.environ.setdefault("TRIBODYN_CACHE_DIR", str(folder))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Options of the tests that draw their inputs."""
+    parser.addoption("--runs", type=int, default=None, help="draws of each fuzz")
+    parser.addoption("--seed", type=int, default=20251122, help="seed of the draws")
+
+
+@pytest.fixture
+def draws(request: pytest.FixtureRequest) -> Callable[[int], Iterator[random.Random]]:
+    """Random sources: as many as asked for with --runs, else a few; each is told by a failure."""
+
+    def sources(few: int) -> Iterator[random.Random]:
+        count, seed = request.config.getoption("--runs") or few, request.config.getoption("--seed")
+        for number in range(count):
+            print(f"draw {number} of the seed {seed}")
+            yield random.Random(f"{seed} {number}")
+
+    return sources

@@ -19,9 +19,11 @@ _REMEDIES = {
 
 def positive(**quantities: ArrayLike) -> list[Array]:
     """Arrays of quantities, each called by its name; refused unless finite and positive."""
-    for name, value in quantities.items():
-        require_positive(name, value, QUANTITIES[name].unit, remedy=_REMEDIES.get(name, ""))
-    return [np.asarray(value, dtype=float) for value in quantities.values()]
+    arrays = [np.asarray(value, dtype=float) for value in quantities.values()]
+    for name, array in zip(quantities, arrays, strict=True):
+        if not np.all((array > 0.0) & (array < np.inf)):
+            require_positive(name, array, QUANTITIES[name].unit, remedy=_REMEDIES.get(name, ""))
+    return arrays
 
 
 def one_or_more(**quantities: ArrayLike) -> list[Array]:

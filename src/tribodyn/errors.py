@@ -6,6 +6,7 @@ or argument), why (the limit and its origin) and what to do next.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -31,6 +32,7 @@ __all__ = [
     "require_between",
     "require_one_of",
     "require_positive",
+    "shortened",
     "warn",
 ]
 
@@ -39,6 +41,30 @@ __all__ = [
 _listeners: ContextVar[tuple[Callable[[ModelWarning], bool], ...]] = ContextVar(
     "listeners", default=()
 )
+
+
+#: Characters of a value that a message repeats, and of a whole part of a message.
+_QUOTED, _PART = 200, 4000
+#: Faults that one error tells.
+_MOST = 50
+#: What moves the cursor, turns the direction of writing or is half a character.
+_CONTROL = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+_LONG_QUOTE = re.compile(f'"[^"]{{{_QUOTED + 1},}}"?|[^\\s"]{{{_QUOTED + 1},}}')
+
+
+def shortened(text: str, most: int = _QUOTED) -> str:
+    """Text as a message repeats it: not too long, and with control characters written out."""
+    text = _CONTROL.sub(lambda match: repr(match[0])[1:-1], text[: most + 1])
+    return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def _message(part: str) -> str:
+    """Part of a message, with each value that it repeats shortened."""
+    if len(part) > _QUOTED:
+        part = _LONG_QUOTE.sub(lambda match: shortened(match[0], _QUOTED), part)
+    return shortened(part, _PART)
 
 
 @dataclass(frozen=True)
@@ -118,6 +144,12 @@ class Problem:
     why: str = ""
     remedy: str = ""
 
+    def __post_init__(self) -> None:
+        for name in ("what", "where", "why", "remedy"):
+            part = getattr(self, name)
+            if isinstance(part, str):
+                object.__setattr__(self, name, _message(part))
+
     def __str__(self) -> str:
         """Join the parts into one readable paragraph."""
         head = f"{self.where}: {self.what}" if self.where else self.what
@@ -155,6 +187,10 @@ class TribodynError(Exception):
         self.problems: tuple[Problem, ...] = (
             (problems,) if isinstance(problems, Problem) else tuple(problems)
         )
+        more = len(self.problems) - _MOST
+        if more > 0:
+            rest = Problem(f"{more} more faults are not listed", "", "", "Correct these first")
+            self.problems = (*self.problems[:_MOST], rest)
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 

@@ -188,6 +188,8 @@ def clear_leftovers(target: Path) -> None:
         entries = [(entry, known.fullmatch(entry.name)) for entry in place.parent.iterdir()]
     except OSError:
         return
+    with suppress(OSError):
+        _clear_members(place)
     for entry, match in entries:
         if match is None or entry.is_symlink() or not entry.is_dir():
             continue
@@ -201,6 +203,15 @@ def clear_leftovers(target: Path) -> None:
             elif (kind or _is_unfinished(entry)) and not _is_held(entry):
                 shutil.rmtree(entry)
                 warn("leftover", f"{entry} is removed: a process was killed while it wrote there")
+
+
+def _clear_members(place: Path) -> None:
+    """Remove members of a study that was saved after the last of them: it is complete."""
+    folder = place.with_name(f".{place.name}.members")
+    if not folder.is_dir() or not place.is_dir() or _is_held(folder):
+        return
+    if place.stat().st_mtime_ns > (folder / "members.jsonl").stat().st_mtime_ns:
+        shutil.rmtree(folder)
 
 
 def _is_unfinished(entry: Path) -> bool:

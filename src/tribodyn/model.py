@@ -217,6 +217,10 @@ class Model:
     declared: Mapping[str, Option]
     case_options: Mapping[str, Option]  #: those of them that are keys of the case file
 
+    def __post_init__(self) -> None:
+        """Keep options and defaults apart."""
+        self.declare(self.options)
+
     def declare(self, options: Mapping[str, Any]) -> None:
         """Keep the options and their defaults apart."""
         declared = {name: _declared(option) for name, option in options.items()}

@@ -20,7 +20,7 @@ Orders(order: 2, teeth 24)
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass
 from html import escape
 from pathlib import Path
@@ -103,6 +103,16 @@ class Parts(NamedTuple):
             for old, unit in zip(new, units, strict=True)
         }
         return Parts(variables, axes, self.attributes)
+
+
+def drawn(name: str, text: str) -> Callable[[Any], Any]:
+    """Method that draws a result by a figure; the text says what is drawn."""
+
+    def method(self: Any) -> Any:
+        return draw(self, name)
+
+    method.__doc__ = f"{text}\n\nReturns\n-------\nplotly.graph_objects.Figure\n"
+    return method
 
 
 class Record:

@@ -23,7 +23,7 @@ from tribodyn.errors import InputError, Problem
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["LARGEST", "file_kind", "read_bytes", "read_dataset", "write_dataset"]
+__all__ = ["LARGEST", "file_kind", "plain_number", "read_bytes", "read_dataset", "write_dataset"]
 
 #: Size of the largest file that is read: text, tables as text, netCDF [bytes].
 LARGEST = {"case": 10**6, "table": 10**7, "netcdf": 2**30}
@@ -60,6 +60,14 @@ def read_bytes(path: str | PathLike[str], kind: str) -> bytes:
     return content
 
 
+def plain_number(text: str) -> float | None:
+    """A number written with the digits 0 to 9, a point and an exponent; None for other text."""
+    try:
+        return float(text) if text.isascii() and "_" not in text and len(text) < 400 else None
+    except ValueError:
+        return None
+
+
 def write_dataset(data: Any, path: str | PathLike[str]) -> None:
     """Write labelled arrays to a netCDF file, with the checksum of what they hold."""
     import h5py
@@ -86,7 +94,7 @@ def read_dataset(path: str | PathLike[str], where: Any = "argument path") -> xar
         content = io.BytesIO(read_bytes(path, "netcdf"))
         with h5py.File(content) as file:
             told = _ON_FILE.search(bytes(file.attrs.get(_ORIGIN, b"")))
-        with xarray.open_dataset(content, engine="h5netcdf") as opened:
+        with xarray.open_dataset(content, engine="h5netcdf", phony_dims="sort") as opened:
             data = opened.load()
         whole = told is None or told[1].decode() == _digest(data)
     # A damaged file makes HDF5 and its readers stumble in many ways.

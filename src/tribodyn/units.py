@@ -26,7 +26,15 @@ __all__ = [
     "split",
 ]
 
-_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL | re.ASCII)
+#: Characters of a quantity.
+_LONGEST = 200
+#: A unit in plain spelling: names, whole factors, and powers of both that are one small number.
+_TOKEN = re.compile(
+    r"\^\(?[+-]?\d(?:\.\d+)?(?![\d.])\)?(?!\^)|[A-Za-z_%][A-Za-z0-9_%]*"
+    r"|\d{1,6}(?:\.\d{1,6})?(?![\w.])|[*/() ]",
+    re.ASCII,
+)
 
 #: A number with a comma, or with thousands set apart, and what follows it.
 _GROUPED = re.compile(
@@ -63,7 +71,8 @@ SPELLINGS: dict[str, str] = {
 _SIGNS = {
     **dict.fromkeys(("·", "⋅", "×", "•"), "*"),
     **dict.fromkeys(("µ", "μ"), "u"),
-    **{"⁻¹": "^-1", "⁻²": "^-2", "⁻³": "^-3", "²": "^2", "³": "^3", "⁴": "^4", "−": "-", "**": "^"},
+    **{"⁻¹": "^-1 ", "⁻²": "^-2 ", "⁻³": "^-3 ", "²": "^2 ", "³": "^3 ", "⁴": "^4 "},
+    **{"−": "-", "**": "^"},
 }
 _WORD = re.compile(
     r"(?<![A-Za-z0-9_°])(?:"
@@ -124,6 +133,8 @@ def _registry() -> Any:
 def _plain(unit: str) -> str:
     """Rewrite the field's spellings plainly: ``mPa s`` -> ``mPa*s``, ``kg mm2`` -> ``kg*mm^2``."""
     text = unit.strip()
+    if len(text) > _LONGEST:
+        raise UnitProblemError(f'"{text[:40]}..." is longer than any unit')
     for sign, plain in _SIGNS.items():
         text = text.replace(sign, plain)
     text = _WORD.sub(lambda word: f" {SPELLINGS[word.group()]} ", text)
@@ -157,7 +168,11 @@ def _by_pint(value: float, unit: str, to: str) -> float:
     import pint
 
     registry = _registry()
+    # Nothing is handed on that pint would take for ever to compute, or read as a comment.
+    odd = _TOKEN.sub("", unit) or unit.count("(") > 5
     try:
+        if odd:
+            raise ValueError
         quantity = registry.Quantity(value, unit.replace("^", "**"))
         wanted = registry.Quantity(1.0, to.replace("^", "**"))
     except Exception as error:  # pint lets its tokenizer's errors of many types through
@@ -165,12 +180,17 @@ def _by_pint(value: float, unit: str, to: str) -> float:
     message = (
         f'"{value:g} {unit}" cannot be expressed in {to or "a pure number"}: wrong kind of quantity'
     )
-    if _angle_power(quantity) != _angle_power(wanted):
-        raise UnitProblemError(f"{message} (one is an angle or a rotational speed)")
     try:
-        return float(quantity.to(wanted.units).magnitude)
+        if _angle_power(quantity) != _angle_power(wanted):
+            raise UnitProblemError(f"{message} (one is an angle or a rotational speed)")
+        found = float(quantity.to(wanted.units).magnitude)
     except (pint.DimensionalityError, pint.OffsetUnitCalculusError) as error:
         raise UnitProblemError(message) from error
+    except ArithmeticError:
+        found = math.inf
+    if not math.isfinite(found):
+        raise UnitProblemError(f'"{value:g} {unit}" is beyond all numbers in {to}')
+    return found
 
 
 def _angle_power(quantity: Any) -> float:
@@ -196,8 +216,8 @@ def readings(text: str) -> list[str]:
     >>> readings("2,500 rpm"), readings("1.234,5 N"), readings("3,0 mm"), readings("4.5 mm")
     (['2500 rpm', '2.5 rpm'], ['1234.5 N'], ['3.0 mm'], [])
     """
-    match = _GROUPED.fullmatch(text)
-    if match is None:
+    match = _GROUPED.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None or any(each.isdecimal() and not each.isascii() for each in text):
         return []
     number, unit = match.groups()
     whole, power, exponent = re.fullmatch(r"([^eE]*)([eE]?)(.*)", number).groups()  # type: ignore[union-attr]
@@ -241,10 +261,15 @@ def split(text: str) -> tuple[float, str]:
     """
     if meant := readings(text):
         raise UnitProblemError(f'"{text}": {NUMBERS}; write {quoted(meant)}')
-    match = _NUMBER.match(text)
+    if len(text) > _LONGEST:
+        told = f'"{text[:40]}..." has {len(text)} characters'
+        raise UnitProblemError(f"{told}, and a quantity at most {_LONGEST}")
+    if any(each.isdecimal() and not each.isascii() for each in text):
+        raise UnitProblemError(f'"{text}": the digits of a number are 0 to 9')
+    match = _NUMBER.fullmatch(text)
     if match is None:
         raise UnitProblemError(f'"{text}" does not begin with a number')
-    return float(match.group(1)), match.group(2)
+    return float(match.group(1)), match.group(2).strip()
 
 
 @lru_cache(maxsize=1024)

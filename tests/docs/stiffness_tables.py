@@ -13,6 +13,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from known_pairs import pair_of, standard, type_c
+from tribodyn.contact import path_of_contact
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness import MODELS, LoadedContact, loaded_contact
 from tribodyn.stiffness.loaded.contact import compliance_of
@@ -48,7 +49,7 @@ def single_pair(name: str, model: str, reference: str) -> float:
     """Mean over the path of the stiffness of one pair that carries the whole load."""
     pair, torque = PAIRS[name]
     phase = (np.arange(64) + 0.5) / 64
-    places = contact_places(pair, phase, extended=False)
+    places = contact_places(path_of_contact(pair), phase, extended=False)
     force, width = torque / pair.pinion.base_radius, pair.common_face_width
     options = {"reference": reference} if "reference" in MODELS[model].options else {}
     parts = compliance_of(pair, Material(), places, force, MODELS[model], options)

@@ -63,7 +63,7 @@ def tangent(grid):
     cH, cP = np.empty((2, n + 1, 4))
     oil_state(n, grid.P, grid.oil, lneta, dlneta, rho, drho)
     mobility(n, grid.H, grid.lam, lneta, rho, eps)
-    coefficients(n, dx, grid.lam, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
+    coefficients(n, dx, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
     K = influence(n, dx)
     J = np.zeros((k + 1, k + 1))
     columns = np.arange(1, k + 1)
@@ -126,7 +126,7 @@ def _coefficients(grid):
     cH, cP = np.empty((2, n + 1, 4))
     oil_state(n, grid.P, grid.oil, lneta, dlneta, rho, drho)
     mobility(n, grid.H, grid.lam, lneta, rho, eps)
-    coefficients(n, grid.dx, grid.lam, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
+    coefficients(n, grid.dx, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
     return cH, cP, eps
 
 

@@ -38,16 +38,21 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     90.0
     """
     from tribodyn.cases.copies import with_known_reasons
+    from tribodyn.stored import file_kind
     from tribodyn.study.case.read import read_case, read_text
 
     named = case_files()
     asked = os.fspath(name_or_path)
     path = named.get(asked, Path(asked))
-    if path.is_dir():
+    kind = file_kind(path)
+    if not asked:
+        remedy = "See: tribodyn cases"
+        raise InputError("the name of the case is empty", "argument name_or_path", "", remedy)
+    if kind == "directory":
         inner = path / "case.toml"
         remedy = f"Use {inner}" if inner.is_file() else "Give the path of a TOML file"
         raise InputError(Problem("this is a directory, not a case file", asked, "", remedy))
-    if not path.exists():
+    if not kind:
         raise InputError(_not_found(asked, path, list(named)))
     if asked in named:
         return read_case(read_text(path), path.name)

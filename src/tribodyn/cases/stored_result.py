@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.cases.load import load_case
-from tribodyn.errors import InputError, ModelWarning, collected
+from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
 from tribodyn.study.case.derive import placed
 from tribodyn.study.pipeline.assembly import system_of
 from tribodyn.study.pipeline.damping import damping_of
@@ -74,15 +76,40 @@ Give the directory that tribodyn run or Result.save wrote.
         why = f"response.nc has no {', '.join(lacking)}: an earlier version wrote it"
         remedy = f"Compute it again: tribodyn run {folder / 'case.toml'}"
         raise InputError("this result cannot be read back", str(folder), why, remedy)
-    friction = _friction(mesh, data)
-    with placed(case), collected():
-        damping = damping_of(case, mesh)
-        system = system_of(case, mesh, damping, friction)
-    response = _response(folder, system, data)
-    told = tuple(ModelWarning(code, text) for code, text in json.loads(data.attrs["warnings"]))
+    _compare(folder, summary, data)
+    try:
+        friction = _friction(mesh, data)
+        with placed(case), collected():
+            damping = damping_of(case, mesh)
+            system = system_of(case, mesh, damping, friction)
+        response = _response(folder, system, data)
+        told = tuple(ModelWarning(code, text) for code, text in json.loads(data.attrs["warnings"]))
+    except TribodynError:
+        raise
+    # What a damaged file holds makes its readers stumble in many ways.
+    except Exception as error:
+        why = f"response.nc is damaged: {error or type(error).__name__}"
+        raise InputError("this result cannot be read back", str(folder), why, _REMEDY) from None
     result = Result(case, mesh, system, response, damping, told, friction)
     vars(result)["_summary"] = summary
     return result
+
+
+def _compare(folder: Path, summary: Mapping[str, float], data: xarray.Dataset) -> None:
+    """Refuse text files that were changed: response.nc, which has a checksum, tells what they held.
+
+    Results of an earlier version do not tell of their case.
+    """
+    from tribodyn.stored import read_bytes
+
+    case = hashlib.sha256(read_bytes(folder / "case.toml", "case")).hexdigest()
+    changed = ["case.toml"] if data.attrs.get("case", case) != case else []
+    told = {name: data.attrs.get(name, value) for name, value in summary.items()}
+    if told != summary or data.attrs.get("figures", len(summary)) != len(summary):
+        changed.append("summary.json")
+    if changed:
+        why = f"{changed[0]} is of another, or was damaged or changed after it was written"
+        raise InputError("these files are of different results", str(folder), why, _REMEDY)
 
 
 def read_summary(folder: Path) -> dict[str, float]:
@@ -137,7 +164,8 @@ def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:
         facts["floquet_multipliers"] = real + 1j * imaginary
     response = build_response(
         compile_for(system, frequency, rows // periods), frequency, np.vstack(ends), extra,
-        error=float(told["steady_state_error"]), converged=bool(told["converged"]),
+        error=float(told["steady_state_error"]),
+        step_error=float(told.get("step_error", "nan")), converged=bool(told["converged"]),
         **{name: int(told[name]) for name in ("cycles_used", "search_cycles", "period")}, **facts,
     )  # fmt: skip
     return later(response, float(data["time"].values[0]))

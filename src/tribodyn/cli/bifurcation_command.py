@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, tell
+from tribodyn.cli.screen import say, say_json, show_resumed, tell
 from tribodyn.cli.settings import RANGE, changed_case, check_place, read_ranges
 
 if TYPE_CHECKING:
@@ -65,6 +65,7 @@ def bifurcation(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
+    from tribodyn.members import Members
 
     target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
     key, (first, last, points) = _one(over)
@@ -72,30 +73,34 @@ def bifurcation(
     ready = changed_case(case, set_ or [])
     check_place(target, force)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
-    with progress_bar() as progress:
-        from tribodyn.study.studies.axes import read_axes
-        from tribodyn.study.studies.bifurcation import Findings
-        from tribodyn.study.studies.bifurcation import bifurcation as compute
+    with Members(target, force) as members:
+        with progress_bar() as progress:
+            from tribodyn.study.studies.axes import read_axes
+            from tribodyn.study.studies.bifurcation import Findings
+            from tribodyn.study.studies.bifurcation import bifurcation as compute
 
-        read_axes(ready, {key: (first, last, points)}, by="bifurcation")
-        found = compute(
-            ready, key, (first, last), points, steps=steps, sweep=sweep, by="bifurcation",
-            keep_partial=True, progress=progress, **options,
-        )  # fmt: skip
-    if not found.finished.any():
-        raise KeyboardInterrupt
-    judged = int((found.finished & (found.verdict != "")).sum())
-    complete = judged == found.finished.size
-    if not complete:
-        tell(
-            f"interrupted: {int(found.finished.sum())} of {found.finished.size} motions are done, "
-            f"{judged} of them judged, and being written; Ctrl-C again stops at once"
-        )
-    findings = Findings(ready, found)
-    with progress_bar() as progress:
-        progress.start("Report")
-        _save(found, ready, findings, target, force=force)
-        progress.finish()
+            read_axes(ready, {key: (first, last, points)}, by="bifurcation")
+            found = compute(
+                ready, key, (first, last), points, steps=steps, sweep=sweep, by="bifurcation",
+                keep_partial=True, progress=progress, members=members, **options,
+            )  # fmt: skip
+        show_resumed(members)
+        if not found.finished.any():
+            raise KeyboardInterrupt
+        judged = int((found.finished & (found.verdict != "")).sum())
+        complete = judged == found.finished.size
+        if not complete:
+            tell(
+                f"interrupted: {int(found.finished.sum())} of {found.finished.size} motions are "
+                f"done, {judged} of them judged, and being written; the same command with --force "
+                "goes on from there; Ctrl-C again stops at once"
+            )
+        findings = Findings(ready, found)
+        with progress_bar() as progress:
+            progress.start("Report")
+            _save(found, ready, findings, target, force=force)
+            progress.finish()
+        members.close_after(complete)
     if json:
         say_json({**findings.figures(), "complete": complete})
     else:

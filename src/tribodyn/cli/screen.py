@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Problem
+
+if TYPE_CHECKING:
+    from tribodyn.members import Members
 
 
 def say(text: str) -> None:
@@ -55,6 +58,18 @@ def show_problems(problems: Sequence[Problem]) -> None:
         tell(f"error: {problem}")
     if len(problems) > 1:
         tell(f"{len(problems)} faults found.")
+
+
+def show_resumed(members: Members) -> None:
+    """Say on stderr how much of a study an earlier process has finished.
+
+    Parameters
+    ----------
+    members : Members
+        What was kept of it.
+    """
+    if len(members):
+        tell(f"{len(members)} finished parts of this study were kept and are not computed again.")
 
 
 def show_warnings(warnings: Iterable[tuple[str, str]]) -> None:

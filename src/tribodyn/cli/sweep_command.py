@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.screen import say, say_json, show_resumed, table, tell
 from tribodyn.cli.settings import changed_case, check_place, read_ranges
 
 if TYPE_CHECKING:
@@ -55,25 +55,32 @@ def sweep(
         Exit code.
     """
     from tribodyn.cli.bar import progress_bar
+    from tribodyn.members import Members
 
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
     ready = changed_case(case, set_ or [])
     names = _asked(show)
     check_place(target, force)
-    with progress_bar() as progress:
-        from tribodyn.study.studies.sweep import sweep as compute
+    with Members(target, force) as members:
+        with progress_bar() as progress:
+            from tribodyn.study.studies.sweep import sweep as compute
 
-        found = compute(ready, ranges, partial=True, by="sweep", progress=progress)
-    if not found.complete:
-        tell(
-            f"interrupted: {len(found.points)} of {found.failed.size} values are done and being "
-            "written; Ctrl-C again stops at once"
-        )
-    with progress_bar() as progress:
-        progress.start("Report")
-        found.save(target, force=force)
-        progress.finish()
+            found = compute(
+                ready, ranges, partial=True, by="sweep", progress=progress, members=members
+            )
+        show_resumed(members)
+        if not found.complete:
+            tell(
+                f"interrupted: {len(found.points)} of {found.failed.size} values are done and "
+                "being written; the same command with --force goes on from there; "
+                "Ctrl-C again stops at once"
+            )
+        with progress_bar() as progress:
+            progress.start("Report")
+            found.save(target, force=force)
+            progress.finish()
+        members.close_after(found.complete)
     _show(found, found.shown(names), json)
     failed = sum(bool(point.failed) for point in found.points)
     if failed:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between
-from tribodyn.gear import SpurGear, SpurPair
+from tribodyn.gear import MeshGeometry, ToothForm
 from tribodyn.types import Array, Mask
 
 #: Flank missing above the form circle, over the module, that a pair is allowed to lack.
@@ -50,11 +50,11 @@ class _Corner(NamedTuple):
     possible: Mask
 
 
-def _curvature(gear: SpurGear, radius: float) -> float:
+def _curvature(gear: ToothForm, radius: float) -> float:
     return gear.roll_angle(radius) * gear.base_radius
 
 
-def _corner(gear: SpurGear, mate: SpurGear, length: float, reach: Array) -> _Corner:
+def _corner(gear: ToothForm, mate: ToothForm, length: float, reach: Array) -> _Corner:
     """Corner of a gear's tip against its mate, with the gear's base tangent point as origin."""
     tip, base, mate_base = _curvature(gear, gear.tip_radius), gear.base_radius, mate.base_radius
     turned = (reach - tip) / base
@@ -72,13 +72,13 @@ def _corner(gear: SpurGear, mate: SpurGear, length: float, reach: Array) -> _Cor
     return _Corner(separation, touched, possible)
 
 
-def extended_contact(pair: SpurPair, path: ArrayLike) -> ExtendedContact:
+def extended_contact(pair: MeshGeometry, path: ArrayLike) -> ExtendedContact:
     """Separation of the teeth of a pair anywhere on the line of action.
 
     Parameters
     ----------
-    pair : SpurPair
-        Pair of gears without modifications; those that it has count as nothing here.
+    pair : MeshGeometry
+        Both gears in mesh, without modifications.
     path : float or array [m]
         Where the involutes would touch if they did not end: the distance from the pinion's base
         tangent point. It follows the rotation of the gears beyond both ends of the path of

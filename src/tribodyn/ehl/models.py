@@ -223,20 +223,13 @@ class FilmModel(Model):
         """
         chosen = self.complete(options)
         require_positive("length", length, "m")
+        contacts = load_per_width, equivalent_radius, entrainment_speed
         if self.method:
             chosen.pop("positions")
-            return solved_films(
-                load_per_width, equivalent_radius, entrainment_speed, lubricant, effective_modulus,
-                length=length, method=self.method, progress=progress, **chosen,
-            )  # fmt: skip
-        arguments = (
-            load_per_width,
-            equivalent_radius,
-            entrainment_speed,
-            lubricant.dynamic_viscosity,
-            lubricant.pressure_viscosity_coefficient,
-            effective_modulus,
-        )
+            chosen |= {"length": length, "method": self.method, "progress": progress}
+            return solved_films(*contacts, lubricant, effective_modulus, **chosen)
+        oil = lubricant.dynamic_viscosity, lubricant.pressure_viscosity_coefficient
+        arguments = *contacts, *oil, effective_modulus
         own = {name: value for name, value in chosen.items() if name != "stiffness"}
         central = None if self.central is None else self.central(*arguments, **own)
         minimum = None if self.minimum is None else self.minimum(*arguments, **own)

@@ -236,10 +236,6 @@ class FrictionLaw(Model):
     meaning: str = ""
     papers: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Keep options and defaults apart."""
-        self.declare(self.options)
-
     def __call__(self, contact: TribologicalContact, **options: Any) -> Array:
         """Friction coefficient of every contact, never negative.
 

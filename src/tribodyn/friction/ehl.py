@@ -14,7 +14,7 @@ from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
 from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS
 from tribodyn.ehl.traction.traction import FilmShear
 from tribodyn.errors import require_positive, warn
-from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.model import choice, flag, number
 from tribodyn.types import Array
 
@@ -168,14 +168,11 @@ _OPTIONS = {
     "rolling": flag(False, meaning="add the rolling traction to the sliding one"),
 }
 
-LAWS.register("ehl")(
-    FrictionLaw(
-        "ehl",
-        "Johnson and Tevaarwerk, Proc. R. Soc. A 356 (1977); Conry, Wang and Cusano (1987)",
-        ehl,
-        _OPTIONS,
-        needs_film=True,
-        meaning="friction of the solved oil film: its shear stress summed over the contact",
-        papers=("johnson-tevaarwerk", "conry-wang-cusano"),
-    )
-)
+LAWS.define(
+    "ehl",
+    source="Johnson and Tevaarwerk, Proc. R. Soc. A 356 (1977); Conry, Wang and Cusano (1987)",
+    options=_OPTIONS,
+    needs_film=True,
+    meaning="friction of the solved oil film: its shear stress summed over the contact",
+    papers=("johnson-tevaarwerk", "conry-wang-cusano"),
+)(ehl)

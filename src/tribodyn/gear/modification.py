@@ -396,9 +396,9 @@ class FlankModification:
 
     def __repr__(self) -> str:
         """What was given, with units."""
-        given = [(field.name, getattr(self, field.name)) for field in fields(self)
-                 if getattr(self, field.name) != field.default]  # fmt: skip
-        return f"FlankModification({', '.join(_shown(name, value) for name, value in given)})"
+        values = [(field, getattr(self, field.name)) for field in fields(self)]
+        given = (_shown(field.name, value) for field, value in values if value != field.default)
+        return f"FlankModification({', '.join(given)})"
 
 
 def amount_problems(name: str, value: object, low: float, high: float) -> list[Problem]:

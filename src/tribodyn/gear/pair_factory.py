@@ -222,10 +222,8 @@ def spur_pair(
         Module [m].
     normal_pressure_angle : float
         Pressure angle of the rack [rad], 10 to 30 degrees.
-    pinion_face_width : float
-        Width of the pinion's toothing [m].
-    wheel_face_width : float, optional
-        Width of the wheel's toothing [m]; that of the pinion by default.
+    pinion_face_width, wheel_face_width : float [m]
+        Widths of the toothings; that of the pinion by default.
     center_distance : float, optional
         Distance of the axes [m]; by default the one without backlash.
     pinion_profile_shift_coefficient, wheel_profile_shift_coefficient : float
@@ -281,33 +279,19 @@ def spur_pair(
     >>> round(pair.pinion.tip_diameter * 1e3, 3), round(pair.transverse_contact_ratio, 6)
     (88.593, 1.326952)
     """
-    pinion = {
-        "normal_module": normal_module,
-        "normal_pressure_angle": normal_pressure_angle,
-        "teeth": pinion_teeth,
-        "profile_shift_coefficient": pinion_profile_shift_coefficient,
-        "rack": pinion_rack or BasicRack(),
-        "tip_diameter": pinion_tip_diameter,
-        "tooth_thinning": pinion_tooth_thinning,
-        "face_width": pinion_face_width,
-        "bore_diameter": pinion_bore_diameter,
-        "mass": pinion_mass,
-        "moment_of_inertia": pinion_moment_of_inertia,
-        "modification": pinion_modification or FlankModification(),
+    given = locals() | {
+        "pinion_rack": pinion_rack or BasicRack(),
+        "wheel_rack": wheel_rack or BasicRack(),
+        "wheel_face_width": pinion_face_width if wheel_face_width is None else wheel_face_width,
+        "pinion_modification": pinion_modification or FlankModification(),
+        "wheel_modification": wheel_modification or FlankModification(),
     }
-    wheel = {
-        "normal_module": normal_module,
-        "normal_pressure_angle": normal_pressure_angle,
-        "teeth": wheel_teeth,
-        "profile_shift_coefficient": wheel_profile_shift_coefficient,
-        "rack": wheel_rack or BasicRack(),
-        "tip_diameter": wheel_tip_diameter,
-        "tooth_thinning": wheel_tooth_thinning,
-        "face_width": pinion_face_width if wheel_face_width is None else wheel_face_width,
-        "bore_diameter": wheel_bore_diameter,
-        "mass": wheel_mass,
-        "moment_of_inertia": wheel_moment_of_inertia,
-        "modification": wheel_modification or FlankModification(),
-    }
+    pinion, wheel = (
+        {
+            field.name: given[field.name if field.name in _SHARED else f"{name}_{field.name}"]
+            for field in fields(GearData)
+        }
+        for name in ("pinion", "wheel")
+    )
     drawings = _Drawing("pinion", pinion), _Drawing("wheel", wheel)
     return _checked(_Layout(drawings, center_distance, backlash), driver, misalignment)

@@ -45,20 +45,10 @@ class SpurGear(GearData):
 
     Parameters
     ----------
-    teeth : int
-        Number of teeth, 5 to 500.
-    normal_module : float
-        Module [m].
-    normal_pressure_angle : float
-        Pressure angle of the rack [rad], 10 to 30 degrees.
-    profile_shift_coefficient : float
-        Rack displacement over the module, positive outwards.
-    tip_diameter : float
-        Diameter of the tip circle [m].
-    tooth_thinning : float
-        Reduction of the tooth thickness along the base circle [m].
-    rack : BasicRack
-        Generating profile.
+    teeth, normal_module, normal_pressure_angle
+        As for :class:`ToothForm`, in mixed units.
+    profile_shift_coefficient, tip_diameter, tooth_thinning, rack
+        As there, in mixed units.
     face_width : float
         Width of the toothing [m].
     bore_diameter : float

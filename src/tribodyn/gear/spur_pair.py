@@ -38,10 +38,9 @@ class SpurPair(MeshGeometry):
 
     Parameters
     ----------
-    pinion : SpurGear
-        Gear with the smaller (or equal) number of teeth.
-    wheel : SpurGear
-        Gear with the larger number of teeth, of the same module and pressure angle.
+    pinion, wheel : SpurGear
+        The gear with the smaller or equal number of teeth, and the other, of the same module and
+        pressure angle.
     center_distance : float
         Distance of the axes [m].
     driver : str

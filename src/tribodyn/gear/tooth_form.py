@@ -82,8 +82,8 @@ class BasicRack:
 
         Parameters
         ----------
-        pressure_angle : float
-            Pressure angle of the rack [rad].
+        pressure_angle : float [rad]
+            Of the rack.
 
         Returns
         -------
@@ -98,8 +98,8 @@ class BasicRack:
 
         Parameters
         ----------
-        pressure_angle : float
-            Pressure angle of the rack [rad].
+        pressure_angle : float [rad]
+            Of the rack.
 
         Returns
         -------
@@ -319,18 +319,13 @@ class ToothForm:
 
         Parameters
         ----------
-        radius : float
-            Distance from the axis [m], at least the base radius.
+        radius : float [m]
+            As for :meth:`roll_angle`.
 
         Returns
         -------
         float
             Pressure angle [rad].
-
-        Raises
-        ------
-        InputError
-            If the radius lies below the base circle, where there is no involute.
         """
         return math.atan(self.roll_angle(radius))
 
@@ -367,18 +362,13 @@ class ToothForm:
 
         Parameters
         ----------
-        radius : float
-            Distance from the axis [m], at least the base radius.
+        radius : float [m]
+            As for :meth:`roll_angle`.
 
         Returns
         -------
         float
             Half of the angle that the tooth covers [rad]; negative beyond a pointed tip.
-
-        Raises
-        ------
-        InputError
-            If the radius lies below the base circle, where there is no involute.
         """
         return self.base_half_angle - involute(self.pressure_angle_at(radius))
 
@@ -387,18 +377,13 @@ class ToothForm:
 
         Parameters
         ----------
-        radius : float
-            Distance from the axis [m], at least the base radius.
+        radius : float [m]
+            As for :meth:`roll_angle`.
 
         Returns
         -------
         float
             Arc length [m].
-
-        Raises
-        ------
-        InputError
-            If the radius lies below the base circle, where there is no involute.
         """
         return 2.0 * radius * self.half_tooth_angle(radius)
 

@@ -18,6 +18,7 @@ from tribodyn.lubricant.density import (
 )
 from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
 from tribodyn.model import Registry
+from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 
 #: Pressure laws by name, each ``law(pressure, dynamic_viscosity, coefficient)``.
@@ -26,6 +27,20 @@ VISCOSITY_LAWS: Registry[Callable[[ArrayLike, float, float], Array]] = Registry(
 )
 VISCOSITY_LAWS.register("roelands")(roelands_viscosity)
 VISCOSITY_LAWS.register("barus")(barus_viscosity)
+
+
+#: Limits of the properties of liquids, and what helps beyond them.
+_LIMITS = {
+    "dynamic_viscosity": (6.4e-5, 1e3, "82 mPa*s (cP) is 0.082 Pa*s"),
+    "density": (100.0, 3000.0, "0.88 g/cm^3 is 880 kg/m^3"),
+    "pressure_viscosity_coefficient": (0.0, 1e-7, "21.9 1/GPa is 2.19e-8 1/Pa"),
+    "temperature_viscosity_coefficient": (
+        0.0,
+        0.3,
+        "It is positive: gear oils lie between 0.02 and 0.07 1/K",
+    ),
+    "thermal_conductivity": (0.01, 2.0, "Mineral oil has about 0.13 W/(m*K)"),
+}
 
 
 @dataclass(frozen=True)
@@ -78,49 +93,12 @@ class Lubricant:
 
     def __post_init__(self) -> None:
         """Refuse properties that no oil has."""
-        require_between(
-            "dynamic_viscosity",
-            self.dynamic_viscosity,
-            6.4e-5,
-            1e3,
-            "Pa*s",
-            remedy="82 mPa*s (cP) is 0.082 Pa*s",
-        )
-        require_between(
-            "density", self.density, 100.0, 3000.0, "kg/m^3", remedy="0.88 g/cm^3 is 880 kg/m^3"
-        )
-        require_between(
-            "pressure_viscosity_coefficient",
-            self.pressure_viscosity_coefficient,
-            0.0,
-            1e-7,
-            "1/Pa",
-            remedy="21.9 1/GPa is 2.19e-8 1/Pa",
-        )
+        for name, (low, high, remedy) in _LIMITS.items():
+            value = getattr(self, name)
+            if value is not None:
+                require_between(name, value, low, high, QUANTITIES[name].unit, remedy=remedy)
         if self.temperature is not None:
             require_positive("temperature", self.temperature, "K")
-        self._require_thermal()
-
-    def _require_thermal(self) -> None:
-        """Refuse thermal properties that no oil has; unknown ones are allowed."""
-        if self.temperature_viscosity_coefficient is not None:
-            require_between(
-                "temperature_viscosity_coefficient",
-                self.temperature_viscosity_coefficient,
-                0.0,
-                0.3,
-                "1/K",
-                remedy="It is positive: gear oils lie between 0.02 and 0.07 1/K",
-            )
-        if self.thermal_conductivity is not None:
-            require_between(
-                "thermal_conductivity",
-                self.thermal_conductivity,
-                0.01,
-                2.0,
-                "W/m/K",
-                remedy="Mineral oil has about 0.13 W/(m*K)",
-            )
 
     @classmethod
     def from_temperature(

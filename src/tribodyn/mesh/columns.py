@@ -8,8 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.gear import SpurPair
-from tribodyn.mesh.gears import COORDINATES, GearData, NoGears
+from tribodyn.mesh.gears import COORDINATES, GearData, Gears, NoGears
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
@@ -74,7 +73,7 @@ class MeshColumns(Record):
         film that does not fall with the load counts as rigid: its stiffness has a bound.
     maximum_single_pair_stiffness : float [N/m]
         Greatest stiffness of one pair that carries the whole load alone.
-    gear_pair : SpurPair
+    gear_pair : Gears
         Both gears in their working position. A table of another program has none: there whatever
         asks for it is told so.
     pinion_speed : float [rad/s]
@@ -131,7 +130,7 @@ class MeshColumns(Record):
     film_pressure: Array | None = quantity("knot", "pair")
     film_stiffness: Array | None = quantity("knot", "pair")
     maximum_single_pair_stiffness: float = fact()
-    gear_pair: SpurPair  # a NoGears, which says so when asked, where a table has none
+    gear_pair: Gears
     pinion_speed: float = fact()
     pinion_torque: float = fact()
     composite_roughness: float = fact()

@@ -111,12 +111,9 @@ class PairsInContact:
 
     def scales(self, load_per_width: Array) -> dict[str, Array]:
         """Estimates of the films, right in every regime but for a factor that is smooth."""
-        arguments = (
-            load_per_width, self.equivalent_radius, self.entrainment_speed,
-            self.lubricant.dynamic_viscosity, self.lubricant.pressure_viscosity_coefficient,
-            self.effective_modulus,
-        )  # fmt: skip
-        film = moes_central(*arguments)
+        oil = self.lubricant.dynamic_viscosity, self.lubricant.pressure_viscosity_coefficient
+        contacts = load_per_width, self.equivalent_radius, self.entrainment_speed
+        film = moes_central(*contacts, *oil, self.effective_modulus)
         hertz = hertz_line(load_per_width, self.equivalent_radius, self.effective_modulus)
         return {
             "central_film": film,

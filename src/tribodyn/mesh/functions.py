@@ -176,10 +176,9 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
 
     Parameters
     ----------
-    tables : sequence of MeshColumns
-        The same mesh at the same speed under different torques, on one phase grid.
-    nominal : MeshColumns
-        The one at the nominal torque.
+    tables, nominal : MeshColumns
+        The same mesh at the same speed under different torques, on one phase grid, and the one at
+        the nominal torque.
 
     Returns
     -------

@@ -14,9 +14,7 @@ from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, Sp
 from tribodyn.types import Array
 
 #: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
-COORDINATES = (
-    "pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta",
-)  # fmt: skip
+COORDINATES = tuple(f"{gear}_{way}" for gear in ("pinion", "wheel") for way in ("x", "y", "theta"))
 
 
 class NoGears:
@@ -36,6 +34,10 @@ class NoGears:
     def __repr__(self) -> str:
         """One line."""
         return "no gear pair"
+
+
+#: What the gears of a table are; a :class:`NoGears` stands in for them where there are none.
+Gears = SpurPair
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import InputError, require_between
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.build import build
+from tribodyn.mesh.build import mesh_table
 from tribodyn.mesh.cycle import PathPositions, path_positions
 from tribodyn.mesh.film.film_columns import as_columns, film_places
 from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
@@ -179,10 +179,9 @@ def film_over_operation(
         )
 
     with film_places(place):
-        films = model.films(
-            load[:, None, :], motion.equivalent_radius, motion.entrainment_speed, lubricant,
-            modulus, length=pair.common_face_width, progress=progress, **options,
-        )  # fmt: skip
+        contacts = load[:, None, :], motion.equivalent_radius, motion.entrainment_speed
+        given = {"length": pair.common_face_width, "progress": progress, **options}
+        films = model.films(*contacts, lubricant, modulus, **given)
     return FilmOverOperation(
         pinion_torque=torque,
         pinion_speed=speed,
@@ -385,19 +384,21 @@ def comprehensive_stiffness(
     """
     speeds, torques = one_or_more(pinion_speed=pinion_speed, pinion_torque=pinion_torque)
     _check_kind(film_model, kind)
-    tables = [
-        [
-            build(
-                pair, material=material, stiffness_model=stiffness_model,
-                stiffness_options=stiffness_options, lubricant=lubricant, friction_law="none",
-                composite_roughness=0.0, film_model=film_model,
-                film_options={**film_options, "stiffness": kind}, pinion_speed=float(speed),
-                pinion_torque=float(torque), steps=steps, progress=progress,
-            )
-            for speed in speeds
-        ]
-        for torque in torques
-    ]  # fmt: skip
+    settings = ToothContact(
+        material=material,
+        lubricant=lubricant,
+        stiffness_model=stiffness_model,
+        stiffness_options=stiffness_options,
+        film_model=film_model,
+        film_options={**film_options, "stiffness": kind},
+    )
+
+    def table_at(torque: float, speed: float) -> MeshTable:
+        return mesh_table(
+            pair, settings, pinion_speed=speed, pinion_torque=torque, steps=steps, progress=progress
+        )
+
+    tables = [[table_at(torque, speed) for speed in speeds.tolist()] for torque in torques.tolist()]
     columns = [[_columns(table, kind) for table in row] for row in tables]
     table = tables[0][0]
     path = _in_order(table, table.path)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
+import math
+from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,51 +19,127 @@ from tribodyn.mesh.gears import COORDINATES, NoGears, read_pair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.record import labels_of
+from tribodyn.stored import read_bytes, read_dataset
 from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
 
 #: What the attribute ``format`` of a file says; earlier versions cannot read one without gears.
 FORMAT, FORMAT_WITHOUT_GEARS = "tribodyn mesh table 3", "tribodyn mesh table 4"
 #: Tables of independent pairs, as they were written before; the first without a film in series.
 _EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
+#: Films that are not known everywhere, and all that a table of another program has to know.
+_FILMS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
+_OF_THE_FORCE = (
+    "stiffness", "tooth_stiffness", "corner_share", "static_transmission_error", "ramp_deflection",
+    "mesh_stiffness_tangent", "ramp_stiffness", "load_share", "normal_force", "sliding_direction",
+    "friction_coefficient", "friction_direction", "unloaded_transmission_error",
+)  # fmt: skip
+_MOST_KNOTS = 10**6
 
 
 def is_mesh_table(path: Path) -> bool:
     """Whether this library wrote a netCDF file."""
-    import xarray
+    import h5py
 
     try:
-        with xarray.open_dataset(path, engine="h5netcdf") as opened:
-            return str(opened.attrs.get("format", "")).startswith("tribodyn mesh table")
-    except (OSError, ValueError):
+        with h5py.File(io.BytesIO(read_bytes(path, "netcdf"))) as file:
+            return str(file.attrs.get("format", "")).startswith("tribodyn mesh table")
+    except Exception:  # HDF5 tells of a damaged file in many ways.
         return False
 
 
 def stored_values(path: str | PathLike[str]) -> dict[str, Any]:
     """Fields of the mesh table in a netCDF file."""
-    import xarray
-
     try:
-        with xarray.open_dataset(path, engine="h5netcdf") as opened:
-            data = opened.load()
-    except (OSError, ValueError) as error:
-        raise _unreadable(path, str(error)) from error
+        data = read_dataset(path)
+    except InputError as error:
+        raise _unreadable(path, f"{error.problems[0].why}. {error.problems[0].remedy}") from None
     if data.attrs.get("format") not in (FORMAT, FORMAT_WITHOUT_GEARS, *_EARLIER):
         raise _unreadable(path, f"its format is {data.attrs.get('format', 'not named')}")
+    try:
+        values = _values(data)
+        if data.attrs["format"] in _EARLIER:
+            values = _earlier(values)
+        _check(values)
+    # What a damaged file holds makes its readers stumble in many ways.
+    except Exception as error:
+        told = error.args[0] if isinstance(error, KeyError) and error.args else error
+        raise _unreadable(path, f"It is damaged: {told or type(error).__name__}") from None
+    return values
+
+
+def _values(data: xarray.Dataset) -> dict[str, Any]:
+    """Fields of a table as a data set has them."""
+    if absent := [name for name in ("event_phase", "intervals") if name not in data.variables]:
+        raise ValueError(f"{absent[0]} is missing")
     grid = PhaseGrid(
         tuple(float(value) for value in data["event_phase"].values),
         tuple(int(value) for value in data["intervals"].values),
     )
     told = data.attrs.get("gear_pair")
+    if told is None and data.attrs["format"] != FORMAT_WITHOUT_GEARS:
+        raise ValueError("gear_pair is missing")
     pair = read_pair(told) if told is not None else NoGears()
     values: dict[str, Any] = {"grid": grid, "gear_pair": pair}
     for field in fields(MeshColumns):
-        if field.name in data:
+        if field.name in data.variables:
             values[field.name] = data[field.name].values
         elif field.name not in values and (told is None or _is_required(field)):
             values[field.name] = _plain(data.attrs.get(field.name))
-    if data.attrs["format"] in _EARLIER:
-        values = _earlier(values)
     return values
+
+
+def _check(values: Mapping[str, Any]) -> None:
+    """Refuse what is missing, has another shape, or is not finite where it has to be."""
+    _check_grid(values["grid"])
+    sizes = {"knot": values["grid"].phase.size, "end": 2, "coordinate": len(COORDINATES)}
+    foreign = isinstance(values["gear_pair"], NoGears)
+    for field in fields(MeshColumns):
+        name, value, kind = field.name, values.get(field.name), str(field.type)
+        labels = _LABELS.get(name)
+        if value is None and ("None" in kind or not _is_required(field)):
+            continue
+        if labels is None or not labels.dims:
+            _check_fact(name, value, kind, sizes)
+        elif not isinstance(value, np.ndarray) or not value.size:
+            raise ValueError(f"{name} is missing")
+        else:
+            lacks = name in _FILMS or (foreign and name not in _OF_THE_FORCE)
+            _check_column(name, value, labels.dims, sizes, lacks)
+
+
+def _check_grid(grid: PhaseGrid) -> None:
+    edges, counts = np.array((*grid.event_phases, 1.0)), np.array(grid.intervals)
+    if edges.size != counts.size + 1 or edges[0] != 0.0 or not np.all(np.diff(edges) > 0.0):
+        raise ValueError("event_phase does not lead from 0 to 1")
+    if np.any(counts < 4) or np.any(counts % 2) or counts.max() > _MOST_KNOTS:
+        raise ValueError(f"intervals are {counts.min()} to {counts.max()}")
+
+
+def _check_fact(name: str, value: Any, kind: str, sizes: Mapping[str, int]) -> None:
+    if kind in ("float", "int"):
+        sound = isinstance(value, int | float) and math.isfinite(value)
+    elif name == "direction":
+        shapes = ((sizes["coordinate"],), (sizes["knot"], sizes["coordinate"]))
+        sound = np.shape(value) in shapes and bool(np.isfinite(value).all())
+    else:
+        sound = kind != "str" or isinstance(value, str)
+    if not sound:
+        raise ValueError(f"{name} is {value!r}")
+
+
+def _check_column(
+    name: str, value: Array, dims: tuple[str, ...], sizes: dict[str, int], lacks: bool
+) -> None:
+    shape = tuple(sizes.setdefault(*pair) for pair in zip(dims, value.shape, strict=False))
+    if value.shape != shape or len(dims) != value.ndim:
+        raise ValueError(f"{name} has the shape {value.shape}")
+    if value.dtype.kind != ("b" if name == "in_contact" else "f"):
+        raise ValueError(f"{name} has values of the kind {value.dtype}")
+    if value.dtype.kind == "f" and not lacks and not np.isfinite(value).all():
+        raise ValueError(f"{name} is not finite")
 
 
 def _is_required(field: Field[Any]) -> bool:

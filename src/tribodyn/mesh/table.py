@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from tribodyn.drawing import draw
 from tribodyn.errors import InputError
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.mesh.storage import FORMAT, FORMAT_WITHOUT_GEARS, stored_values, write_csv
-from tribodyn.record import Labels, Parts, record
+from tribodyn.record import Labels, Parts, drawn, record
 from tribodyn.types import Array
 
 
@@ -229,41 +228,14 @@ class MeshTable(MeshColumns):
         """
         return cls(**stored_values(path))
 
-    def plot_stiffness(self) -> Any:
-        """Draw pair and mesh stiffness over the mesh cycle.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "mesh_stiffness")
-
-    def plot_friction(self) -> Any:
-        """Draw the friction of a tooth pair over the path of contact.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "friction")
-
-    def plot_film(self) -> Any:
-        """Draw the oil film of a tooth pair and its ratio to the roughness over the path.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "film")
-
-    def plot_film_stiffness(self) -> Any:
-        """Draw the stiffness of the oil film against that of the teeth over the path.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "film_stiffness")
+    plot_stiffness = drawn("mesh_stiffness", "Draw pair and mesh stiffness over the mesh cycle.")
+    plot_friction = drawn("friction", "Draw the friction of a tooth pair over the path of contact.")
+    plot_film = drawn(
+        "film", "Draw the oil film of a tooth pair and its ratio to the roughness over the path."
+    )
+    plot_film_stiffness = drawn(
+        "film_stiffness", "Draw the stiffness of the oil film and of the teeth over the path."
+    )
 
     def _contacts(self) -> str:
         if self.gears is None:

@@ -27,6 +27,7 @@ from tribodyn.mesh.storage import (
     is_mesh_table,
 )
 from tribodyn.mesh.table import MeshTable
+from tribodyn.stored import file_kind, plain_number, read_bytes, read_dataset
 from tribodyn.types import Array
 
 #: Columns that only tell of the contact and may hold NaN.
@@ -34,7 +35,7 @@ _FILMS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_s
 _TOLD = (*_FILMS, "hertz_pressure", "path")
 _SPEEDS = ("sliding_speed", "entrainment_speed")
 _FRICTION = ("sliding_direction", "pinion_curvature_radius", "wheel_curvature_radius")
-_HEADER = re.compile(r"([a-z_]+?)(?:_(\d+))?\s*(?:\[([^\]]*)\])?")
+_HEADER = re.compile(r"([a-z_]+?)(?:_([1-9][0-9]{0,2}))?\s*(?:\[([^\]]*)\])?")
 _FACT = re.compile(r"#\s*(\w+)\s*[=:]\s*(.+)")
 #: Phases nearer than this are one; knots this even are left as they are [mesh cycles].
 _SAME, _EVEN = 1e-9, 1e-9
@@ -178,9 +179,10 @@ class TableFile:
 def read_table_file(path: str | os.PathLike[str]) -> TableFile:
     """Read and check the mesh table of another program, or one that this library wrote."""
     place = Path(path)
-    if not place.is_file():
-        what = "is no regular file" if place.exists() else "does not exist"
-        _refuse(path, f"the mesh table {what}", "It is a CSV or netCDF file", "Correct the path")
+    kind = file_kind(place)
+    if kind != "file":
+        what = "the mesh table " + ("is no regular file" if kind else "does not exist")
+        _refuse(path, what, "It is a CSV or netCDF file", "Correct the path")
     if place.suffix.lower() in (".nc", ".nc4", ".netcdf", ".h5"):
         return _own(place) if is_mesh_table(place) else _checked(path, *_netcdf(place), [])
     facts, columns, events = _csv(place)
@@ -322,6 +324,10 @@ def _between(phase: Array, values: Array, at: Array) -> Array:
     """Monotone curve through the rows of a piece: it swings beyond none of them."""
     from scipy.interpolate import PchipInterpolator
 
+    if not np.isfinite(values).all():  # What is not known everywhere stays so.
+        columns = values.reshape(phase.size, -1).T
+        known = np.stack([np.interp(at, phase, column) for column in columns], axis=1)
+        return known.reshape(at.size, *values.shape[1:])
     return np.asarray(PchipInterpolator(phase, values, axis=0)(np.clip(at, phase[0], phase[-1])))
 
 
@@ -331,15 +337,12 @@ def _in_si(path: Any, name: str, unit: str, values: Array) -> Array:
         unit = ""
     if unit == UNITS[name] or (name in DIRECTIONS and unit in ("", "m")):
         return values
-    shown = f"{name} [{unit or '1'}]"
-    if not unit or not UNITS[name]:
-        why = f"It is given in {UNITS[name] or '1'}"
-        _refuse(path, f"the unit of {shown} does not fit", why, "Correct the unit", name)
     try:
         return np.asarray(values * units.convert(1.0, unit, UNITS[name]))
-    except Exception:
-        why = f"It is given in {UNITS[name]}, or in a unit of the same kind"
-        _refuse(path, f"the unit of {shown} does not fit", why, "Correct the unit", name)
+    except units.UnitProblemError:
+        what = f"the unit of {name} [{unit or '1'}] does not fit"
+        why = f"It is given in {UNITS[name] or '1'}, or in a unit of the same kind"
+        _refuse(path, what, why, "Correct the unit", name)
 
 
 def _fact(path: Any, name: str, value: Any) -> float:
@@ -355,50 +358,51 @@ def _fact(path: Any, name: str, value: Any) -> float:
 def _csv(place: Path) -> tuple[dict[str, float], dict[str, Array], list[float]]:
     """Read facts, columns and events of a CSV file."""
     try:
-        lines = place.read_text(encoding="utf-8-sig").splitlines()
+        lines = read_bytes(place, "table").decode("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        _refuse(place, "the mesh table cannot be read", str(error), "Save it as text in UTF-8")
+        reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
+        _refuse(place, "the mesh table cannot be read", reason, "Give a text file in UTF-8")
     stated = [match.groups() for line in lines if (match := _FACT.match(line.strip()))]
     body = [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
     if len(body) < 3:
         why = "It has a line of names and at least two rows"
         _refuse(place, "the mesh table is empty", why, "Write phase and stiffness, for example")
     sign = next((sign for sign in (";", "\t") if sign in body[0]), ",")
-    names, *rows = csv.reader(body, delimiter=sign)
+    try:
+        names, *rows = csv.reader(body, delimiter=sign)
+    except csv.Error as error:
+        _refuse(place, "the mesh table cannot be read", str(error), "Correct the row")
+    if not any(_column_name(header)[0] in UNITS for header in names):
+        why = f"None of its columns is known. Known are {', '.join(UNITS)}"
+        _refuse(place, "this is no mesh table", why, "Correct the first row")
     values = np.empty((len(rows), len(names)))
     for number, row in enumerate(rows):
         if len(row) != len(names):
             what = f"row {number + 1} has {len(row)} entries"
             _refuse(place, what, f"There are {len(names)} columns", "Complete the row")
         for column, entry in enumerate(row):
-            try:
-                values[number, column] = float(entry)
-            except ValueError:
-                what = f'"{entry}" in row {number + 1} is no number'
-                _refuse(place, what, "Numbers have a decimal point", "Correct it", names[column])
+            value = plain_number(entry)
+            if value is None:
+                what, why = f'"{entry}" in row {number + 1} is no number', "Numbers have a point"
+                _refuse(place, what, why, "Correct it", names[column])
+            values[number, column] = value
     facts = {n: _fact(place, n, told.strip()) for n, told in stated if n in FACTS}
     events = [_event(place, e) for n, told in stated if n == "events" for e in told.split(",")]
     return facts, _gathered(place, names, values), events
 
 
 def _event(place: Path, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
+    value = plain_number(text.strip())
+    if value is None or not 0.0 <= value <= 1.0:
         _refuse(place, f'events: "{text}"', "Events are phases", "Write 0.25, 0.6", "events")
+    return value
 
 
 def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
     """Columns by name: those of contacts, ramps and coordinates side by side."""
     found: dict[str, dict[tuple[int, int], Array]] = {}
     for column, header in enumerate(names):
-        match = _HEADER.fullmatch(header.strip())
-        name, number, unit = match.groups() if match else (header, None, None)
-        coordinate = 0
-        for of in DIRECTIONS[::-1]:
-            if name.startswith(f"{of}_") and name.removeprefix(f"{of}_") in COORDINATES:
-                coordinate = COORDINATES.index(name.removeprefix(f"{of}_"))
-                name = of
+        name, number, unit, coordinate = _column_name(header)
         if name not in UNITS:
             known = ", ".join(UNITS)
             _refuse(place, f'the column "{header}" is unknown', f"Known are {known}", "Rename it")
@@ -407,6 +411,16 @@ def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
             _refuse(place, f'the column "{header}" stands twice', "Each stands once", "Remove one")
         found[name][at] = _in_si(place, name, (unit or "").strip(), values[:, column])
     return {name: _stacked(place, name, parts) for name, parts in found.items()}
+
+
+def _column_name(header: str) -> tuple[str, str | None, str | None, int]:
+    """Name, contact, unit and coordinate of a column."""
+    match = _HEADER.fullmatch(header.strip()) if len(header) < 200 else None
+    name, number, unit = match.groups() if match else (header, None, None)
+    for of in DIRECTIONS[::-1]:
+        if name.startswith(f"{of}_") and name.removeprefix(f"{of}_") in COORDINATES:
+            return of, number, unit, COORDINATES.index(name.removeprefix(f"{of}_"))
+    return name, number, unit, 0
 
 
 def _stacked(place: Path, name: str, parts: dict[tuple[int, int], Array]) -> Array:
@@ -427,13 +441,7 @@ def _stacked(place: Path, name: str, parts: dict[tuple[int, int], Array]) -> Arr
 
 def _netcdf(place: Path) -> tuple[dict[str, float], dict[str, Array]]:
     """Read facts and columns of a netCDF file."""
-    import xarray
-
-    try:
-        with xarray.open_dataset(place, engine="h5netcdf") as opened:
-            data = opened.load()
-    except (OSError, ValueError) as error:
-        _refuse(place, "the mesh table cannot be read", str(error), "Give a netCDF 4 file")
+    data = read_dataset(place, str(place))
     columns = {}
     for name in (name for name in UNITS if name in data):
         values = np.asarray(data[name].values, dtype=float)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -22,6 +22,7 @@ from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.errors import ComputationError
 from tribodyn.interrupt import in_threads
+from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
 
@@ -70,8 +71,29 @@ class Motions:
         self.finished = np.zeros(count, dtype=bool)
         self.stop = threading.Event()
         self.progress = SILENT
+        self.members, self.names = Members(), list[str]()
         self._waiting: Iterator[int] = iter(())
         self._lock = threading.Lock()
+
+    def kept_by(self, members: Members, names: Sequence[str]) -> None:
+        """Take what an earlier process has finished, and keep every motion from now on."""
+        self.members, self.names = members, list(names)
+        for index, name in enumerate(names):
+            if (kept := members.get(name)) is not None:
+                self._restore(index, kept)
+
+    def _restore(self, index: int, kept: Any) -> None:
+        self.start[index], self.state[index], self.force[index] = kept[:3]
+        self.period[index], self.change[index], self.rate[index] = kept[3:6]
+        if len(self.recent):
+            self.recent[index] = kept[6]
+        self.finished[index] = True
+
+    def _kept(self, index: int) -> list[Any]:
+        """What is kept of a motion."""
+        recent = self.recent[index] if len(self.recent) else None
+        return [self.start[index], self.state[index], self.force[index], self.period[index],
+                self.change[index], self.rate[index], recent]  # fmt: skip
 
     def queue(self, indices: Any) -> None:
         """Say which motions are to be marched."""
@@ -94,6 +116,8 @@ class Motions:
         if len(self.recent):
             self.recent[index] = recent
         self.finished[index] = True
+        if self.names:
+            self.members.keep(self.names[index], self._kept(index))
         with self._lock:
             self.progress.advance()
         return -1

@@ -13,6 +13,7 @@ from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, require_positive
+from tribodyn.members import Members
 from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
 from tribodyn.nonlinear.survey import (
@@ -60,6 +61,7 @@ def bifurcation(
     exponents: int = 0,
     keep_partial: bool = False,
     progress: Progress = SILENT,
+    members: Members | None = None,
 ) -> Bifurcation:
     """Follow the motion of a system over a parameter.
 
@@ -98,6 +100,8 @@ def bifurcation(
         Return what is finished when interrupted (Ctrl-C): the rest is NaN, see ``finished``.
     progress : Progress
         Told about the motions.
+    members : tribodyn.members.Members, optional
+        Keeps every motion as it is finished, and has those that a killed process finished.
 
     Returns
     -------
@@ -137,7 +141,12 @@ def bifurcation(
     name = signal_name(values.systems[0], signal)
     survey = _read_survey(
         Survey(
-            transient, cycles, keep, signal if values.systems[0].contacts else name, keep_partial
+            transient,
+            cycles,
+            keep,
+            signal if values.systems[0].contacts else name,
+            keep_partial,
+            members=Members() if members is None else members,
         )
     )
     first = None if start is None else read_start(values.systems[0], start)
@@ -169,7 +178,7 @@ def bifurcation(
 
 def _begin(values: Points, row: Outcomes, keep: int) -> Outcomes:
     """The repetition with its starts: the motion itself, unless the step has made it."""
-    fine = Outcomes(values.count, keep, values.size)
+    fine = Outcomes(values.count, keep, values.size, f"{row.name} finer")
     sound = (values.step_number <= LIMIT) & np.all(np.isfinite(row.last), axis=1)
     fine.first[:] = np.where(sound[:, None], row.last, row.first)
     return fine
@@ -255,7 +264,7 @@ def _rows(
     """Motions of every branch."""
     if branches != ("independent",):
         return march_sweeps(values, first, survey, branches, progress)
-    row = Outcomes(values.count, survey.keep, values.size)
+    row = Outcomes(values.count, survey.keep, values.size, branches[0])
     if first is not None:
         row.first[:] = first
     march_points(values, survey, row, None, progress)

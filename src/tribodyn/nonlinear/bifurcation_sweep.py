@@ -9,6 +9,8 @@ anew.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
@@ -55,19 +57,47 @@ class Stretches(Motions):
             order = np.arange(count) + number * count
             order = order[::-1] if branch == "down" else order
             self.start[order[0]] = first
-            cut = [[int(i) for i in part] for part in np.array_split(order, pieces)]
-            for part in cut:
-                self.follower[part[:-1]] = part[1:]
-            self.stretches.append(cut)
+            self.stretches.append(
+                [[int(i) for i in part] for part in np.array_split(order, pieces)]
+            )
         self.begun = np.zeros(all_of_them.size, dtype=bool)
-        for part in (part for cut in self.stretches for part in cut):
-            self.begun[part[0]] = True
+        self.halved = self.begun.copy()  #: motions that began the second half of a stretch
         self.met = np.zeros(all_of_them.size, dtype=bool)
         self.joining = False
+
+    def _kept(self, index: int) -> list[Any]:
+        return [*super()._kept(index), bool(self.halved[index])]
+
+    def _restore(self, index: int, kept: Any) -> None:
+        super()._restore(index, kept)
+        self.halved[index] = kept[7]
+
+    def places(self) -> list[int]:
+        """Where every stretch begins, or goes on after the motions that were finished before."""
+        found = []
+        for number, cut in enumerate(self.stretches):
+            parts: list[list[int]] = []
+            for part in cut:
+                for place, index in enumerate(part):
+                    if place and not self.halved[index]:
+                        parts[-1].append(index)
+                    else:
+                        parts.append([index])
+            self.stretches[number] = parts
+            for part in parts:
+                self.follower[part[:-1]] = part[1:]
+                done = next((k for k, i in enumerate(part) if not self.finished[i]), len(part))
+                self.begun[part[: done + 1]] = True
+                if 0 < done < len(part):
+                    self.enter(part[done], part[done - 1])
+                found += part[done : done + 1]
+        return found
 
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
         """Keep a motion and go on with the next value of its stretch."""
         self.met[index] = self.joining and self._same(index, facts)
+        if self.joining:  # Only whole stretches can be joined: joints are sought anew.
+            self.names = []
         super().store(index, state, facts)
         if self.met[index]:
             return -1
@@ -103,7 +133,7 @@ class Stretches(Motions):
         at = len(part) - most // 2
         self.follower[part[at - 1]] = -1
         self.stretches[b][s : s + 1] = [part[:at], part[at:]]
-        self.begun[part[at]] = True
+        self.begun[part[at]] = self.halved[part[at]] = True
         return part[at]
 
     def enter(self, index: int, before: int) -> None:
@@ -131,14 +161,11 @@ class Stretches(Motions):
 
 def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> None:
     """March all stretches, then join them."""
+    progress.advance(int(sweeps.finished.sum()))
+    places = sweeps.places()
     joints = [(b, s) for b, cut in enumerate(sweeps.stretches) for s in range(1, len(cut))]
     try:
-        settle(
-            sweeps,
-            [cut[s][0] for cut in sweeps.stretches for s in range(len(cut))],
-            transient,
-            progress=progress,
-        )
+        settle(sweeps, places, transient, progress=progress)
         sweeps.joining = True
         joints = [(b, s) for b, cut in enumerate(sweeps.stretches) for s in range(1, len(cut))]
         while joints:
@@ -171,7 +198,7 @@ def march_sweeps(
     progress: Progress,
 ) -> list[Outcomes]:
     """March the values of the parameter each from the end of the last, on every branch."""
-    outcomes = [Outcomes(points.count, survey.keep, points.size) for _ in branches]
+    outcomes = [Outcomes(points.count, survey.keep, points.size, name) for name in branches]
     if len(points.groups) > 1:
 
         def sweep(task: tuple[str, Outcomes]) -> None:
@@ -185,6 +212,8 @@ def march_sweeps(
     rest = static_start(compiled)
     begin = rest if first is None else first
     sweeps = Stretches(compiled, points.mesh_frequency, begin, rest, branches)
+    names = [f"{branch} {number}" for branch in branches for number in range(count)]
+    sweeps.kept_by(survey.members, names)
     survey.uninterrupted(lambda: march_stretches(sweeps, survey.transient, progress))
     for number, outcome in enumerate(outcomes):
         numbers = np.arange(count)

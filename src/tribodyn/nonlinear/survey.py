@@ -23,6 +23,7 @@ from tribodyn.dynamics.orbits.periods import open_period
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import in_threads
+from tribodyn.members import Members
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record
@@ -111,6 +112,7 @@ class Survey:
     keep_partial: bool = False  #: whether an interruption leaves what is finished
     tolerance: float = 1e-7  #: certified distance to the motion that repeats, over its size
     width: int = 16  #: lanes of one block
+    members: Members = field(default_factory=Members, repr=False, compare=False)
     stop: threading.Event = field(default_factory=threading.Event, repr=False, compare=False)
 
     def uninterrupted(self, work: Callable[[], None]) -> None:
@@ -180,7 +182,8 @@ class Points:
 class Outcomes:
     """What came of all motions of a survey; filled while marching."""
 
-    def __init__(self, count: int, keep: int, size: int) -> None:
+    def __init__(self, count: int, keep: int, size: int, name: str = "") -> None:
+        self.name = name  #: of motions that are kept
         self.section = np.full((count, keep), np.nan)
         self.period = np.zeros(count, dtype=np.int64)
         self.rms, self.contact_loss_share = np.full(count, np.nan), np.full(count, np.nan)
@@ -222,8 +225,13 @@ def march_group(
         outcomes.first[unknown] = static_start(compiled)
     motions = points.motions(compiled, group, outcomes)
     indices = np.arange(group.size) if chosen is None else np.flatnonzero(chosen[group])
+    if outcomes.name:
+        motions.kept_by(survey.members, [f"{outcomes.name} {number}" for number in group])
     if indices.size:
-        survey.settle(motions, indices, progress)
+        left = indices[~motions.finished[indices]]
+        progress.advance(indices.size - left.size)
+        if left.size:
+            survey.settle(motions, left, progress)
         outcomes.fill(survey, motions, indices, group[indices])
 
 

@@ -66,10 +66,6 @@ class StiffnessModel(Model):
     meaning: str = ""
     papers: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Keep options and defaults apart."""
-        self.declare(self.options)
-
     def __call__(
         self,
         pair: SpurPair,

@@ -45,7 +45,7 @@ def _reynolds(n, dx, lam, u, squeeze, history, P, H, oil):
     cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))
     reynolds.mobility(n, H, lam, lneta, rho, eps)
     reynolds.residual(n, dx, u, squeeze, history, P, H, rho, eps, F, G)
-    reynolds.coefficients(n, dx, lam, u, squeeze, P, H, dlneta, rho, drho, eps, cH, cP)
+    reynolds.coefficients(n, dx, u, squeeze, P, H, dlneta, rho, drho, eps, cH, cP)
     return F, G, cH, cP
 
 

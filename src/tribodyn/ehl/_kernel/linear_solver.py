@@ -188,7 +188,7 @@ def coarse_tangent(
         p[i], h[i] = P[ratio * i], H[ratio * i]
     cH, cP = np.empty((m + 1, 4)), np.empty((m + 1, 4))
     fill_oil(m, lam, oil, p, h, f)
-    fill_tangent(m, grid.dx, lam, u, squeeze, p, h, f, cH, cP)
+    fill_tangent(m, grid.dx, u, squeeze, p, h, f, cH, cP)
     K = grid.influence
     size = last + 1 if imposed else last
     a, pivot = np.zeros((size, size)), np.empty(m + 2, np.int64)

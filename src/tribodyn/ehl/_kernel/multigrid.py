@@ -63,6 +63,7 @@ class MultigridLimits(NamedTuple):
     flux: float  #: greatest flux error at convergence
     load: float  #: greatest load error at convergence
     cycles: int  #: at most, on one grid
+    film: float  #: relative error of the central film with which a coarser grid does
 
 
 class Cycled(NamedTuple):
@@ -246,8 +247,7 @@ def _build(digest: str) -> Any:
     @nb.njit(cache=True, **JIT)
     def multigrid_solve(
         n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
-        film_tolerance: float, offset: float, free: int, P: Array, H: Array, shape: Array,
-        films: Array, record: Array,
+        offset: float, free: int, P: Array, H: Array, shape: Array, films: Array, record: Array,
     ) -> Cycled:  # fmt: skip
         """Solve a steady contact by full multigrid, from a pressure on the grid ``first``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -289,7 +289,7 @@ def _build(digest: str) -> Any:
                     status = nb.int64(NOT_FINITE)
                 elif still and change < limits.pressure and flux < limits.flux:
                     break
-                elif g > 0 and film_tolerance == 0.0:
+                elif g > 0 and limits.film == 0.0:
                     if cycles >= _PASSING_CYCLES or (
                         change < limits.pressure and flux < max(limits.flux, _PASSING_FLUX)
                     ):
@@ -304,7 +304,7 @@ def _build(digest: str) -> Any:
                     break
             films[used] = central(m, contact.start, level.grid.dx, level.H)
             error = abs(films[used] - films[used - 1]) / 3.0 if used > 0 else np.inf
-            if status != CONVERGED or g == 0 or error < film_tolerance * films[used]:
+            if status != CONVERGED or g == 0 or error < limits.film * films[used]:
                 break
             used += 1
             g -= 1

@@ -113,10 +113,8 @@ def fill_balance(level: Level, work: LevelWork) -> None:
 @nb.njit(**INNER)
 def fill_level_tangent(level: Level, work: LevelWork) -> None:
     """Tangent about pressure and film of a grid."""
-    fill_tangent(
-        level.grid.n, level.grid.dx, work.lam, 1.0, 0.0, level.P, level.H, work.fields,
-        work.by_film, work.by_pressure,
-    )  # fmt: skip
+    n, dx, H, fields = level.grid.n, level.grid.dx, level.H, work.fields
+    fill_tangent(n, dx, 1.0, 0.0, level.P, H, fields, work.by_film, work.by_pressure)
 
 
 @nb.njit(**INNER)

@@ -240,7 +240,7 @@ def newton_level(
         if steps == limits.steps:
             break
         used = steps + 1
-        fill_tangent(n, dx, equation.lam, equation.speed, equation.squeeze, P, H, f, cH, cP)
+        fill_tangent(n, dx, equation.speed, equation.squeeze, P, H, f, cH, cP)
         total = 0.5 * P[0]
         for i in range(1, k + 1):
             rhs[i - 1] = -G[i]

@@ -140,7 +140,7 @@ def _build_tangent(digest: str) -> Any:
         K, cH, cP = grid.influence, work.by_film, work.by_pressure
         rhs, x = np.zeros(n + 2), np.empty(n + 2)
         fill_oil(n, lam, oil, P, H, f)
-        fill_tangent(n, dx, lam, 1.0, 0.0, P, H, f, cH, cP)
+        fill_tangent(n, dx, 1.0, 0.0, P, H, f, cH, cP)
         if not prepare(grid, k, True, work):
             return 0.0, -1
         # The pressure of the first node is given: its column of the tangent goes to the right.

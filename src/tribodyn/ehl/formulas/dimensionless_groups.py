@@ -200,6 +200,13 @@ def elastic_piezoviscous(load: Array, material: Array) -> Array:
     return np.asarray(1.311 * load**-0.125 * material**0.75)
 
 
+def survey_film(load: Array, material: Array) -> Array:
+    """Film of the asymptote that the survey diagram of Moes (1965) puts a contact on."""
+    isoviscous = np.maximum(rigid_isoviscous(load), elastic_isoviscous(load))
+    thick = np.minimum(rigid_piezoviscous(material), elastic_piezoviscous(load, material))
+    return np.asarray(np.maximum(isoviscous, thick))
+
+
 def warn_outside_elastic_piezoviscous(groups: Groups, formula: str) -> None:
     """Warn once (``film-range``) where the survey diagram puts the contact clearly elsewhere."""
     load, material = groups.moes_load, groups.moes_material

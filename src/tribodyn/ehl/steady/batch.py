@@ -313,7 +313,7 @@ def solved_films(
         warn(
             "seed-film-stiffness",
             "the film stiffness is the sum as one source prints it: a length, which doubles when "
-            f"the {nodes} nodes are doubled. It is shown and not put in series with the teeth. "
+            f"the {nodes} nodes are doubled. It is shown, and is no spring. "
             'Take film.stiffness = "tangent", or "secant" for a sum that is sound',
             stacklevel=4,
         )

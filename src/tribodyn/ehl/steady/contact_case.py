@@ -185,10 +185,8 @@ def moes_case(
     index = _scalar("pressure_viscosity_index", pressure_viscosity_index, "")
     alpha = _scalar("pressure_viscosity_coefficient", pressure_viscosity_coefficient, "[1/Pa]")
     require_between("pressure_viscosity_index", index, 0.05, 2.0)
-    require_between(
-        "pressure_viscosity_coefficient", alpha, 1e-9, 1e-7, "1/Pa",
-        remedy="22 1/GPa are 2.2e-8 1/Pa",
-    )  # fmt: skip
+    remedy, name = "22 1/GPa are 2.2e-8 1/Pa", "pressure_viscosity_coefficient"
+    require_between(name, alpha, 1e-9, 1e-7, "1/Pa", remedy=remedy)
     _check_numbers(load, viscosity, "M, L")
     pressure = viscosity * math.sqrt(load / (2.0 * math.pi)) / alpha
     if viscosity_law == "isoviscous":

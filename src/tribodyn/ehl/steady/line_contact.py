@@ -133,10 +133,8 @@ def solve_line_contact(
     (1.024, 0.8043)
     """
     options = SolverOptions.among(locals())
-    case = si_case(
-        load_per_width, equivalent_radius, entrainment_speed, lubricant, effective_modulus,
-        viscosity_law, compressible,
-    )  # fmt: skip
+    numbers = load_per_width, equivalent_radius, entrainment_speed
+    case = si_case(*numbers, lubricant, effective_modulus, viscosity_law, compressible)
     solution = solve_case(case, options)
     if inlet == "zero":
         _warn_starved(solution)

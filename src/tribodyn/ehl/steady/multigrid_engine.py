@@ -111,11 +111,11 @@ def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
     first, offset, free, message = _start(problem, n >> (count - 1), P, H)
     if message:
         return Outcome(False, None, 0, (), message), _cycles(record[:0])
-    limits = MultigridLimits(problem.tolerance, problem.flux_tolerance, _LOAD, _CYCLES)
+    flux, film = problem.flux_tolerance, problem.film_tolerance
+    limits = MultigridLimits(problem.tolerance, flux, _LOAD, _CYCLES, film)
     ended = multigrid_solve(
-        n, count, first, steady_contact(problem), limits, problem.film_tolerance, offset, free, P,
-        H, shape, films, record,
-    )  # fmt: skip
+        n, count, first, steady_contact(problem), limits, offset, free, P, H, shape, films, record
+    )
     if ended.status != 0:
         reason = _REASONS[ended.status].format(
             cycles=ended.cycles, change=ended.change, flux=ended.flux_error
@@ -147,15 +147,12 @@ def _start(
             return m, offset, free, ""
     while True:
         last = m == n or problem.film_tolerance > 0.0
-        limits = Limits(
-            problem.tolerance if last else max(problem.tolerance, _PASSING),
-            problem.flux_tolerance if last else max(problem.flux_tolerance, _PASSING_FLUX),
-            STEPS, LINEAR, CAP,
-        )  # fmt: skip
-        solved, *_ = newton_solve(
-            m, m, warm, steady_contact(problem, n // m), limits, 0.0, offset, free, P, H,
-            np.zeros(20),
-        )  # fmt: skip
+        pressure, flux = problem.tolerance, problem.flux_tolerance
+        if not last:
+            pressure, flux = max(pressure, _PASSING), max(flux, _PASSING_FLUX)
+        limits = Limits(pressure, flux, STEPS, LINEAR, CAP)
+        contact, films = steady_contact(problem, n // m), np.zeros(20)
+        solved, *_ = newton_solve(m, m, warm, contact, limits, 0.0, offset, free, P, H, films)
         offset, free = solved.offset, solved.free
         if solved.status == 0:
             return m, offset, free, ""

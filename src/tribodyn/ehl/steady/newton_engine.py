@@ -54,10 +54,10 @@ def newton_engine(problem: ContactProblem) -> Outcome:
     tight = min(problem.tolerance, 0.1 * problem.flux_tolerance) < 1e-6
     linear = _LINEAR_TIGHT if tight else LINEAR
     limits = Limits(problem.tolerance, problem.flux_tolerance, STEPS, linear, CAP)
+    contact, film = steady_contact(problem), problem.film_tolerance
     solved, m, first, grids = newton_solve(
-        n, first, warm, steady_contact(problem), limits, problem.film_tolerance, offset, free, P,
-        H, films,
-    )  # fmt: skip
+        n, first, warm, contact, limits, film, offset, free, P, H, films
+    )
     message = ""
     if solved.status != 0:
         reason = _REASONS[solved.status].format(steps=solved.steps, flux=solved.flux_error)
@@ -77,10 +77,8 @@ def steady_contact(problem: ContactProblem, factor: int = 1) -> Any:
     from tribodyn.ehl._kernel.steady import SteadyContact
 
     start, end = problem.domain
-    return SteadyContact(
-        start, end, problem.lam, problem.oil, problem.film, problem.load, problem.tail,
-        mean_heights(problem, factor),
-    )  # fmt: skip
+    scales = problem.lam, problem.oil, problem.film, problem.load, problem.tail
+    return SteadyContact(start, end, *scales, mean_heights(problem, factor))
 
 
 def mean_heights(problem: ContactProblem, factor: int) -> Array:

@@ -35,22 +35,16 @@ class LineContactSolution(Record):
         Pressure above ambient.
     film : (nodes,) array [m]
         Gap between the bodies.
-    central_film : float [m]
-        Film at position zero.
-    minimum_film : float [m]
-        Least film between inlet and outlet.
-    hertz_pressure : float [Pa]
-        Maximum pressure of the dry contact.
-    half_width : float [m]
-        Half width b of the dry contact.
+    central_film, minimum_film : float [m]
+        Film at position zero, and least film between inlet and outlet.
+    hertz_pressure, half_width : float [Pa], [m]
+        Maximum pressure and half width b of the dry contact.
     outlet : float [m]
         Position where the oil film parts.
-    spike_pressure : float, optional [Pa]
-        Local maximum of the pressure nearest to the outlet; ``None`` where the pressure has a
-        single maximum below the Hertz pressure. Not converged on uniform grids: too low by
-        10 % and more.
-    spike_position : float, optional [m]
-        Where the spike lies.
+    spike_pressure, spike_position : float, optional [Pa], [m]
+        Local maximum of the pressure nearest to the outlet, and where it lies; ``None`` where the
+        pressure has a single maximum below the Hertz pressure. Not converged on uniform grids: too
+        low by 10 % and more.
     flux_error : float [-]
         Greatest relative deviation of the mass flux from its mean.
     load_error : float [-]
@@ -70,28 +64,21 @@ class LineContactSolution(Record):
         Engine that found the solution.
     regime : str
         One of the four regimes of Moes.
-    central_film_error : float, optional [m]
-        Estimate of the discretisation error of ``central_film``; ``None`` without a coarser grid.
-    central_film_extrapolated : float, optional [m]
-        Central film extrapolated to an infinitely fine grid; ``None`` without a coarser grid.
+    central_film_error, central_film_extrapolated : float, optional [m]
+        Estimate of the discretisation error of ``central_film``, and its extrapolation to an
+        infinitely fine grid; ``None`` without a coarser grid.
     attempts : tuple of str
         What was tried in vain before.
     moes_load, moes_viscosity : float [-]
         Numbers M and L of Moes.
-    load_per_width : float [N/m]
-        Load that was asked for.
-    equivalent_radius : float [m]
-        Reduced radius of curvature.
-    entrainment_speed : float [m/s]
-        HALF the sum of the surface speeds.
+    load_per_width, equivalent_radius, entrainment_speed : float [N/m], [m], [m/s]
+        What was asked for, as for :func:`tribodyn.ehl.solve_line_contact`.
     effective_modulus : float [Pa]
-        ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
+        As there.
     lubricant : Lubricant, optional
         The oil; ``None`` for a contact given by the numbers of Moes.
-    viscosity_law : str
-        ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
-    compressible : bool
-        Whether the density rises with pressure.
+    viscosity_law, compressible : str, bool
+        Law of the viscosity that was used, and whether the density rises with pressure.
     """
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {

@@ -112,7 +112,7 @@ def _linearize(grid: DiscreteContact, inlet: InletChange) -> _Linear:
     cH, cP = np.empty((2, n + 1, 4))
     oil_state(n, grid.P, grid.oil, lneta, dlneta, rho, drho)
     mobility(n, grid.H, grid.lam, lneta, rho, eps)
-    coefficients(n, dx, grid.lam, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
+    coefficients(n, dx, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
     node = np.arange(n + 1)
     # Film at every node by the pressures at 0..k and by the offset.
     pressed = influence(n, dx)[np.abs(node[:, None] - node[: k + 1])]

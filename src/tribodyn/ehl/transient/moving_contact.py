@@ -10,12 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.formulas.dimensionless_groups import (
-    elastic_isoviscous,
-    elastic_piezoviscous,
-    rigid_isoviscous,
-    rigid_piezoviscous,
-)
+from tribodyn.ehl.formulas.dimensionless_groups import Groups, survey_film
 from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
 from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
 from tribodyn.ehl.steady.line_contact import solve_line_contact
@@ -26,7 +21,7 @@ from tribodyn.types import Array
 #: A number, an array over time, or a function of time.
 Series = ArrayLike | Callable[[Array], ArrayLike]
 
-_RAMP = "Begin and end a tooth engagement at 1 to 2 % of the load instead of zero"
+_RAMP = "Begin and end at 1 to 2 % of the load instead of zero"
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +70,7 @@ def _time(time: ArrayLike) -> Array:
             + ("" if t.size < 2 else f", least step {np.min(np.diff(t)):.4g} s"),
             where="argument time",
             why="time must hold at least two finite instants that rise",
-            remedy="200 to 800 steps a mesh cycle, as numpy.linspace(0, duration, 401)",
+            remedy="200 to 800 steps over the time of contact, as numpy.linspace(0, duration, 401)",
         )
     return t
 
@@ -202,16 +197,14 @@ def flooded_domain(
 ) -> tuple[float, float]:
     """Grid that holds the wedge of every instant, in half widths of the reference."""
     moving = np.maximum(entrainment_speed, 1e-6 * scale.entrainment_speed)
-    numbers = 2.0 * lubricant.dynamic_viscosity * moving / (effective_modulus * radius)
-    M = load / (effective_modulus * radius * np.sqrt(numbers))
-    L = lubricant.pressure_viscosity_coefficient * effective_modulus * numbers**0.25
-    isoviscous = np.maximum(rigid_isoviscous(M), elastic_isoviscous(M))
-    thick = isoviscous
-    if lubricant.pressure_viscosity_coefficient > 0.0:
-        thick = np.maximum(
-            isoviscous, np.minimum(rigid_piezoviscous(L), elastic_piezoviscous(M, L))
-        )
-    film = thick * radius * np.sqrt(numbers)
+    stiffness = effective_modulus * radius
+    groups = Groups(
+        speed=lubricant.dynamic_viscosity * moving / stiffness,
+        material=np.asarray(lubricant.pressure_viscosity_coefficient * effective_modulus),
+        load=load / stiffness,
+        equivalent_radius=radius,
+    )
+    film = survey_film(groups.moes_load, groups.moes_material) * groups.moes_film_unit
     width = np.sqrt(8.0 * load * radius / (np.pi * effective_modulus))
     local = np.minimum(film * radius / width**2, 1.0)
     round_width = np.sqrt(2.0 * radius * film)

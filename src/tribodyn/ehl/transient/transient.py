@@ -38,10 +38,8 @@ class TransientLineContact(Record):
     ----------
     time : (m,) array [s]
         Instants.
-    central_film : (m,) array [m]
-        Film on the line of centres.
-    minimum_film : (m,) array [m]
-        Least film between the inlet and the outlet.
+    central_film, minimum_film : (m,) array [m]
+        Film on the line of centres, and least film between inlet and outlet.
     load_per_width : (m,) array [N/m]
         Integral of the pressure; the imposed load, or the answer to the imposed approach.
     approach : (m,) array [m]
@@ -51,30 +49,23 @@ class TransientLineContact(Record):
         Highest pressure.
     outlet : (m,) array [m]
         Last position with pressure.
-    equivalent_radius : (m,) array [m]
-        Reduced radius of curvature.
-    entrainment_speed : (m,) array [m/s]
-        HALF the sum of the surface speeds.
+    equivalent_radius, entrainment_speed : (m,) array [m], [m/s]
+        Reduced radius of curvature, and HALF the sum of the surface speeds.
     position : (n,) array [m]
         Nodes of the grid: distance from the line of centres in the direction of rolling.
     kept : (k,) array of int
         Instants whose pressure and film are kept.
-    pressure : (k, n) array [Pa]
-        Pressure at these instants.
-    film : (k, n) array [m]
-        Film at these instants.
-    iterations : (m,) array of int
-        Newton steps of each time step.
-    parts : (m,) array of int
-        Parts that each time step was divided into; one unless it failed as a whole.
+    pressure, film : (k, n) array [Pa], [m]
+        Pressure and film at these instants.
+    iterations, parts : (m,) array of int
+        Newton steps of each time step, and parts that it was divided into; one unless it failed as
+        a whole.
     balance_error : (m,) array [1]
         Sum of the mass balances over the mean flux.
     ruptured : (m,) array [m]
         Width of the cavities inside the film, before the outlet. A fast unloading tears it.
-    half_width : float [m]
-        Half width of the widest dry contact, the unit of the grid.
-    hertz_pressure : float [Pa]
-        Hertz pressure of that contact.
+    half_width, hertz_pressure : float [m], [Pa]
+        Half width of the widest dry contact, the unit of the grid, and its Hertz pressure.
     domain : (float, float) [b]
         First and last position, b being ``half_width``.
     reference_length : float [m]
@@ -158,8 +149,8 @@ def solve_transient_line_contact(
     """Film of a line contact whose load, radius and speed change over time.
 
     Reynolds' equation with its squeeze term, elastic deflection and the load at every instant, on
-    one fixed grid. Second order in time (backward differences) and in space; 200 to 800 steps a
-    mesh cycle.
+    one fixed grid. Second order in time (backward differences) and in space; 200 to 800 steps
+    over the time of contact.
 
     Parameters
     ----------
@@ -284,7 +275,7 @@ def _require_options(
     effective_modulus: float, start: str, nodes: int, inlet: str, tolerance: float, keep_every: int
 ) -> None:
     require_positive("effective_modulus", effective_modulus, "Pa")
-    require_between("nodes", nodes, 65, 16385, remedy="257 to 513 nodes suit a mesh cycle")
+    require_between("nodes", nodes, 65, 16385, remedy="257 to 513 nodes suit most contacts")
     require_between("tolerance", tolerance, 1e-13, 1e-3)
     require_between("keep_every", keep_every, 0, 1e9)
     require_one_of("start", start, ("steady", "unloaded"))

@@ -88,10 +88,9 @@ def places_of(
     solution = np.empty(zone.size, dtype=object)
     solution[:] = films.solutions
     nodes = node.astype(np.int64)
-    return Places(
-        pairs.age, zone, pairs.equivalent_radius, pairs.entrainment_speed, load, np.stack(values),
-        nodes, drop, yielding, solution,
-    )  # fmt: skip
+    radius, speed, found = pairs.equivalent_radius, pairs.entrainment_speed, np.stack(values)
+    where = pairs.age, zone, radius, speed, load
+    return Places(*where, found, nodes, drop, yielding, solution)
 
 
 def _peak(pressure: Array) -> tuple[int, float]:

@@ -9,6 +9,7 @@ formula follows every change of load, radius and speed.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -145,10 +146,8 @@ class PathFilm:
         )
         yielding = known.yielding if PRESSURE in checked else np.ones(again.size, dtype=bool)
         first.yielding[count:] = yielding
-        refinement = Refinement(
-            self.places, self.pairs, self.zone, loads, known, first,
-            lambda new: self._solve_more(new, loads),
-        )  # fmt: skip
+        more = partial(self._solve_more, loads)
+        refinement = Refinement(self.places, self.pairs, self.zone, loads, known, first, more)
         if checked:
             refinement.refine(checked)
         if PRESSURE in checked:
@@ -163,7 +162,7 @@ class PathFilm:
             scored=loads.scored,
         )
 
-    def _solve_more(self, contacts: Index, loads: PathLoads) -> Places:
+    def _solve_more(self, loads: PathLoads, contacts: Index) -> Places:
         pairs, zone = self.pairs.some(contacts), self.zone[contacts]
         with quiet("seed-film-stiffness"):
             # The positions have said it already.

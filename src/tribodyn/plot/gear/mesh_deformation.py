@@ -16,7 +16,6 @@ from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
 from tribodyn.types import ComplexArray
 
 if TYPE_CHECKING:
-    from tribodyn.gear import SpurPair
     from tribodyn.stiffness import LoadedContact
 
 #: Mesh phases of the slider.
@@ -52,13 +51,13 @@ def _trace(points: ComplexArray, name: str, **more: Any) -> dict[str, Any]:
     }
 
 
-def _gears(pair: SpurPair, mesh: BentMesh, factor: float) -> list[Trace]:
+def _gears(center_distance: float, mesh: BentMesh, factor: float) -> list[Trace]:
     """Thin grey outlines without load, coloured and filled ones with it."""
     traces = []
     for name, color in _GEARS:
         outline = mesh.outline[name]
         bent = outline + factor * mesh.displacement[name]
-        center = 0.0 if name == "pinion" else pair.center_distance
+        center = 0.0 if name == "pinion" else center_distance
         # Close the section towards the axis, far below the teeth.
         closed = np.concatenate(
             (
@@ -80,8 +79,9 @@ def _gears(pair: SpurPair, mesh: BentMesh, factor: float) -> list[Trace]:
     return traces
 
 
-def _arrows(pair: SpurPair, mesh: BentMesh, factor: float, greatest: float) -> list[Trace]:
+def _arrows(contact: LoadedContact, mesh: BentMesh, factor: float, greatest: float) -> list[Trace]:
     """Force on the driven gear at each contact, along the line of action, and its value."""
+    pair = contact.gear_pair
     along = np.diff(on_line_of_action(pair, np.array([0.0, 1.0])))[:, 0]
     sense = 1.0 if pair.driver == "pinion" else -1.0
     direction = sense * complex(*along)
@@ -108,8 +108,9 @@ def _player(words: Sequence[str]) -> dict[str, Any]:
     return player(words, _FRAME, redraw=True, slider=slider, buttons=-0.12)
 
 
-def _window(pair: SpurPair) -> dict[str, Any]:
+def _window(contact: LoadedContact) -> dict[str, Any]:
     """Axes of equal scale around the middle of the path of contact."""
+    pair = contact.gear_pair
     ends = on_line_of_action(pair, np.array(pair.path_limits))
     # As high as the path of contact and the arrows need.
     wanted = 0.5 * abs(ends[1, 1] - ends[1, 0]) + _ARROW * pair.pinion.normal_module
@@ -182,7 +183,8 @@ def mesh_deformation(
     factor = _exaggeration(meshes, pair.pinion.normal_module)
     greatest = max(load.force for mesh in meshes for load in mesh.loads)
     frames = [
-        [*_gears(pair, mesh, factor), *_arrows(pair, mesh, factor, greatest)] for mesh in meshes
+        [*_gears(pair.center_distance, mesh, factor), *_arrows(contact, mesh, factor, greatest)]
+        for mesh in meshes
     ]
     errors = np.reshape(contact.transmission_error, (-1, contact.phase.size))[torque]
     words = [
@@ -195,7 +197,7 @@ def mesh_deformation(
         f"Under {load} the teeth bend as drawn, {factor:g} times enlarged",
         frames[0],
         {
-            **_window(pair),
+            **_window(contact),
             **(_player(words) if several else {}),
             "height": _HEIGHT,
             "hovermode": False,

@@ -105,9 +105,10 @@ def contact_problem(
     """
     model = MODELS[provider]
     extended = extended_contact and model.influence is not None
-    places = contact_places(pair, phase, extended=extended)
+    contact = path_of_contact(pair)
+    places = contact_places(contact, phase, extended=extended)
     compliance = compliance_of(pair, material, places, total_force, model, options)
-    widths = slice_widths(pair, slices)
+    widths = slice_widths(contact, slices)
     return ContactProblem(places, compliance, slice_gaps(places, widths.size), widths)
 
 
@@ -166,7 +167,7 @@ def mesh_problem(
     else:
         where = on_path_places(contact, phase, path, touching)
     compliance = compliance_of(pair, material, where, total_force, model, options)
-    widths = slice_widths(pair, None)
+    widths = slice_widths(contact, None)
     gaps = slice_gaps(where, widths.size, teeth_alike=True)
     return ContactProblem(where, compliance, gaps, widths)
 
@@ -276,7 +277,7 @@ def loaded_contact(
     """
     torques = np.asarray(torque, dtype=float)
     require_positive("torque", torques, "N*m")
-    phase = phases_of(phases, mesh_period(pair))
+    phase = phases_of(phases, mesh_period(path_of_contact(pair)))
     settings = contact_settings(
         provider, phase, extended_contact, reference, material, slices, options
     )

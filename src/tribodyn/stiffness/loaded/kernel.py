@@ -178,7 +178,6 @@ def _whole(
 
 @nb.njit(**_INNER)
 def _approach(
-    n: int,
     C: Array,
     A: Array,
     B: float,
@@ -193,7 +192,7 @@ def _approach(
     sums: Array,
 ) -> tuple[float, int]:
     """Approach at which all slices together carry ``total``, by safeguarded Newton steps."""
-    low, high = gaps.min(), np.inf
+    n, low, high = A.size, gaps.min(), np.inf
     delta = start
     if not delta > low:
         delta = low + total / width.sum() * (C[0, 0] + A[0])
@@ -248,7 +247,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
             start = -np.inf
             for t in range(totals.size):
                 start, status = _approach(
-                    n, C[p], A[p], B, gaps[p], width, totals[t], start, f, a, b, place, sums
+                    C[p], A[p], B, gaps[p], width, totals[t], start, f, a, b, place, sums
                 )
                 if status != 0:
                     return status

@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.gear import Material, SpurGear
 from tribodyn.model import flag
 from tribodyn.stiffness.loaded.contact import mesh_problem
-from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, reference_option
+from tribodyn.stiffness.model import MODELS, MeshState, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array
 
@@ -62,41 +62,34 @@ def _pair_stiffness(name: str) -> Callable[..., Array]:
     return function
 
 
-_DECLARED = {
-    "reference": reference_option("bore"),
-    "extended_contact": flag(
-        True, meaning="let tip corners of bent teeth touch before A and after E"
-    ),
+_TOGETHER = {
+    "options": {
+        "reference": reference_option("bore"),
+        "extended_contact": flag(
+            True, meaning="let tip corners of bent teeth touch before A and after E"
+        ),
+    },
+    "coupled": True,
+    "papers": ("weber-banaschek", "conry-seireg"),
 }
-for _model in (
-    StiffnessModel(
-        "fe2d",
-        _pair_stiffness("fe2d"),
-        _DECLARED,
-        _fe2d,
-        coupled=True,
-        meaning="stiffness from plane finite elements of both whole gears, all tooth pairs solved "
-        "together",
-        papers=("weber-banaschek", "conry-seireg"),
-    ),
-    StiffnessModel(
-        "analytic",
-        _pair_stiffness("analytic"),
-        _DECLARED,
-        _analytic,
-        coupled=True,
-        meaning="stiffness from strain energy of the teeth and Fourier series of the gear bodies, "
-        "all pairs together",
-        papers=("weber-banaschek", "conry-seireg"),
-    ),
-    StiffnessModel(
-        "weber",
-        _pair_stiffness("weber"),
-        {"reference": reference_option("rim")},
-        _weber,
-        meaning="stiffness after Weber: bending of the tooth, half plane under it, local "
-        "compression",
-        papers=("weber-banaschek",),
-    ),
-):
-    MODELS.register(_model.name)(_model)
+MODELS.define(
+    "fe2d",
+    influence=_fe2d,
+    meaning="stiffness from plane finite elements of both whole gears, all tooth pairs solved "
+    "together",
+    **_TOGETHER,
+)(_pair_stiffness("fe2d"))
+MODELS.define(
+    "analytic",
+    influence=_analytic,
+    meaning="stiffness from strain energy of the teeth and Fourier series of the gear bodies, "
+    "all pairs together",
+    **_TOGETHER,
+)(_pair_stiffness("analytic"))
+MODELS.define(
+    "weber",
+    options={"reference": reference_option("rim")},
+    influence=_weber,
+    meaning="stiffness after Weber: bending of the tooth, half plane under it, local compression",
+    papers=("weber-banaschek",),
+)(_pair_stiffness("weber"))

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.contact import PathOfContact, extended_contact, path_of_contact
+from tribodyn.contact import PathOfContact, extended_contact
 from tribodyn.errors import Argument, ComputationError, InputError
-from tribodyn.gear import Material, SpurPair, flank_gap, pitch_gap, run_out_gap
+from tribodyn.gear import Material, flank_gap, pitch_gap, run_out_gap
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.weber import local_terms
 from tribodyn.types import Array, Index, Mask
@@ -49,10 +49,9 @@ class ContactPlaces:
 
 
 def contact_places(
-    pair: SpurPair, phase: ArrayLike, *, extended: bool = True, side: str = "right"
+    contact: PathOfContact, phase: ArrayLike, *, extended: bool = True, side: str = "right"
 ) -> ContactPlaces:
     """Find where tooth pairs may touch."""
-    contact = path_of_contact(pair)
     path, touching = contact.pair_paths(phase, side)
     turned = np.atleast_1d(np.asarray(phase, dtype=float))
     if not extended:
@@ -112,14 +111,16 @@ _SLICES = 21
 _MOST_SLICES = 1001
 
 
-def mesh_period(pair: SpurPair) -> int:
+def mesh_period(contact: PathOfContact) -> int:
     """Mesh cycles after which everything repeats: turns of the gears whose teeth differ."""
-    differ = [gear for gear in (pair.pinion, pair.wheel) if gear.modification.teeth_differ]
+    gears = (contact.pair.pinion, contact.pair.wheel)
+    differ = [gear for gear in gears if gear.modification.teeth_differ]
     return math.lcm(*(gear.teeth for gear in differ))
 
 
-def slice_widths(pair: SpurPair, slices: int | None) -> Array:
+def slice_widths(contact: PathOfContact, slices: int | None) -> Array:
     """Widths of the slices of the common face."""
+    pair = contact.pair
     count = (_SLICES if pair.has_lead_modification else 1) if slices is None else slices
     if not 1 <= count <= _MOST_SLICES:
         raise InputError(

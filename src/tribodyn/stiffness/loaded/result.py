@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import SpurGear, SpurPair, half_tooth
-from tribodyn.record import Labels, Record, fact, quantity, record
+from tribodyn.record import Labels, Record, drawn, fact, quantity, record
 from tribodyn.stiffness.teeth.load_point import load_point
 from tribodyn.types import Array, Index
 
@@ -213,24 +212,14 @@ class LoadedContact(Record):
         radii = self.pinion_curvature_radius, self.wheel_curvature_radius
         return root_loads(self.gear_pair, radii, self.normal_force)
 
-    def plot_load_sharing(self) -> Any:
-        """Draw the force on a tooth pair over its way through the mesh.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
-        return draw(self, "loaded_sharing")
-
-    def plot_deformation(self) -> Any:
-        """Draw the teeth in mesh with their deformation enlarged and the forces on them.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-            With a slider over the mesh phase; bodies are those of ``fe2d`` whatever the provider.
-        """
-        return draw(self, "mesh_deformation")
+    plot_load_sharing = drawn(
+        "loaded_sharing", "Draw the force on a tooth pair over its way through the mesh."
+    )
+    plot_deformation = drawn(
+        "mesh_deformation",
+        "Draw the teeth in mesh with the forces on them and their deformation enlarged, that of "
+        "``fe2d`` whatever the provider, with a slider over the mesh phase.",
+    )
 
     def __repr__(self) -> str:
         """One line with the figures that matter."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, require_positive
 from tribodyn.model import number, numbers
-from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
+from tribodyn.stiffness.model import MODELS, MeshState, share_equally
 from tribodyn.types import Array
 
 #: Points at which the sign of the series is checked, per cycle of its highest harmonic.
@@ -82,18 +82,6 @@ def _series(phase: Array, mean_stiffness: float, coefficients: Array) -> Array:
     return total
 
 
-def _model(*mesh: Any, **options: Any) -> Array:
-    state = MeshState(*mesh)
-    if options["mean_stiffness"] is None:
-        raise InputError(
-            "mean_stiffness not given",
-            where=ModelOption("stiffness", "fourier"),
-            why="The series needs its mean",
-            remedy='Give for example mean_stiffness = "2.5e8 N/m"',
-        )
-    return share_equally(fourier_mesh_stiffness(state.phase, **options), state.in_contact)
-
-
 _GUARD = "guards against a wrong unit"
 _OPTIONS = {
     "mean_stiffness": number(
@@ -117,12 +105,20 @@ _OPTIONS = {
     ),
 }
 
-MODELS.register("fourier")(
-    StiffnessModel(
-        "fourier",
-        _model,
-        _OPTIONS,
-        meaning="mesh stiffness given as a mean and harmonics, shared equally by the pairs",
-        papers=("kahraman-singh",),
-    )
+
+@MODELS.define(
+    "fourier",
+    options=_OPTIONS,
+    meaning="mesh stiffness given as a mean and harmonics, shared equally by the pairs",
+    papers=("kahraman-singh",),
 )
+def _model(*mesh: Any, **options: Any) -> Array:
+    state = MeshState(*mesh)
+    if options["mean_stiffness"] is None:
+        raise InputError(
+            "mean_stiffness not given",
+            where=ModelOption("stiffness", "fourier"),
+            why="The series needs its mean",
+            remedy='Give for example mean_stiffness = "2.5e8 N/m"',
+        )
+    return share_equally(fourier_mesh_stiffness(state.phase, **options), state.in_contact)

@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import require_positive, warn
 from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel
+from tribodyn.stiffness.model import MODELS, MeshState
 from tribodyn.types import Array
 
 #: N/(mm um) in SI.
@@ -198,18 +198,12 @@ def iso6336_pair_stiffness(
     return pair.common_face_width * single * (1.0 - 3.0 * (1.0 - mean) * from_middle**2)
 
 
+@MODELS.define(
+    "iso6336",
+    meaning="stiffness from the fitted formulas of ISO 6336-1, over the path as a parabola",
+    papers=("iso-6336-1",),
+)
 def _model(*mesh: Any, **options: Any) -> Array:
     state = MeshState(*mesh)
     stiffness = iso6336_pair_stiffness(state.pair, state.material, state.path, state.normal_force)
     return np.where(state.in_contact, stiffness, 0.0)
-
-
-MODELS.register("iso6336")(
-    StiffnessModel(
-        "iso6336",
-        _model,
-        {},
-        meaning="stiffness from the fitted formulas of ISO 6336-1, over the path as a parabola",
-        papers=("iso-6336-1",),
-    )
-)

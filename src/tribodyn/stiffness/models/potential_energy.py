@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
-from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, reference_option
+from tribodyn.stiffness.model import MODELS, MeshState, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
 from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
@@ -223,19 +223,14 @@ def potential_energy_stiffness(
     )
 
 
+@MODELS.define(
+    "potential-energy",
+    options={"reference": reference_option("bore")},
+    influence=potential_energy_influence,
+    meaning="stiffness from the strain energy of each tooth, its foundation and the Hertzian "
+    "contact",
+    papers=("sainsot", "weber-banaschek"),
+)
 def _model(*mesh: Any, **options: Any) -> Array:
     pair, material, path, in_contact, _, force = MeshState(*mesh)
     return potential_energy_stiffness(pair, material, path, in_contact, force, **options)
-
-
-MODELS.register("potential-energy")(
-    StiffnessModel(
-        "potential-energy",
-        _model,
-        {"reference": reference_option("bore")},
-        influence=potential_energy_influence,
-        meaning="stiffness from the strain energy of each tooth, its foundation and the Hertzian "
-        "contact",
-        papers=("sainsot", "weber-banaschek"),
-    )
-)

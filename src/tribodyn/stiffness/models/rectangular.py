@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, require_positive
 from tribodyn.model import number
-from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
+from tribodyn.stiffness.model import MODELS, MeshState, share_equally
 from tribodyn.types import Array, Mask
 
 
@@ -102,10 +102,6 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
         )
 
 
-def _model(*mesh: Any, **options: Any) -> Array:
-    return rectangular_stiffness(MeshState(*mesh).in_contact, **options)
-
-
 _RANGE = (None, 1e3, 1e13, "guards against a wrong unit")
 _OPTIONS = {
     "pair_stiffness": number(*_RANGE, of="pair_stiffness"),
@@ -117,12 +113,12 @@ _OPTIONS = {
     ),
 }
 
-MODELS.register("rectangular")(
-    StiffnessModel(
-        "rectangular",
-        _model,
-        _OPTIONS,
-        meaning="stiffness that is constant while the number of pairs in contact is",
-        papers=("kahraman-singh",),
-    )
+
+@MODELS.define(
+    "rectangular",
+    options=_OPTIONS,
+    meaning="stiffness that is constant while the number of pairs in contact is",
+    papers=("kahraman-singh",),
 )
+def _model(*mesh: Any, **options: Any) -> Array:
+    return rectangular_stiffness(MeshState(*mesh).in_contact, **options)

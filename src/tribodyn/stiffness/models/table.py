@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.model import numbers
-from tribodyn.stiffness.model import MODELS, MeshState, StiffnessModel, share_equally
+from tribodyn.stiffness.model import MODELS, MeshState, share_equally
 from tribodyn.types import Array
 
 #: Roll angles of a table may fall short of A..E by this much [rad] (rounding in print).
@@ -29,10 +29,8 @@ def tabulated_stiffness(
 
     Parameters
     ----------
-    abscissa : array (m,) [unit]
-        Strictly increasing, at least two values.
-    stiffness : array (m,) [N/m]
-        Positive values.
+    abscissa, stiffness : array (m,) [unit], [N/m]
+        Strictly increasing, at least two values; positive values.
     at : array [unit]
         Where to evaluate; clipped to the table within rounding.
     name, unit : str
@@ -117,26 +115,6 @@ def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
     return []
 
 
-def _model(*mesh: Any, **options: Any) -> Array:
-    state, options = MeshState(*mesh), _named_values(options)
-    given = {name for name, value in options.items() if value is not None}
-    if given == {"phase", "mesh_stiffness"}:
-        whole_cycle = np.concatenate(([0.0, 1.0], state.phase))
-        total = tabulated_stiffness(
-            options["phase"], options["mesh_stiffness"], whole_cycle, name="phase"
-        )
-        return share_equally(total[2:], state.in_contact)
-    if given == {"roll_angle", "pair_stiffness"}:
-        return _over_roll_angle(state, options)
-    raise InputError(
-        f"given: {', '.join(sorted(given)) or 'nothing'}",
-        where=ModelOption("stiffness", "table"),
-        why="A table is phase with mesh_stiffness, or roll_angle (of the driving gear) with "
-        "pair_stiffness",
-        remedy="Give one of the two forms, complete and alone",
-    )
-
-
 def _named_values(options: dict[str, Any]) -> dict[str, Any]:
     """Call bare values by what their abscissa makes of them."""
     options = dict(options)
@@ -175,11 +153,27 @@ _OPTIONS = {
     "pair_stiffness": numbers(*_STIFFNESS, of="pair_stiffness", in_case=False),
 }
 
-MODELS.register("table")(
-    StiffnessModel(
-        "table",
-        _model,
-        _OPTIONS,
-        meaning="stiffness given as a table over the mesh phase or the roll angle",
-    )
+
+@MODELS.define(
+    "table",
+    options=_OPTIONS,
+    meaning="stiffness given as a table over the mesh phase or the roll angle",
 )
+def _model(*mesh: Any, **options: Any) -> Array:
+    state, options = MeshState(*mesh), _named_values(options)
+    given = {name for name, value in options.items() if value is not None}
+    if given == {"phase", "mesh_stiffness"}:
+        whole_cycle = np.concatenate(([0.0, 1.0], state.phase))
+        total = tabulated_stiffness(
+            options["phase"], options["mesh_stiffness"], whole_cycle, name="phase"
+        )
+        return share_equally(total[2:], state.in_contact)
+    if given == {"roll_angle", "pair_stiffness"}:
+        return _over_roll_angle(state, options)
+    raise InputError(
+        f"given: {', '.join(sorted(given)) or 'nothing'}",
+        where=ModelOption("stiffness", "table"),
+        why="A table is phase with mesh_stiffness, or roll_angle (of the driving gear) with "
+        "pair_stiffness",
+        remedy="Give one of the two forms, complete and alone",
+    )

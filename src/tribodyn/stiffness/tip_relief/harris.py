@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import one_or_more
+from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material, SpurPair
 from tribodyn.model import NO_OPTIONS
@@ -162,7 +163,8 @@ def transmission_error_over_torque(
     (2, 256)
     """
     torques = np.unique(one_or_more(torque=torque)[0])
-    work = mesh_period(pair) * slice_widths(pair, slices).size
+    path = path_of_contact(pair)
+    work = mesh_period(path) * slice_widths(path, slices).size
     if phases is None:
         phases = _PHASES if work == 1 else _PHASES // 4
     orders = _orders(harmonics, phases)

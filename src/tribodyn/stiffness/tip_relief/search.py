@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import one_or_more
+from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, Problem, quiet
 from tribodyn.gear import (
     FlankModification,
@@ -439,8 +440,9 @@ def optimize_tip_relief(
 
 def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:
     """Mesh phases, as many as asked for or as there is time for."""
-    cycles = mesh_period(pair)
-    work = cycles * slice_widths(pair, slices).size
+    contact = path_of_contact(pair)
+    cycles = mesh_period(contact)
+    work = cycles * slice_widths(contact, slices).size
     return phases_of(max(_LEAST, _MOST // work) if phases is None else phases, cycles)
 
 

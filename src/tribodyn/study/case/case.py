@@ -13,7 +13,7 @@ from tribodyn.model import text
 from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears, is_needed
-from tribodyn.study.case.given import Given, Source, plain
+from tribodyn.study.case.given import Given, Source, plain, unsound
 from tribodyn.study.case.provenance import effective_values, provenance
 from tribodyn.study.case.section import Section, Table, choices, flat, signature_of, table
 from tribodyn.study.case.sections import (
@@ -90,6 +90,9 @@ class Case(Section, whole=True):
     solver: Solver = table(Solver, "how the motion is computed", "empty")
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
+        found = list(unsound(data))
+        if found:
+            raise InputError((source or Source()).place(found))
         given = Given(data if source is not None else plain(data))
         source = source or Source()
         stated, found = read_stated(given)

@@ -2,13 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import islice
 from typing import Any
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.values import Plain, written
+
+#: Keys of a case, tables inside each other, and characters of one text, at most.
+_MOST, _DEEPEST, _LONGEST = 3000, 12, 10_000
+_CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff]")
+#: Items of lists that are looked into.
+_NESTED = (Mapping, list, tuple, str, Plain)
+
+
+def unsound(data: Mapping[str, Any]) -> Iterator[tuple[str, Problem]]:
+    """Faults of values that no case can hold, whatever the key: looked for before they are read."""
+    pending: list[tuple[str, Any, int]] = [("", data, 0)]
+    for number, (key, value, depth) in enumerate(pending):
+        value = value.value if isinstance(value, Plain) else value
+        if number == _MOST:
+            remedy = "This is no case file"
+            yield "", Problem(f"there are more than {_MOST} keys", "", "", remedy)
+            return
+        told = _unsound(key, value, depth)
+        if told is not None:
+            yield ".".join(key.split(".")[:_DEEPEST]), told
+        elif isinstance(value, Mapping):
+            prefix = f"{key}." if key else ""
+            pending += [(f"{prefix}{name}", item, depth + 1) for name, item in value.items()]
+        elif isinstance(value, list | tuple):
+            inner = (item for item in value if isinstance(item, _NESTED))
+            pending += [(key, item, depth + 1) for item in islice(inner, _MOST)]
+
+
+def _unsound(key: str, value: Any, depth: int) -> Problem | None:
+    name = key.rpartition(".")[2]
+    strange = _CONTROL.search(f"{name}{value}" if isinstance(value, str) else name)
+    if strange is not None:
+        what = f"{name} holds the character U+{ord(strange[0]):04X}"
+        return Problem(what, "", "It is not for reading", "Remove it")
+    if depth > _DEEPEST:
+        return Problem("tables or lists are nested too deeply", "", "", "This is no case file")
+    if isinstance(value, str) and len(value) > _LONGEST:
+        why = f"A text has at most {_LONGEST} characters"
+        return Problem(f"{name} has {len(value)} characters", "", why, "Shorten it")
+    if isinstance(value, int) and abs(value) > 10**18:
+        return Problem(f"{name} = {written(value)}", "", "It is too large", "Correct the value")
+    return None
 
 
 def plain(data: Any) -> Any:

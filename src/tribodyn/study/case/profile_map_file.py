@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from tribodyn import units
 from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.stored import plain_number, read_bytes
 
 if TYPE_CHECKING:
     from tribodyn.gear import ProfileMap
@@ -30,8 +31,8 @@ def read_profile_map(path: str, interpolation: str) -> ProfileMap:
     """Read a map; the same file is read again when it has changed."""
     try:
         state = Path(path).stat()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
+    except (OSError, ValueError) as error:
+        reason = (getattr(error, "strerror", None) or str(error)).lower()
         what, remedy = f"the file cannot be read: {reason}", f"Correct the path: {path}"
         raise _fault(path, 0, what, "", remedy) from None
     return _read(path, interpolation, (state.st_mtime_ns, state.st_size))
@@ -40,9 +41,10 @@ def read_profile_map(path: str, interpolation: str) -> ProfileMap:
 @lru_cache(maxsize=16)
 def _read(path: str, interpolation: str, _: tuple[int, int]) -> ProfileMap:
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = read_bytes(path, "table").decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        what, remedy = f"the file cannot be read: {error}", "Save it as text in UTF-8"
+        reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
+        what, remedy = f"the file cannot be read: {reason}", "Give a text file in UTF-8"
         raise _fault(path, 0, what, _FORM, remedy) from None
     rows = list(_rows(text))
     if len(rows) < 3:
@@ -77,7 +79,9 @@ def _head(
     rest = sorted(name for name in names if name not in _PLACES)
     sound = rest in (["deviation"], ["deviation", "face_position"])
     if not sound or len(names) != len(rest) + 1:
-        what = f"the columns are {', '.join(first[1])}"
+        # What is no profile map at all is not for everyone to read.
+        known = set(names) & {*_PLACES, "deviation"}
+        what = f"the columns are {', '.join(first[1])}" if known else "this is no profile map"
         raise _fault(path, first[0], what, _FORM, "Correct the first row")
     if len(second[1]) != len(names) or any(_number(cell) is not None for cell in second[1]):
         what = "the row of units is missing"
@@ -93,10 +97,7 @@ def _head(
 
 
 def _number(cell: str) -> float | None:
-    try:
-        return float(cell)
-    except ValueError:
-        return None
+    return plain_number(cell)
 
 
 def _values(path: str, line: int, cells: list[str], factors: list[float]) -> list[float]:

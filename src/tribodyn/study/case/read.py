@@ -10,6 +10,7 @@ from typing import Any
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
+from tribodyn.stored import read_bytes
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.given import Source
 
@@ -22,6 +23,7 @@ class _Scanner:
     def __init__(self, text: str) -> None:
         self.text = text
         self.at = 0
+        self.line, self.counted = 1, 0  #: line of the place up to which lines are counted
         self.lines: dict[str, list[int]] = {}
 
     def run(self) -> dict[str, list[int]]:
@@ -53,8 +55,9 @@ class _Scanner:
         self.at = len(self.text) if end < 0 else end
 
     def _note(self, key: tuple[str, ...], position: int) -> None:
-        line = self.text.count("\n", 0, position) + 1
-        self.lines.setdefault(".".join(key), []).append(line)
+        self.line += self.text.count("\n", self.counted, position)
+        self.counted = max(position, self.counted)
+        self.lines.setdefault(".".join(key), []).append(self.line)
 
     def _key(self, end: str) -> tuple[str, ...]:
         """Read a dotted key, quoted parts included, up to and with the character ``end``."""
@@ -136,14 +139,17 @@ _UNQUOTED = re.compile(r"=\s*([^\"'#\[{]*'?[^\"'#\[{]*?)\s*(?:#.*)?$")
 _CURLY = re.compile("[“”„‟″‘‚«»]")
 _BARE_WORD = re.compile(r"=\s*([A-Za-z][\w-]*)\s*(?:#.*)?$")
 
-#: Characters of a faulty line that a message repeats.
-_SHOWN = 80
+#: A key of so many parts that reading it takes for ever.
+_CHAIN = re.compile(r"""(?<![\w"'-])(?:[\w"'-]+[ \t]*\.[ \t]*){50}""")
+
+#: Characters of a faulty line that a message repeats, and of those that are looked at.
+_SHOWN, _READ = 80, 200
 
 
 def read_text(path: Path) -> str:
     """Read a text file in UTF-8."""
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return read_bytes(path, "case").decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = error.object.count(b"\n", 0, error.start) + 1
         what = f"byte 0x{error.object[error.start]:02x} is not UTF-8"
@@ -212,13 +218,32 @@ def _at(data: Any, *keys: str) -> Any:
 
 
 def _parse(text: str, name: str) -> dict[str, Any]:
+    if chain := _CHAIN.search(text):
+        line = text.count("\n", 0, chain.start()) + 1
+        what = "a key has more parts than any key of a case"
+        raise InputError(what, f"{name}:{line}", f"It begins with {chain[0][:40]}", "Correct it")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(_syntax(text, name, str(error))) from None
     except RecursionError:
-        deep = Problem("brackets are nested too deeply", name, "", "This is no case file")
-        raise InputError(deep) from None
+        what, where = "brackets are nested too deeply", f"{name}:{_deepest(text)}"
+        raise InputError(what, where, "", "This is no case file") from None
+    except (ValueError, OverflowError):
+        long = re.search(r"[0-9_]{4300}", text)
+        where = f"{name}:{text.count(chr(10), 0, long.start()) + 1}" if long else name
+        raise InputError("a number is too long to be read", where, "", "Correct it") from None
+
+
+def _deepest(text: str) -> int:
+    """Line with the most open brackets."""
+    open_, most, line, at = 0, 0, 1, 1
+    for mark in re.findall(r"[\[\]{}\n]", text):
+        line += mark == "\n"
+        open_ += {"[": 1, "{": 1, "]": -1, "}": -1}.get(mark, 0)
+        if open_ > most:
+            most, at = open_, line
+    return at
 
 
 def _syntax(text: str, name: str, message: str) -> Problem:
@@ -231,7 +256,7 @@ def _syntax(text: str, name: str, message: str) -> Problem:
         key, first, second = repeated
         why = f"It stands in lines {first} and {second}"
         return Problem(f"{key} is given twice", f"{name}:{second}: {key}", why, "Remove one")
-    content = lines[number - 1].strip() if 0 < number <= len(lines) else ""
+    content = lines[number - 1].strip()[:_READ] if 0 < number <= len(lines) else ""
     shown = content if len(content) <= _SHOWN else f"{content[:_SHOWN]}..."
     what = f'this is not TOML: "{shown}"' if content else "this is not TOML"
     return Problem(what, f"{name}:{number}", reason, _remedy(content))

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 #: Equal to this, two ways of writing one value are the same.
 _ROUNDING = 1e-9
 _PARTS = {"value", "reason"}
+#: Faults that are told.
+_TOLD = 50
 
 Found = list[tuple[str, Problem]]
 
@@ -100,6 +102,8 @@ def _read(given: Given, table: str, typed: Mapping[str, Any]) -> tuple[dict[str,
     values: dict[str, Any] = {}
     found: Found = []
     for key, value in typed.items():
+        if len(found) > _TOLD:
+            break
         spec, place = _spec_at(key, given), f"{table}.{key}"
         if spec is None:
             why, remedy = f"[{table}] remembers values of this case", "Remove the line"

@@ -9,11 +9,12 @@ import operator
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
 from tribodyn import units
-from tribodyn.errors import Problem
+from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.study.case.section import Choice, Section, Table, section_at
 from tribodyn.study.case.words import word
@@ -21,6 +22,11 @@ from tribodyn.study.case.words import word
 Chosen = Mapping[str, Choice]
 Found = list[tuple[str, Problem]]
 Kind = TypeVar("Kind", bound=Section)
+
+#: Items of a list that a message repeats, and unknown keys that are told.
+_SHOWN, _TOLD = 20, 50
+#: Beyond this a whole number is a slip of the keyboard.
+_LARGEST = 10**18
 
 
 @dataclass(frozen=True)
@@ -38,17 +44,23 @@ class FaultError(Exception):
         self.problem = Problem(what, "", why, remedy)
 
 
-def written(value: Any) -> str:
-    """Show a value as TOML would have it."""
+def written(value: Any, depth: int = 5) -> str:
+    """Show a value as TOML would have it, as much of it as a message takes."""
     if isinstance(value, Plain):
         value = value.value
     if isinstance(value, str):
-        return f'"{value}"'
+        return f'"{shortened(value, 195)}"'
+    if isinstance(value, Mapping | list | tuple) and not depth:
+        return "..."
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{key} = {written(item)}' for key, item in value.items())}}}"
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(written(item) for item in value)}]"
-    return str(value).lower() if isinstance(value, bool) else str(value)
+        items = islice(value.items(), _SHOWN)
+        text = ", ".join(f"{key} = {written(item, depth - 1)}" for key, item in items)
+        return shortened(f"{{{text}}}")
+    if isinstance(value, list | tuple):
+        return shortened(f"[{', '.join(written(item, depth - 1) for item in value[:_SHOWN])}]")
+    if isinstance(value, int) and abs(value) > _LARGEST:
+        return f"a whole number of about {int(0.30103 * value.bit_length()) + 1} digits"
+    return str(value).lower() if isinstance(value, bool) else shortened(str(value))
 
 
 def _grouped(spec: Option, name: str, value: str) -> FaultError | None:
@@ -101,16 +113,19 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
     if spec.unit and as_text:
         remedy = f'Write for example {name} = "{value} {spec.display_unit}"'
         raise FaultError(shown, f"{name} has a dimension and needs a unit, as text", remedy)
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise FaultError(shown, f"{name} is too large", "Correct the value") from None
 
 
 def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
     """Refuse what is not finite or outside the limits of the field."""
     outside = not (spec.low <= value <= spec.high) or (spec.positive and value == spec.low)
-    if math.isfinite(value) and not outside:
+    if not outside and math.isfinite(value):
         return
     shown = f"{name} = {written(typed)}"
-    if spec.unit and math.isfinite(value):
+    if spec.unit and math.isfinite(value) and abs(value) < 1e300:
         display = spec.show(value)
         shown += "" if display == str(typed) else f" ({display})"
     why = f"Allowed: {spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
@@ -250,7 +265,7 @@ def _foreign(
     cls: type[Section], data: Mapping[str, Any], options: Mapping[str, Any], path: str
 ) -> Iterator[tuple[str, Problem]]:
     """Faults of keys that are not those of this table under its model."""
-    strange = [name for name in data if name not in options]
+    strange = list(islice((name for name in data if name not in options), _TOLD))
     known = cls.known().keys if strange else {}
     for name in strange:
         key, option = (f"{path}.{name}" if path else name), known.get(name)

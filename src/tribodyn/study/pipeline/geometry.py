@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tribodyn.gear import SpurGear, SpurPair
+    from tribodyn.gear import SpurGear
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
 
@@ -43,7 +43,7 @@ def geometry(case: Case) -> dict[str, float]:
     for key in bodies["pinion"]:
         for name, body in bodies.items():
             values[f"{key}_{name}"] = body[key]
-    values |= _modifications(pair)
+    values |= _modifications(case)
     return {name: float(value) for name, value in values.items()}
 
 
@@ -75,10 +75,11 @@ def _body(case: Case, gear: SpurGear) -> dict[str, float]:
     }
 
 
-def _modifications(pair: SpurPair) -> dict[str, float]:
+def _modifications(case: Case) -> dict[str, float]:
     """Amounts that are not zero, with the lengths of the reliefs in force."""
     from tribodyn.gear import default_relief_length, hunting_period
 
+    pair = case.gear_pair
     values = {"misalignment": pair.misalignment} if pair.misalignment else {}
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         given = gear.modification

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -158,6 +159,8 @@ def _facts(result: Result) -> dict[str, Any]:
     if result.friction is not None:
         names = ("load", "limit", "fit_error")
         facts |= {f"friction_{name}": getattr(result.friction, name) for name in names}
+    facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
+    facts["figures"] = len(result.summary())
     return {**facts, **result.summary()}
 
 

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem, collected
+from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.axes import Axis, ends_of
-from tribodyn.study.studies.grid import varied
+from tribodyn.study.studies.grid import identity, varied
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ def bifurcation(
     steps: int | None = None,
     by: str = "",
     progress: Progress = SILENT,
+    members: Members | None = None,
     **options: Any,
 ) -> Bifurcation:
     """Follow the motion of a case over one of its values.
@@ -60,6 +62,8 @@ def bifurcation(
         What asks, for messages; then a bare number for a dimension is refused as in a file.
     progress : Progress
         Told how far the study has come; silent by default.
+    members : tribodyn.members.Members, optional
+        Keeps what is finished as it comes, and has what a killed process finished.
     **options : object
         ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict``, ``exponents`` and
         ``keep_partial`` of :func:`tribodyn.analysis.bifurcation`.
@@ -85,7 +89,9 @@ def bifurcation(
     from tribodyn.analysis import bifurcation as compute
 
     values = _values(case, over, between, points, by)
-    systems, frequency, counts = _systems(case, over, values, steps, progress)
+    told = identity("bifurcation", case, [over, values.tolist()], steps=steps, **options)
+    members = (Members() if members is None else members).begin(told)
+    systems, frequency, counts = _systems(case, over, values, steps, progress, members)
     return compute(
         systems,
         frequency,
@@ -94,18 +100,19 @@ def bifurcation(
         parameter_unit=_unit(case, over),
         steps=counts,
         progress=progress,
+        members=members,
         **options,
     )
 
 
 def _systems(
-    case: Case, over: str, values: Any, steps: int | None, progress: Progress
+    case: Case, over: str, values: Any, steps: int | None, progress: Progress, kept: Members
 ) -> tuple[list[System], list[float], list[int]]:
     """Structure, mesh frequency and steps of every value; one structure where none differs."""
     same = over == "operation.speed" and _contact_without_speed(case)
     changes = [{over: float(value)} for value in values]
     with placed(case), collected():
-        members = varied(case, changes[:1] if same else changes, progress)
+        members = varied(case, changes[:1] if same else changes, progress, kept)
         systems = [member.system for member in members]
         frequency = [member.mesh.mesh_frequency for member in members]
         cases = [member.case for member in members]

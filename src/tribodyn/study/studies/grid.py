@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from tribodyn.errors import InputError
 from tribodyn.interrupt import in_threads
+from tribodyn.members import Members
+from tribodyn.mesh import MeshTable
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.assembly import whole_system
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
 Value = TypeVar("Value")
@@ -34,13 +39,45 @@ def built(case: Case) -> Member:
     return Member(case, mesh, whole_system(case, mesh))
 
 
-def varied(case: Case, changes: Sequence[Mapping[str, Any]], progress: Progress) -> list[Member]:
+def varied(
+    case: Case,
+    changes: Sequence[Mapping[str, Any]],
+    progress: Progress,
+    kept: Members | None = None,
+) -> list[Member]:
     """Tooth contact and structure of a case under each of some changes, in their order."""
     members: dict[int, Member] = {}
+    folder = kept.folder if kept is not None else None
+
+    def member(index: int) -> Member:
+        changed = case.replace(changes[index])
+        path = folder / f"mesh-{index}.nc" if folder else None
+        if path is not None and path.exists():
+            with suppress(InputError):
+                mesh = MeshTable.load(path)
+                return Member(changed, mesh, whole_system(changed, mesh))
+            path.unlink()
+        found = built(changed)
+        if path is not None:
+            found.mesh.save(path)
+        return found
+
     progress.start("Tooth contacts", len(changes))
-    over_cases(lambda change: built(case.replace(change)), changes, members, progress)
+    over_cases(member, range(len(changes)), members, progress)
     progress.finish()
     return [members[index] for index in range(len(changes))]
+
+
+def identity(study: str, case: Case, over: Any, **options: Any) -> dict[str, Any]:
+    """What tells a study from others: only members of the same one are taken for finished."""
+    import tribodyn
+
+    text = json.dumps(over, default=str)
+    return {
+        "study": study, "version": tribodyn.__version__, "options": options,
+        "case": hashlib.sha256(case.to_toml().encode()).hexdigest(),
+        "over": hashlib.sha256(text.encode()).hexdigest(),
+    }  # fmt: skip
 
 
 def over_cases(
@@ -51,6 +88,7 @@ def over_cases(
 ) -> None:
     """Compute members in threads; ``done`` holds what is finished by index, interrupted or not."""
     lock = threading.Lock()
+    progress.advance(len(done))
 
     def one(index: int) -> None:
         value = compute(members[index])
@@ -58,7 +96,8 @@ def over_cases(
             done[index] = value
             progress.advance()
 
-    in_threads(one, range(len(members)), os.cpu_count() or 1)
+    left = [index for index in range(len(members)) if index not in done]
+    in_threads(one, left, os.cpu_count() or 1)
 
 
 def finished(done: Mapping[int, Value]) -> list[Value]:

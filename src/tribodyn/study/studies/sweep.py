@@ -8,10 +8,11 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, InputError, Problem, quiet
+from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.run import computed
 from tribodyn.study.studies.axes import Axis, read_axes
-from tribodyn.study.studies.grid import finished, over_cases
+from tribodyn.study.studies.grid import finished, identity, over_cases
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def sweep(
     partial: bool = False,
     by: str = "",
     progress: Progress = SILENT,
+    members: Members | None = None,
 ) -> Sweep:
     """Compute a case at many values of one or several of its keys.
 
@@ -47,6 +49,8 @@ def sweep(
         What asks, for messages; then a bare number for a dimension is refused as in a file.
     progress : Progress
         Told how many values are done; silent by default.
+    members : tribodyn.members.Members, optional
+        Keeps every value as it is finished, and has those that a killed process finished.
 
     Returns
     -------
@@ -74,10 +78,24 @@ def sweep(
     """
     axes = read_axes(case, _asked(over, between, points), by=by)
     grid = list(product(*(axis.values for axis in axes)))
-    done: dict[int, SweepPoint] = {}
+    kept = (Members() if members is None else members).begin(
+        identity("sweep", case, [(axis.key, axis.values) for axis in axes])
+    )
+    done = {
+        index: SweepPoint(grid[index], figures, failed, tuple(warned))
+        for index in range(len(grid) if len(kept) else 0)
+        for figures, failed, warned in [kept.get(str(index)) or (None, "", ())]
+        if figures is not None
+    }
+
+    def point(index: int) -> SweepPoint:
+        found = _point(case, axes, grid[index])
+        kept.keep(str(index), (dict(found.figures), found.failed, found.warned))
+        return found
+
     progress.start("Values", len(grid))
     try:
-        over_cases(lambda values: _point(case, axes, values), grid, done, progress)
+        over_cases(point, range(len(grid)), done, progress)
     except KeyboardInterrupt:
         if not (partial and 0 in done):
             raise

@@ -1,0 +1,113 @@
+"""Kills at any moment: a whole result or none, and the same command goes on to the end."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from threading import Timer
+
+import pytest
+
+from tribodyn.stored import read_dataset
+
+Draws = Callable[[int], Iterator[random.Random]]
+
+_QUICK = [
+    "--set",
+    "stiffness.model=iso6336",
+    "--set",
+    "friction.law=none",
+    "--set",
+    "film.model=none",
+]
+#: Command and the file of its result that comes last.
+_COMMANDS = {
+    "run": (["run", "fzg-roughness", *_QUICK], "report.html"),
+    "sweep": (
+        ["sweep", "fzg-roughness", "operation.speed=900..1500 rpm:5", *_QUICK], "report.html",
+    ),
+    "bifurcation": (
+        ["bifurcation", "fzg-roughness", "operation.torque=60..120 N*m:4", "--sweep", "both",
+         "--transient", "60", *_QUICK],
+        "bifurcation.html",
+    ),
+}  # fmt: skip
+#: Makes a command quick to start, and kills it at a call of the system that changes a place.
+_AIMED = """
+import os, signal, sys
+import tribodyn.files, tribodyn.members
+at = int(sys.argv.pop(1))
+def counted(function):
+    def call(*arguments, **options):
+        global at
+        at -= 1
+        if at == 0:
+            os.kill(os.getpid(), signal.SIGKILL)
+        found = function(*arguments, **options)
+        at -= 1
+        if at == 0:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return found
+    return call
+for name in ("mkdir", "rename", "replace", "rmdir", "unlink", "fsync", "utime"):
+    setattr(os, name, counted(getattr(os, name)))
+tribodyn.files._exchange = counted(tribodyn.files._exchange)
+from tribodyn.cli import main
+main()
+"""
+
+
+def _start(folder: Path, words: list[str], at: int = 0) -> subprocess.Popen[str]:
+    code = [sys.executable, "-c", _AIMED, str(at)]
+    return subprocess.Popen([*code, *words], cwd=folder, text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE)  # fmt: skip
+
+
+def _is_whole(place: Path, last: str) -> bool:
+    """Whether a result is there; half of one is a failure."""
+    if not place.exists():
+        return False
+    names = set(os.listdir(place))
+    assert {"case.toml", last} <= names
+    assert (place / last).read_text(encoding="utf-8").rstrip().endswith("</html>")
+    if "summary.json" in names:
+        json.loads((place / "summary.json").read_text())
+    for name in names:
+        if name.endswith(".nc"):
+            read_dataset(place / name)
+    return True
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", sorted(_COMMANDS))
+def test_kills_at_any_moment(draws: Draws, tmp_path: Path, command: str) -> None:
+    words, last = _COMMANDS[command]
+    place = tmp_path / "r"
+    words = [*words, "--out", "r"]
+    for number, rng in enumerate(draws(3)):
+        there = _is_whole(place, last)
+        assert there == (number > 0)
+        forced = [*words, "--force"] if there else words
+        for _ in range(rng.choice((1, 2))):
+            if rng.random() < 0.7:
+                process = _start(tmp_path, forced, rng.randrange(1, 90))
+                process.communicate(timeout=120)
+            else:
+                process = _start(tmp_path, forced)
+                Timer(rng.uniform(0.5, 6.0), process.kill).start()
+                process.communicate(timeout=120)
+            assert process.returncode in (0, -signal.SIGKILL)
+            assert _is_whole(place, last) or not there
+            there = _is_whole(place, last)
+            forced = [*words, "--force"] if there else words
+        process = _start(tmp_path, forced)
+        told = process.communicate(timeout=120)
+        assert process.returncode == 0, told
+        assert _is_whole(place, last)
+        assert os.listdir(tmp_path) == ["r"]

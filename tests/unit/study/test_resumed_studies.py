@@ -1,0 +1,92 @@
+"""A study that was killed goes on: what is finished is read, and the whole is what it would be."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tribodyn.study.studies.grid as grid
+import tribodyn.study.studies.sweep as sweeps
+from tribodyn import load_case
+from tribodyn.members import Members
+from tribodyn.nonlinear.attractors import Motions
+from tribodyn.study.studies.bifurcation import bifurcation
+from tribodyn.study.studies.sweep import sweep
+
+_SPEEDS = {"operation.speed": ("900 rpm", "1500 rpm", 4)}
+
+
+class _KilledError(Exception):
+    """What ends the process in these tests."""
+
+
+def _plain_case() -> Any:
+    return load_case("fzg-roughness").replace(
+        {"stiffness.model": "iso6336", "friction.law": "none", "film.model": "none"}
+    )
+
+
+def _dying(monkeypatch: pytest.MonkeyPatch, after: int) -> list[str]:
+    """Let the process die when it keeps one member more."""
+    keep, kept = Members.keep, []
+
+    def then_die(self: Members, name: str, value: Any) -> None:
+        if len(kept) == after:
+            raise _KilledError
+        kept.append(name)
+        keep(self, name, value)
+
+    monkeypatch.setattr(Members, "keep", then_die)
+    return kept
+
+
+def test_a_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = _plain_case()
+    whole = sweep(case, _SPEEDS)
+    with monkeypatch.context() as patch, Members(tmp_path / "s") as members:
+        patch.setattr(grid.os, "cpu_count", lambda: 1)
+        _dying(patch, 2)
+        with pytest.raises(_KilledError):
+            sweep(case, _SPEEDS, members=members)
+    computed, asked = sweeps.computed, []
+    monkeypatch.setattr(sweeps, "computed", lambda case: asked.append(case) or computed(case))
+    with Members(tmp_path / "s") as members:
+        found = sweep(case, _SPEEDS, members=members)
+    assert len(asked) == 2
+    assert found == whole
+    assert found.to_csv() == whole.to_csv()
+
+
+@pytest.mark.parametrize("direction", ["both", "independent"])
+@pytest.mark.parametrize("over", ["operation.speed", "operation.torque"])
+@pytest.mark.slow
+def test_a_bifurcation_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, over: str, direction: str
+) -> None:
+    case = _plain_case()
+    options: dict[str, Any] = {"sweep": direction, "transient": 40, "cycles": 8, "keep": 4}
+    between = {"operation.speed": ("900 rpm", "3000 rpm"), "operation.torque": (60.0, 120.0)}[over]
+    whole = bifurcation(case, over, between, 6, **options)
+    for after in (0, 3, 5):
+        with monkeypatch.context() as patch, Members(tmp_path / "b") as members:
+            _dying(patch, after)
+            with pytest.raises(_KilledError):
+                bifurcation(case, over, between, 6, members=members, **options)
+    taken, queue = [], Motions.queue
+    monkeypatch.setattr(
+        Motions,
+        "queue",
+        lambda self, indices: (taken.append(len(list(indices))), queue(self, indices)),
+    )
+    with Members(tmp_path / "b") as members:
+        found = bifurcation(case, over, between, 6, members=members, **options)
+        assert len(members) >= 8
+    motions = 24 if direction == "both" else 12
+    if (over, direction) != ("operation.speed", "both"):  # There stretches are joined, too.
+        assert sum(taken) == motions - len(members)
+    assert found.verdicts() == whole.verdicts()
+    assert found.period.tolist() == whole.period.tolist()
+    assert found.rms == pytest.approx(whole.rms, rel=1e-5)
+    assert found.refined_rms == pytest.approx(whole.refined_rms, rel=1e-5)
