@@ -6,8 +6,8 @@
 24
 
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
-``lubricant``, ``ehl``, ``friction``, ``stiffness``, ``mesh``, ``dynamics``, ``analysis``,
-``study``, ``cases``, ``plot`` and ``report``.
+``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
+``analysis``, ``study``, ``cases``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -83,8 +83,9 @@ _HOMES = {
 }
 
 _ROOMS = (
-    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "lubricant",
-    "mesh", "nomenclature", "plot", "progress", "report", "stiffness", "study", "units",
+    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
+    "lubricant", "mesh", "nomenclature", "plot", "progress", "report", "stiffness", "study",
+    "units",
 )  # fmt: skip
 
 

@@ -176,7 +176,7 @@ misalignment | F_beta | m | um | difference of the gap between the flanks over t
 single_pitch_deviation | f_p | m | um | deviation of the pitch from the flank before, one for each tooth | "5 um"
 cumulative_pitch_deviation | F_p | m | um | by how much each flank stands further on than evenly spaced ones | "5 um"
 run_out | F_r | m | um | run-out of the toothing, twice its eccentricity | "20 um"
-run_out_phase | phi_r | rad | deg | rotation from where tooth 0 comes into contact to where the flanks stand most proud | "0 deg"
+run_out_phase | phi_r | rad | deg | rotation from where tooth 0 comes into contact to where the flanks stand out most | "0 deg"
 wear_depth | h_w | m | um | depth of wear, alone or at equal distances from the lowest point to the tip | "5 um"
 roll_length | L_y | m | mm | radius of curvature of the involute as a place on the profile
 face_position | y | m | mm | place along the face from its middle

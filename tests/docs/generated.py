@@ -1,10 +1,15 @@
 """Text of the documentation that the program itself writes: ``python tests/docs/generated.py``."""
 
+import importlib
+import inspect
 import re
 
 from pages import ROOT
 
+from tribodyn.study import Case
 from tribodyn.study.case.reference import reference_tables, start_toml
+from tribodyn.study.case.section import Table
+from tribodyn.study.pipeline.citations import bibliography
 
 
 def _tables(text: str) -> str:
@@ -18,13 +23,70 @@ def _start(text: str) -> str:
     return re.sub(r"<!-- start -->\n.*?<!-- end -->", lambda _: block, text, flags=re.DOTALL)
 
 
-#: What writes a part of each page anew.
-GENERATED = {"README.md": (_start,), "docs/case-file.md": (_start, _tables)}
+def _bibliography(text: str) -> str:
+    """The page of sources."""
+    users: dict[str, list[str]] = {}
+    for table, field in Case.fields.items():
+        models = field.kind.known().models if isinstance(field, Table) else {}
+        for model in models.values():
+            for key in model.papers:
+                users.setdefault(key, []).append(f"`{table}` `{model.name}`")
+    lines = [f"- {told}{_used(users.get(key, []))}" for key, told in bibliography().items()]
+    return _HEAD + "\n".join(lines) + "\n"
+
+
+def _used(by: list[str]) -> str:
+    return f" ({', '.join(by)})" if by else ""
+
+
+_HEAD = """# Sources
+
+Every source that the program and these pages cite, ordered by author and title; behind it the
+models that rest on it. `tribodyn cite DIRECTORY` prints those behind one result, `--bibtex` for
+BibTeX. Docstrings name the source of every formula with its equation or table.
+
+"""
+
+#: Packages whose names are for users.
+_PACKAGES = (
+    "tribodyn", "tribodyn.gear", "tribodyn.contact", "tribodyn.lubricant", "tribodyn.ehl",
+    "tribodyn.friction", "tribodyn.stiffness", "tribodyn.mesh", "tribodyn.dynamics",
+    "tribodyn.analysis", "tribodyn.plot", "tribodyn.report",
+    "tribodyn.errors", "tribodyn.units", "tribodyn.progress",
+)  # fmt: skip
+
+
+def _reference(text: str) -> str:
+    """The page of public names."""
+    lines = [
+        "# Public names",
+        "",
+        "What can be imported, by package, with the first line of its contract. `help(name)` shows",
+        "the whole: parameters with units and shapes, results, errors, range, source, example.",
+    ]
+    for name in _PACKAGES:
+        package = importlib.import_module(name)
+        lines += ["", f"## `{name}`", "", "| name | what it is |", "|---|---|"]
+        for public in sorted(package.__all__, key=str.casefold):
+            meant = inspect.getdoc(getattr(package, public)) or ""
+            first = meant.partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+            plain = re.sub(r":[a-z]+:`~?([^`]*)`", r"`\1`", first)
+            lines.append(f"| `{public}` | {plain} |")
+    return "\n".join(lines) + "\n"
+
+
+#: What writes a page, or a part of it, anew.
+GENERATED = {
+    "README.md": (_start,),
+    "docs/case-file.md": (_start, _tables),
+    "docs/bibliography.md": (_bibliography,),
+    "docs/reference.md": (_reference,),
+}
 
 
 def written(page: str) -> str:
     """Text of a page with what the program writes in it."""
-    text = (ROOT / page).read_text("utf-8")
+    text = (ROOT / page).read_text("utf-8") if (ROOT / page).exists() else ""
     for write in GENERATED[page]:
         text = write(text)
     return text

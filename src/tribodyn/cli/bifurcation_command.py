@@ -33,7 +33,7 @@ def bifurcation(
     force: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
-    """Follow the motion of a case over one value; tell periods, jumps and what the step made.
+    """Follow the motion of a case over one value; tell periods, jumps and step errors.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Friction of the mixed-film tooth contact: the formula of Benedict and Kelly."""
+"""Friction of the mixed-film tooth contact: the formula of Benedict and Kelley."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def benedict_kelly(
     rolling_speed: str = "mean",
     minimum_sliding_speed: float = MINIMUM_SLIDING_SPEED,
 ) -> Array:
-    """Friction coefficient by Benedict and Kelly.
+    """Friction coefficient by Benedict and Kelley.
 
     ``mu = 0.0127 * 1.13/(1.13 - S) * log10(29700 W' / (eta v_s v_e^2))`` with W' in N/mm, eta in
     cP, speeds in m/s and S in um. Largest at the pitch point, where the sliding speed is held at
@@ -88,7 +88,7 @@ def benedict_kelly(
         where the coefficient exceeds 0.2.
 
     Fitted to ground steel discs with a factor ``1.13/(1.13 - S)`` of at most 3, S to 0.75 um.
-    Source: Benedict and Kelly, ASLE Trans. 4 (1961), with the constants of later gear studies.
+    Source: Benedict and Kelley, ASLE Trans. 4 (1961), with the constants of later gear studies.
 
     Examples
     --------
@@ -194,7 +194,7 @@ _OPTIONS = {
 
 @LAWS.define(
     "benedict-kelly",
-    source="Benedict and Kelly, ASLE Trans. 4 (1961)",
+    source="Benedict and Kelley, ASLE Trans. 4 (1961)",
     options=_OPTIONS,
     meaning=_OPTIONS["variant"].meanings["benedict-kelly"],
     papers=("benedict-kelley",),

@@ -256,7 +256,7 @@ class FlankModification:
     run_out : float [m]
         Run-out F_r of the toothing: twice its eccentricity.
     run_out_phase : float [rad]
-        Rotation, from where tooth 0 comes into contact, at which the flanks stand most proud.
+        Rotation, from where tooth 0 comes into contact, at which the flanks stand out most.
     wear_depth : float or tuple of float [m]
         Depth of wear: one value for the whole flank, or values at equal distances of roll length
         from the lowest point to the tip.

@@ -41,6 +41,7 @@ _LIMITS = {
     ),
     "thermal_conductivity": (0.01, 2.0, "Mineral oil has about 0.13 W/(m*K)"),
 }
+_MAY_BE_UNKNOWN = ("temperature_viscosity_coefficient", "thermal_conductivity")
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ class Lubricant:
         """Refuse properties that no oil has."""
         for name, (low, high, remedy) in _LIMITS.items():
             value = getattr(self, name)
-            if value is not None:
+            if value is not None or name not in _MAY_BE_UNKNOWN:
                 require_between(name, value, low, high, QUANTITIES[name].unit, remedy=remedy)
         if self.temperature is not None:
             require_positive("temperature", self.temperature, "K")

@@ -342,7 +342,8 @@ def comprehensive_stiffness(
         Options of the film model; ``kind`` replaces its ``stiffness``.
     kind : str
         ``"tangent"`` or ``"secant"``: the film of each pair in series with its teeth, at the load
-        that it then carries. ``"seed"``: as the first source document has it.
+        that it then carries. ``"seed"``: as "Prediction of Vibration Characteristics in Spur Gear
+        Drives Considering Elastohydrodynamic Lubrication" prints it.
     pinion_speed : float or array (s,) [rad/s]
         Speeds of the pinion in the running sense.
     pinion_torque : float or array (t,) [N*m]
@@ -368,7 +369,8 @@ def comprehensive_stiffness(
     ``1/K = 1/K_m + 1/K_o`` for each pair, and the pairs then share the load; ``"seed"`` takes it
     of the sums over all pairs. The printed sum of the source for ``K_o`` has the unit of a length;
     it is multiplied here with the Hertzian pressure, by which its pressures are divided. It still
-    doubles with every doubling of the nodes. Source: first source document, section 3.1.
+    doubles with every doubling of the nodes. Source: "Prediction of
+    Vibration Characteristics in Spur Gear Drives Considering Elastohydrodynamic Lubrication".
 
     Examples
     --------

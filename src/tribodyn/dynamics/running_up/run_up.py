@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
+from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
@@ -19,12 +20,7 @@ from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import (
-    ComputationError,
-    InputError,
-    quiet,
-    require_positive,
-)
+from tribodyn.errors import ComputationError, InputError, quiet, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -113,8 +109,7 @@ def run_up(
     """
     path = read_profile(profile, duration)
     require_positive("teeth", teeth)
-    if int(samples) != samples or samples < 2:
-        raise InputError(f"samples = {samples}", where="argument samples", why="Whole number >= 2")
+    require_whole("samples", samples, 2)
     frequency, systems = systems_by_frequency(system)
     first = systems[0]
     tables = Tables(systems, int(samples), path.lowest, steps)

@@ -20,8 +20,8 @@ from tribodyn.ehl.steady.newton_engine import (
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
 
-#: The set-up of the source documents: five grids, the finest with 1024 intervals, pressure to
-#: 1e-4, a starved domain. Keyword arguments of
+#: Set-up of the study "vibration-with-film" of the sources: five grids, the finest with 1024
+#: intervals, pressure to 1e-4, a starved domain. Keyword arguments of
 #: :func:`~tribodyn.ehl.line_contact.solve_line_contact`.
 FIVE_LEVELS = MappingProxyType(
     {

@@ -112,7 +112,7 @@ def secant_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
 
 
 def seed_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
-    """Sum as the first source document prints it; not a stiffness."""
+    """Sum as printed in the study "vibration-with-film" of the sources; not a stiffness."""
     require_positive("length", length, "m")
     grid = solution._grid
     inside = grid.H[np.abs(grid.X) <= 1.0]

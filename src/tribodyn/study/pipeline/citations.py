@@ -115,6 +115,12 @@ def sources_of(section: str, name: str) -> list[str]:
     return [*(_text(_library()[key]) for key in keys), *unlisted]
 
 
+def bibliography() -> dict[str, str]:
+    """All sources by key, as they are cited, ordered by author and title."""
+    told = {key: _text(entry) for key, entry in _library().items()}
+    return dict(sorted(told.items(), key=lambda item: item[1].casefold()))
+
+
 def _text(entry: dict[str, Any]) -> str:
     authors = entry.get("author", "").replace(" and ", ", ")
     year = f" ({entry['year']})" if "year" in entry else ""
