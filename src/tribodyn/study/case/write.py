@@ -163,15 +163,20 @@ def _table_meaning(case: Case, place: str) -> str:
     return table.meaning if isinstance(table, Table) else ""
 
 
-def case_table(case: Case) -> str:
-    """Write the case as a table with units, one row for each value in force."""
+def case_rows(case: Case) -> list[tuple[str, str, str]]:
+    """Key, value with its unit and origin of every value in force."""
     origins, derived = provenance(case), derived_values(case)
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
-    rows = [
+    return [
         (key, spec.show(value), origins.get(key, "").partition(":")[0])
         for key, value in values.items()
         if value is not None and (spec := spec_of(case, key)) is not None and key != "title"
     ]
+
+
+def case_table(case: Case) -> str:
+    """Write the case as a table with units, one row for each value in force."""
+    rows = case_rows(case)
     widths = [max(len(row[column]) for row in rows) for column in range(2)]
     head = f"Case: {case.title}"
     body = [f"  {k:<{widths[0]}}  {v:<{widths[1]}}  {origin}" for k, v, origin in rows]

@@ -92,7 +92,7 @@ def run_up(
             teeth=round(2.0 * np.pi * per_speed),
             samples=samples,
             steps=steps or case.solver.steps_per_mesh_cycle,
-            outputs=_supports(first),
+            outputs=supports(first),
             rotation=_rotation(case, first, per_speed),
             progress=progress,
         )
@@ -132,7 +132,7 @@ def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
     return low, high
 
 
-def _supports(system: System) -> dict[str, Any]:
+def supports(system: System) -> dict[str, Any]:
     """Forces on the supports of the gears as rows over positions and velocities."""
     rows = {}
     for column, name in enumerate(system.names):
