@@ -25,7 +25,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.crossing import row_within
-from tribodyn.dynamics._engine.lanes import greatest, keep_apart, least, load, store
+from tribodyn.dynamics._engine.lanes import greatest, least, load, store
 from tribodyn.dynamics._engine.method import INNER, ONCE
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations import motion
@@ -84,7 +84,6 @@ def gather(
     lanes: Any, law: Law, row: int, switching: bool, share: float, wave: int, into: Gathered, w: Any
 ) -> None:
     """Add one step, whose ends are in buffers 0 and 2, to the moments."""
-    keep_apart()
     s, columns, m = slots_of(law.code), law.code[2], into.moments
     n, contacts, outputs = s.n, s.contacts, into.outputs
     long = PLAIN_MOMENTS + 2 * into.harmonics

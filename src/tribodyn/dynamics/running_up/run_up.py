@@ -110,7 +110,7 @@ def run_up(
     >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
     >>> system = System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair])
     >>> run_up(system, ([0.0, 40.0], [0.2, 0.8]), samples=16)
-    RunUp(40 s, 20 mesh cycles from 0.2 over 0.8 to 0.8 Hz, 1 coordinates, 16 samples per cycle)
+    RunUp(40 s, 20 mesh cycles, mesh frequency 0.2 to 0.8 Hz, 1 coordinate, 16 samples per cycle)
     """
     path = read_profile(profile, duration)
     require_positive("teeth", teeth)
