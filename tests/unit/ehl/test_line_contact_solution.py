@@ -150,7 +150,7 @@ def test_starved_inlet_is_told_once_it_is_si():
     assert starved.pressure[0] == 0.0 < flooded.pressure[0]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        solve_line_contact_moes(20, 10, nodes=129)
+        solve_line_contact_moes(20, 10, nodes=1025)
 
 
 def test_domain_that_cuts_the_outlet_is_told():
