@@ -4,7 +4,6 @@ Run it with a folder to keep the report: ``python examples/01_first_light.py my-
 """
 
 import sys
-import tempfile
 from pathlib import Path
 
 import tribodyn as td
@@ -24,7 +23,6 @@ print(f"rms acceleration across     {summary['rms_acceleration_oloa_pinion']:.1f
 print(f"{len(result.assumptions)} values were assumed or left at their defaults, for example:")
 print(result.assumptions[0])
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch) / "fzg-report"
-    result.save(folder)
-    print("files:", *sorted(path.name for path in folder.iterdir()))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "fzg-report")
+result.save(folder)
+print(f"files in {folder.resolve()}:", *sorted(path.name for path in folder.iterdir()))

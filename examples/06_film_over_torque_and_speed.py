@@ -4,13 +4,11 @@ The pair of an FZG rig at its pitch point, where one tooth pair carries everythi
 with 24 teeth drives. The starved film is that of the same contact with the oil supply cut off 2.5
 half widths before its centre: light loads lose most, so that the film seems to rise with torque.
 
-Run it with a folder to keep the figures:
-``python examples/06_film_over_torque_and_speed.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import math
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -58,9 +56,9 @@ figures = {
     "torque": compare("N*m", "N·m", {torque: (torque, 1400) for torque in (50, 150, 300)}),
     "speed": compare("rpm", "rpm", {rpm: (150, rpm) for rpm in (800, 1400, 1800, 3000)}),
 }
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, figure in figures.items():
-        figure.write_html(folder / f"film-over-{name}.html")
-    print("figures:", *sorted(path.name for path in folder.glob("film-over-*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+for name, figure in figures.items():
+    figure.write_html(folder / f"film-over-{name}.html")
+print(f"figures in {folder.resolve()}:")
+print(*sorted(path.name for path in folder.glob("film-over-*.html")))

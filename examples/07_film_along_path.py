@@ -3,11 +3,10 @@
 Every position has its own load, radius of curvature and speed. The figure has a slider and a play
 button, and needs no network.
 
-Run it with a folder to keep the figure: ``python examples/07_film_along_path.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -43,8 +42,8 @@ for row in zip(path, load, radius, speed, films.central_film, films.minimum_film
 print(f"thinnest of all         {films.minimum_film.min() * 1e6:.4f} um")
 
 figure = film_along_path(films, path, path_of_contact=path_of_contact(pair))
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    figure.write_html(folder / "film-along-path.html", auto_play=False)
-    print("figures:", *sorted(found.name for found in folder.glob("film-along-*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+figure.write_html(folder / "film-along-path.html", auto_play=False)
+print(f"figures in {folder.resolve()}:")
+print(*sorted(found.name for found in folder.glob("film-along-*.html")))

@@ -3,11 +3,10 @@
 Load, radius and speed change while the pair moves from its entry to its exit. A steady film follows
 them at once; a real one takes the time that the oil needs to cross the contact.
 
-Run it with a folder to keep the figures: ``python examples/08_film_over_a_mesh_cycle.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -45,10 +44,10 @@ print(f"moving film, one pair alone    {moving.central_film[middle].mean() * 1e6
 print(f"largest excess over steady     {change.max():.1f} %")
 print(f"largest lack against steady    {change.min():.1f} %")
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    over_time = film_transient(moving, steady=steady.central_film)
-    over_time.write_html(folder / "film-over-time.html")
-    film_over_time(moving).write_html(folder / "film-moving.html", auto_play=False)
-    print("figures:", *sorted(found.name for found in folder.glob("film-*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+over_time = film_transient(moving, steady=steady.central_film)
+over_time.write_html(folder / "film-over-time.html")
+film_over_time(moving).write_html(folder / "film-moving.html", auto_play=False)
+print(f"figures in {folder.resolve()}:")
+print(*sorted(found.name for found in folder.glob("film-*.html")))

@@ -4,11 +4,10 @@ A flank with waves of 50 um, 0.05 um high. Standing still, with the other flank
 sliding by, the pressure flattens the waves a little. Carried along, each wave also brings its own
 film with it from the inlet.
 
-Run it with a folder to keep the figures: ``python examples/09_rough_flank.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -57,10 +56,10 @@ for words, sizes in (("amplitude of the waves", amplitudes), ("thinnest film", t
     for name, size in sizes.items():
         print(f"{words + ', ' + name:33}  {size * 1e6:.4f} um")
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    standing_still = compare_line_contacts([smooth, standing], ["smooth", "rough, standing"])
-    standing_still.write_html(folder / "rough-standing.html")
-    film_over_time(moving).write_html(folder / "rough-moving.html", auto_play=False)
-    print("figures:", *sorted(found.name for found in folder.glob("rough-*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+standing_still = compare_line_contacts([smooth, standing], ["smooth", "rough, standing"])
+standing_still.write_html(folder / "rough-standing.html")
+film_over_time(moving).write_html(folder / "rough-moving.html", auto_play=False)
+print(f"figures in {folder.resolve()}:")
+print(*sorted(found.name for found in folder.glob("rough-*.html")))

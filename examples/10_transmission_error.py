@@ -4,11 +4,10 @@ What the mesh does slowly is what excites it when it turns: mean, peak to peak a
 of the transmission error at every torque (a Harris map). Beside it what comes out if each tooth
 pair is taken for itself, as much of the literature does: the teeth of a gear share its body.
 
-Run it with a folder to keep the figures: ``python examples/10_transmission_error.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -32,9 +31,9 @@ for row, torque in enumerate(found.torque):
         f"{1e6 * apart.peak_to_peak_transmission_error[row]:15.3f}"
     )
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    found.plot().write_html(folder / "harris-map.html")
-    td.loaded_contact(case, torque="90 N*m").plot().write_html(folder / "loaded-contact.html")
-    print("figures: harris-map.html loaded-contact.html")
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+found.plot().write_html(folder / "harris-map.html")
+td.loaded_contact(case, torque="90 N*m").plot().write_html(folder / "loaded-contact.html")
+print(f"figures in {folder.resolve()}:")
+print("harris-map.html loaded-contact.html")

@@ -4,11 +4,10 @@ A relief is right for one torque: below it the mesh misses what was taken away, 
 bend by more. The search weighs a whole range of torques by the largest peak to peak transmission
 error in it.
 
-Run it with a folder to keep the figures: ``python examples/11_tip_relief.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -41,9 +40,9 @@ for torque, plain, less in zip(
 ):
     print(f"{torque:8g} {1e6 * plain:14.3f} {1e6 * less:12.3f}")
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    best.plot().write_html(folder / "tip-relief-map.html")
-    after.plot().write_html(folder / "tip-relief-harris.html")
-    print("figures: tip-relief-harris.html tip-relief-map.html")
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+best.plot().write_html(folder / "tip-relief-map.html")
+after.plot().write_html(folder / "tip-relief-harris.html")
+print(f"figures in {folder.resolve()}:")
+print("tip-relief-harris.html tip-relief-map.html")

@@ -3,11 +3,10 @@
 The tangent is the slope of load over film: what slow vibrations meet. The secant is the sum of
 pressure over film: it makes the oil ten times softer, and the mesh depend on the speed.
 
-Run it with a folder to keep the figures: ``python examples/12_comprehensive_stiffness.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -34,9 +33,9 @@ for kind in ("tangent", "secant"):
                 f"both {1e-6 * both:6.2f}"
             )
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, found in figures.items():
-        found.plot().write_html(folder / f"comprehensive-{name}.html")
-    print("figures:", *sorted(path.name for path in folder.glob("comprehensive-*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+for name, found in figures.items():
+    found.plot().write_html(folder / f"comprehensive-{name}.html")
+print(f"figures in {folder.resolve()}:")
+print(*sorted(path.name for path in folder.glob("comprehensive-*.html")))

@@ -8,11 +8,10 @@ motion repeats with the mesh, and its Floquet multipliers lie well inside the un
 "Undecided" are motions that do repeat, while their rms of a hundredth of a micrometre depends on
 the step: the printed formula of the mesh damping gives hardly any, and ringing is not resolved.
 
-Run it with a folder to keep the figure: ``python examples/13_stiffness_bifurcation.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -58,8 +57,8 @@ for stiffness in (1.1e5, 3e5, 1e6, 1e7, 1.731e7, 1.741e7, 1.9e7, 2.17e7):
     state = "stable" if orbit.stable else "unstable"
     print(f"  {stiffness:16.4g}   {np.abs(orbit.floquet_multipliers).max():.4f}  {state}")
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    diagrams[200].plot().write_html(folder / "stiffness-bifurcation.html")
-    print("figures:", *sorted(found.name for found in folder.glob("stiffness-*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+diagrams[200].plot().write_html(folder / "stiffness-bifurcation.html")
+print(f"figures in {folder.resolve()}:")
+print(*sorted(found.name for found in folder.glob("stiffness-*.html")))

@@ -4,11 +4,10 @@ FZG gears at 20 N*m from 400 to 3000 rpm and back, as in a published test. Mesh 
 friction are computed at a few speeds, and the speed changes while the gears vibrate. Peaks of the
 orders of the mesh lie where they meet a natural frequency.
 
-Run it with a folder to keep the figures: ``python examples/15_run_up.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import sys
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -42,9 +41,9 @@ print(f"\norder 1.5 of the shaft at 2017 rpm is {mains:.1f} Hz: next to the main
 cut = order_cut(run, 1.5, "pinion_y", of="shaft", part="up")
 print(f"its largest amplitude here {cut.amplitude.max():.2g} m/s^2: perfect gears do not excite it")
 
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    run.plot().write_html(folder / "run-up.html")
-    run.plot_map().write_html(folder / "run-up-map.html")
-    print("\nfigures:", *sorted(found.name for found in folder.glob("run-up*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+run.plot().write_html(folder / "run-up.html")
+run.plot_map().write_html(folder / "run-up-map.html")
+print(f"\nfigures in {folder.resolve()}:")
+print(*sorted(found.name for found in folder.glob("run-up*.html")))

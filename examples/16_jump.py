@@ -6,12 +6,11 @@ the more it vibrates, and the curve of the vibration over the speed leans over. 
 a loud and a quiet motion exist. Which one comes about depends on where it starts: from below or
 from above, or from any state of the plane of basins.
 
-Run it with a folder to keep the figures: ``python examples/16_jump.py figures``.
+Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
 
 import math
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -73,10 +72,10 @@ loud = max(plane.attractors, key=lambda each: each.rms)
 orbit = steady_state(pair, middle, start=(loud.position[0], loud.velocity[0]))
 
 portrait = phase_portrait(orbit, 0, gap=0.5 * BACKLASH)
-with tempfile.TemporaryDirectory() as scratch:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(scratch)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, found in (("branch", branch), ("sweeps", swept), ("basins", plane)):
-        found.plot().write_html(folder / f"jump-{name}.html")
-    portrait.plot().write_html(folder / "jump-phase.html")
-    print("figures:", *sorted(found.name for found in folder.glob("jump-*.html")))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+folder.mkdir(parents=True, exist_ok=True)
+for name, found in (("branch", branch), ("sweeps", swept), ("basins", plane)):
+    found.plot().write_html(folder / f"jump-{name}.html")
+portrait.plot().write_html(folder / "jump-phase.html")
+print(f"figures in {folder.resolve()}:")
+print(*sorted(found.name for found in folder.glob("jump-*.html")))

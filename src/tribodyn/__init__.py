@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         natural_modes,
         optimize_tip_relief,
         run_up,
+        speed_sweep,
         sweep,
     )
 
@@ -55,6 +56,7 @@ __all__ = [
     "optimize_tip_relief",
     "run",
     "run_up",
+    "speed_sweep",
     "sweep",
 ]
 
@@ -76,6 +78,7 @@ _HOMES = {
     "optimize_tip_relief": "study",
     "run": "cases",
     "run_up": "study",
+    "speed_sweep": "study",
     "sweep": "study",
 }
 

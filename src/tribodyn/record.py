@@ -20,7 +20,7 @@ Orders(order: 2, teeth 24)
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass
 from html import escape
 from pathlib import Path
@@ -251,10 +251,18 @@ class Record:
             value = getattr(self, each.name)
             unit = self._told(each.name, labels).get("units", "")
             cells = (each.name, " x ".join(labels.dims), _short(value), unit)
-            rows.append("".join(f"<td>{escape(str(cell))}</td>" for cell in cells))
-        head = "".join(f"<th>{name}</th>" for name in ("field", "over", "value", "unit"))
-        body = "".join(f"<tr>{row}</tr>" for row in rows)
-        return f"<b>{escape(repr(self))}</b><table><tr>{head}</tr>{body}</table>"
+            rows.append(cells)
+        return html_table(repr(self), ("field", "over", "value", "unit"), rows)
+
+
+def html_table(title: str, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A table for notebooks; every text is escaped."""
+
+    def line(cells: Iterable[Any], tag: str) -> str:
+        return f"<tr>{''.join(f'<{tag}>{escape(str(cell))}</{tag}>' for cell in cells)}</tr>"
+
+    lines = [line(head, "th"), *(line(row, "td") for row in rows)]
+    return f"<b>{escape(title)}</b><table>{''.join(lines)}</table>"
 
 
 def _same_fields(one: Any, other: Any) -> bool:

@@ -248,6 +248,11 @@ def test_example_prints_known_figures(path: Path, tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     EXPECTED[path.name](done.stdout)
+    for place in re.findall(r"^(?:figures|files) in (.*?):", done.stdout, re.M):
+        assert Path(place).parent == tmp_path.resolve()
+        shown = re.findall(r"[\w-]+\.html", done.stdout)
+        assert shown
+        assert all((Path(place) / name).is_file() for name in shown)
 
 
 def test_every_example_is_known_and_numbered() -> None:

@@ -18,7 +18,7 @@ from typing import Any
 PACKAGE = Path(str(files("tribodyn")))
 
 _PARTS = """
-analysis cases cli contact dynamics ehl errors friction gear lubricant mesh nomenclature plot
+analysis cases cli contact dynamics ehl errors friction gear losses lubricant mesh nomenclature plot
 progress report stiffness study units
 """
 

@@ -7,7 +7,7 @@ from tribodyn.nonlinear.lyapunov import LyapunovExponents, lyapunov_exponents
 from tribodyn.nonlinear.parameter_map import ParameterMap, parameter_map
 from tribodyn.nonlinear.poincare import PhasePortrait, PoincareSection, phase_portrait, poincare
 from tribodyn.signals.angular_resampling import AngularSignal, angular_resampling
-from tribodyn.signals.envelope import envelope, envelope_spectrum
+from tribodyn.signals.envelope import Sidebands, envelope, envelope_spectrum, sidebands
 from tribodyn.signals.indicators import (
     Spectrum,
     alternating_rms,
@@ -31,7 +31,6 @@ from tribodyn.signals.run_up_orders import (
     resonances,
     run_up_order_map,
 )
-from tribodyn.signals.sidebands import Sidebands, sidebands
 from tribodyn.signals.spectrogram import Spectrogram, spectrogram
 from tribodyn.signals.spectrum import Peak, SignalSpectrum, spectrum, zoom_spectrum
 from tribodyn.signals.synchronous_average import (

@@ -27,6 +27,23 @@ COMMANDS = (
         "tribodyn.cli.bifurcation_command:bifurcation",
         "Follow the motion of a case over one value.",
     ),
+    (
+        "modes",
+        "tribodyn.cli.study_commands:modes",
+        "Find natural frequencies and critical speeds of a case.",
+    ),
+    (
+        "harris",
+        "tribodyn.cli.study_commands:harris",
+        "Find the static transmission error over the torque.",
+    ),
+    ("relief", "tribodyn.cli.study_commands:relief", "Find the best tip relief of a case."),
+    ("run-up", "tribodyn.cli.study_commands:run_up", "March a case while its speed rises."),
+    (
+        "compare",
+        "tribodyn.cli.compare_command:compare",
+        "Show what differs between two results.",
+    ),
     ("check", "tribodyn.cli.case_commands:check", "Check a case and show its geometry."),
     ("new", "tribodyn.cli.case_commands:new", "Write a commented case file to start from."),
     (

@@ -166,6 +166,36 @@ def read_ranges(words: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
     return found
 
 
+def read_ends(text: str) -> tuple[Any, Any]:
+    """Read the two ends of a range without points.
+
+    Parameters
+    ----------
+    text : str
+        For example ``"400..3500 rpm"``.
+
+    Returns
+    -------
+    tuple of str
+
+    Raises
+    ------
+    InputError
+        If it is no range.
+
+    Examples
+    --------
+    >>> read_ends("400..3500 rpm")
+    ('400 rpm', '3500 rpm')
+    """
+    try:
+        first, last, _ = _range(f"{text}:2")
+    except _UnreadError as fault:
+        what, remedy = f'cannot read "{text}"', 'Write "400..3500 rpm"'
+        raise InputError(what, "", str(fault), remedy) from None
+    return first, last
+
+
 class _UnreadError(ValueError):
     """Why a word cannot be read."""
 

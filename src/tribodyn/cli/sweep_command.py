@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,13 +17,6 @@ if TYPE_CHECKING:
 
 #: Exit code of a sweep that was stopped by Ctrl-C; what was done is kept.
 _INTERRUPTED = 130
-#: Figures on the screen; all of them are in the files.
-_SHOWN = (
-    "rms_mesh_force",
-    "peak_mesh_force",
-    "peak_to_peak_dynamic_transmission_error",
-    "contact_loss_share",
-)
 
 
 def sweep(
@@ -32,6 +26,7 @@ def sweep(
     out: Path | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
+    show: str = "",
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Compute a case at many values of its keys; write a table and a report.
@@ -49,6 +44,8 @@ def sweep(
         Values to change, for example "operation.torque=120 N*m".
     force : bool
         Replace an earlier result in that directory.
+    show : str
+        Figures of the table on the screen, such as "minimum_film_ratio,efficiency".
     json : bool
         Write all figures in SI as one JSON object to stdout.
 
@@ -63,6 +60,7 @@ def sweep(
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
     ready = changed_case(case, set_ or [])
+    names = _asked(show)
     check_place(target, force)
     with Members(target, force) as members:
         with progress_bar() as progress:
@@ -83,7 +81,7 @@ def sweep(
             found.save(target, force=force)
             progress.finish()
         members.close_after(found.complete)
-    _show(found, json)
+    _show(found, found.shown(names), json)
     failed = sum(bool(point.failed) for point in found.points)
     if failed:
         tell(f"{failed} of {len(found.points)} values failed; the column failed tells why.")
@@ -93,14 +91,29 @@ def sweep(
     return 1 if failed == len(found.points) else 0
 
 
-def _show(found: Sweep, as_json: bool) -> None:
+def _asked(show: str) -> list[str]:
+    """Names of figures that are asked for; unknown ones are told before anything is computed."""
+    import difflib
+
+    from tribodyn.errors import InputError
+    from tribodyn.study.pipeline.summary import SUMMARY
+
+    names = [name.strip() for name in show.split(",") if name.strip()]
+    for name in names:
+        if name not in SUMMARY:
+            near = difflib.get_close_matches(name, SUMMARY, n=1)
+            remedy = f'Did you mean "{near[0]}"?' if near else "See: tribodyn check and run"
+            raise InputError(f'there is no figure "{name}"', "--show", "", remedy)
+    return names
+
+
+def _show(found: Sweep, names: Sequence[str], as_json: bool) -> None:
     from tribodyn.study.pipeline.summary import SUMMARY
 
     if as_json:
         units = {axis.key: axis.unit for axis in found.axes}
         say_json({"keys": units, "complete": found.complete, "rows": list(found.rows())})
         return
-    names = [name for name in _SHOWN if name in found.figures]
     rows: list[list[str]] = [[*(axis.name for axis in found.axes), *names, ""]]
     for point in found.points:
         keys: list[Any] = [a.show(v) for a, v in zip(found.axes, point.values, strict=True)]

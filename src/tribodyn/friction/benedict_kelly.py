@@ -108,7 +108,7 @@ def benedict_kelly(
     rolling = ROLLING_SPEEDS[rolling_speed] * speed
     argument = _UNITS * load / (viscosity * sliding * rolling**2)
     coefficient = _clipped(VARIANTS[variant] * rough * np.log10(argument))
-    _warn_of_slow(coefficient, rough, entrainment_speed)
+    _warn_of_range(coefficient, rough, entrainment_speed)
     return coefficient
 
 
@@ -150,20 +150,28 @@ def _clipped(coefficient: Array) -> Array:
     return np.asarray(np.maximum(coefficient, 0.0))[()]
 
 
-def _warn_of_slow(coefficient: Array, rough: Array, entrainment_speed: ArrayLike) -> None:
-    """Say where the surfaces creep: the logarithm then grows beyond what rubbing flanks show."""
+def _warn_of_range(coefficient: Array, rough: Array, entrainment_speed: ArrayLike) -> None:
+    """Say where the surfaces creep, or that roughness lifts friction above that of steel."""
     greatest, slowest = float(np.max(coefficient)), float(np.min(entrainment_speed))
-    # A steep roughness factor has its own warning.
-    steep = float(np.max(rough)) > _LIMIT / (_LIMIT - _TRUSTED)
-    if slowest < _CREEP or (greatest > _GREATEST and not steep):
-        warn(
-            "friction-range",
-            f"benedict-kelly: friction coefficient up to {greatest:.3g} at entrainment speeds from "
-            f"{slowest:.3g} m/s on; the formula was fitted to running films, and lubricated steel "
-            f"stays below {_GREATEST:g}. Do not use it below {_CREEP:g} m/s: choose another "
-            "friction law.",
-            stacklevel=3,
+    factor = float(np.max(rough))
+    told = f"benedict-kelly: friction coefficient up to {greatest:.3g}"
+    steel = f"lubricated steel stays below {_GREATEST:g}"
+    if slowest < _CREEP:
+        cause = (
+            f"at entrainment speeds from {slowest:.3g} m/s on; the formula was fitted to running "
+            f"films, and {steel}. Do not use it below {_CREEP:g} m/s: choose another friction law."
         )
+    elif greatest > _GREATEST and factor <= _LIMIT / (_LIMIT - _TRUSTED):
+        # A steeper roughness factor has its own warning.
+        micrometres = _LIMIT * (1.0 - 1.0 / factor)
+        cause = (
+            f"where {steel}: the roughness factor 1.13/(1.13 - S) multiplies that of smooth ones, "
+            f"{greatest / factor:.3g}, by {factor:.3g} at S = {micrometres:.3g} um. Give the "
+            "rms roughness of run-in flanks, or choose another friction law."
+        )
+    else:
+        return
+    warn("friction-range", f"{told} {cause}", stacklevel=3)
 
 
 _OPTIONS = {

@@ -160,9 +160,31 @@ def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
             where=Argument("backlash"),
             why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
             f"mm leave {play * 1e3:.6g} mm already",
-            remedy="Leave the backlash out, or reduce the centre distance",
+            remedy=_less_play(backlash, play, mesh),
         )
     return max(0.5 * (backlash - play), 0.0)
+
+
+def _less_play(backlash: float, play: float, mesh: MeshGeometry) -> str:
+    """How to come to a smaller play: a centre distance, or that of the teeth where they reach."""
+    least = zero_backlash_center_distance(
+        mesh.pinion.teeth + mesh.wheel.teeth, mesh.pinion.normal_module,
+        mesh.pinion.normal_pressure_angle,
+        mesh.pinion.profile_shift_coefficient + mesh.wheel.profile_shift_coefficient,
+    )  # fmt: skip
+    low, high = least, mesh.center_distance
+    while high - low > 1e-7:
+        middle = 0.5 * (low + high)
+        wide = replace(mesh, center_distance=middle).geometric_backlash > backlash
+        low, high = (low, middle) if wide else (middle, high)
+    near = math.floor(low * 1e6) / 1e3
+    reach = mesh.pinion.tip_radius + mesh.wheel.tip_radius
+    shorten = f"Reduce the centre distance to {near:.7g} mm"
+    if mesh.center_distance >= reach - mesh.pinion.normal_module:
+        return (
+            f"{shorten}: at {mesh.center_distance * 1e3:.6g} mm the teeth hardly reach each other"
+        )
+    return f"{shorten}, or leave the backlash out, which gives that play"
 
 
 def _checked(layout: _Layout, driver: str, misalignment: float) -> SpurPair:

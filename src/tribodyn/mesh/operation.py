@@ -21,7 +21,7 @@ from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 #: Positions for the models that have no such option.
@@ -74,6 +74,14 @@ class FilmOverOperation(Record):
     film_ratio: Array | None = quantity("torque", "speed", "position", default=None)
     film_pressure: Array | None = quantity("torque", "speed", "position", default=None)
     film_stiffness: Array | None = quantity("torque", "speed", "position", default=None)
+
+    def _parts(self) -> Parts:
+        """With coordinates of the dimensions, by which frames and selections find values."""
+        parts = super()._parts()
+        for dim, name in (("torque", "pinion_torque"), ("speed", "pinion_speed"),
+                          ("position", "path")):  # fmt: skip
+            parts.coordinates[dim] = (dim, *parts.coordinates[name][1:])
+        return parts
 
     def __repr__(self) -> str:
         """One line."""

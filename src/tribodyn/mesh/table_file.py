@@ -41,6 +41,8 @@ _FACT = re.compile(r"#\s*(\w+)\s*[=:]\s*(.+)")
 _SAME, _EVEN = 1e-9, 1e-9
 #: Knots that take the place of uneven rows, at least.
 _KNOTS = 512
+#: Events of a mesh cycle, at most.
+_MOST_EVENTS = 200
 #: Torques nearer than this are the same, relative to them.
 _SAME_TORQUE = 1e-9
 
@@ -388,6 +390,9 @@ def _csv(place: Path) -> tuple[dict[str, float], dict[str, Array], list[float]]:
             values[number, column] = value
     facts = {n: _fact(place, n, told.strip()) for n, told in stated if n in FACTS}
     events = [_event(place, e) for n, told in stated if n == "events" for e in told.split(",")]
+    if len(events) > _MOST_EVENTS:
+        why = f"A mesh cycle has at most {_MOST_EVENTS}"
+        _refuse(place, f"there are {len(events)} events", why, "Keep those where columns jump")
     return facts, _gathered(place, names, values), events
 
 

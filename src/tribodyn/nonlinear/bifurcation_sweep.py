@@ -16,13 +16,7 @@ import numpy as np
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.nonlinear.attractors import Motions, settle
-from tribodyn.nonlinear.survey import (
-    Outcomes,
-    Points,
-    Survey,
-    each_in_threads,
-    march_group,
-)
+from tribodyn.nonlinear.survey import Outcomes, Points, Survey, each_in_threads, march_group
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.blocks import march
-from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.compiled import compile_for, require_whole
 from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.start import static_start
@@ -195,10 +195,8 @@ def lyapunov_exponents(
     >>> bool(np.allclose(found.exponents, -0.1, rtol=1e-6))
     True
     """
-    for name, value, least in (("cycles", cycles, 1), ("transient", transient, 0)):
-        if int(value) != value or value < least:
-            why = f"A whole number >= {least}"
-            raise InputError(f"{name} = {value}", where=f"argument {name}", why=why)
+    require_whole("cycles", cycles)
+    require_whole("transient", transient, 0)
     compiled = compile_for(system, mesh_frequency, steps)
     tables = TangentTables(compiled, mesh_frequency)
     if tables.size == 0:

@@ -9,6 +9,7 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
+from tribodyn.plot.film.operation import film_over_operation
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
@@ -47,6 +48,7 @@ __all__ = [
     "drawing",
     "film",
     "film_along_path",
+    "film_over_operation",
     "film_over_time",
     "film_pressure",
     "film_response",

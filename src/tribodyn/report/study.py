@@ -18,15 +18,6 @@ from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.words import in_words
 
-#: Figures of the summary that the report of a sweep draws and tabulates, where they occur.
-SWEEP_FIGURES = (
-    "rms_mesh_force",
-    "peak_mesh_force",
-    "peak_to_peak_dynamic_transmission_error",
-    "rms_bearing_force_loa_pinion",
-    "mean_friction_power",
-    "contact_loss_share",
-)
 #: Rows of the table; more are in the files beside it.
 _ROWS = 400
 
@@ -68,7 +59,7 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
     InputError
         If the place cannot be written to.
     """
-    names = [name for name in SWEEP_FIGURES if name in found.figures]
+    names = found.shown()
     caption = plot.sweep.caption_of(found)
     blocks = [
         drawn_block(name, in_words(name), found.plot(name), caption if name == names[0] else "")
@@ -149,6 +140,54 @@ def write_bifurcation_report(
         blocks=[drawn_block("bifurcation", "Motion once per mesh cycle", found.plot(), caption)],
         cards=[("Motions", str(int(found.finished.sum()))), *counts], notices=list(told), head=head,
         rows=rows,
+    )  # fmt: skip
+    return _write(Path(path), case, page)
+
+
+def write_study_report(
+    case: Any,
+    path: str | os.PathLike[str],
+    *,
+    kind: str,
+    told: Sequence[str],
+    figures: Sequence[tuple[str, Any, str]],
+    head: Sequence[str],
+    rows: Sequence[Sequence[str]],
+) -> Path:
+    """Write any other study of a case to a file.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was studied.
+    path : path
+        File to write; an existing one is replaced.
+    kind : str
+        What kind of study it is.
+    told : sequence of str
+        What was found, in sentences.
+    figures : sequence of (str, figure, str)
+        Heading, plotly figure and caption of each.
+    head, rows : sequence of str, sequence of sequence of str
+        The table.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    blocks = [
+        drawn_block(f"figure-{number}", heading, drawn, caption)
+        for number, (heading, drawn, caption) in enumerate(figures, 1)
+    ]
+    page = _Page(
+        kind=kind, lead=told[0], varied=[], blocks=blocks, cards=[], notice_heading="What it says",
+        notices=list(told), head=head, rows=rows,
     )  # fmt: skip
     return _write(Path(path), case, page)
 

@@ -8,11 +8,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, require_positive
-from tribodyn.signals.recorded_signal import (
-    checked_rising,
-    checked_signal,
-    refuse_above_half,
-)
+from tribodyn.signals.recorded_signal import checked_rising, checked_signal, refuse_above_half
 from tribodyn.types import Array
 
 #: Most samples over the rotation before the filter, and samples per period for cubic pieces.

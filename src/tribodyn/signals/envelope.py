@@ -1,15 +1,17 @@
-"""Envelope of a modulated vibration and its spectrum."""
+"""Modulation: the envelope of a vibration, its spectrum, and the sidebands of a carrier."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import ComputationError, InputError, require_positive
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
 from tribodyn.signals.spectrum import SignalSpectrum, spectrum
-from tribodyn.types import Array
+from tribodyn.types import Array, ComplexArray
 
 
 def envelope(
@@ -82,16 +84,10 @@ def envelope_spectrum(
 
     Parameters
     ----------
-    signal : (n,) array
-        Equally spaced samples, in any unit.
-    sampling_rate : float
-        Samples per second [Hz].
-    band : tuple of two float, optional
-        Lower and upper end of the band that carries the modulation [Hz].
-    window : str
-        Window of :func:`scipy.signal.get_window`.
-    unit : str
-        Unit of the signal, for display.
+    signal, sampling_rate, band
+        As :func:`envelope` takes them [Hz].
+    window, unit
+        As :func:`spectrum` takes them.
 
     Returns
     -------
@@ -120,3 +116,170 @@ def envelope_spectrum(
     # the mean would hide slow modulation under its main lobe; it comes back as its own line
     made.amplitude[0] = mean
     return made
+
+
+#: Points over one period of the modulation.
+_POINTS = 1024
+
+
+@record
+class Sidebands(Record):
+    """Lines around a carrier, and what modulates it.
+
+    Parameters
+    ----------
+    carrier : float
+        Frequency of the carrier, for gears the mesh frequency or a multiple [Hz].
+    modulation : float
+        Frequency of the modulation, for gears the shaft frequency [Hz].
+    number : (2 * count + 1,) array of int
+        Number of each line, negative below the carrier, 0 for the carrier.
+    frequency : (2 * count + 1,) array
+        Frequency [Hz].
+    amplitude : (2 * count + 1,) array
+        Peak amplitude, in the unit of the signal.
+    phase : (2 * count + 1,) array
+        Phase of the cosine at the first sample [rad].
+    amplitude_modulation : float
+        Swing of the envelope over its mean, at the frequency of the modulation [-].
+    phase_modulation : float
+        Swing of the phase at that frequency [rad].
+    unit : str
+        Unit of the signal.
+    """
+
+    ARRAY = "amplitude"
+
+    carrier: float
+    modulation: float
+    number: NDArray[np.int_] = quantity("number", axis=True)
+    frequency: Array = quantity("number", unit="Hz", axis=True)
+    amplitude: Array = quantity("number", unit="@unit")
+    phase: Array
+    amplitude_modulation: float = fact()
+    phase_modulation: float = fact()
+    unit: str = ""
+
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"Sidebands({self.carrier:.6g} Hz with {self.number[-1]} on each side every "
+            f"{self.modulation:.6g} Hz, amplitude modulation {self.amplitude_modulation:.4g}, "
+            f"phase modulation {self.phase_modulation:.4g} rad)"
+        )
+
+    @property
+    def frequency_swing(self) -> float:
+        """Swing of the instantaneous frequency [Hz]: phase modulation times its frequency."""
+        return self.phase_modulation * self.modulation
+
+    @property
+    def sideband_ratio(self) -> float:
+        """Sum of the amplitudes of all sidebands over that of the carrier [-]."""
+        carrier = self.amplitude[self.number == 0]
+        return float(self.amplitude[self.number != 0].sum() / carrier[0])
+
+
+def sidebands(
+    signal: Any,
+    sampling_rate: float,
+    carrier: float,
+    modulation: float,
+    *,
+    count: int = 5,
+    unit: str = "",
+) -> Sidebands:
+    """Amplitudes at a carrier and beside it, and the modulation behind them.
+
+    Parameters
+    ----------
+    signal, sampling_rate
+        As :func:`tribodyn.analysis.spectrum` takes them [Hz].
+    carrier : float
+        Frequency of the carrier [Hz].
+    modulation : float
+        Frequency of the modulation [Hz].
+    count : int
+        Sidebands on each side.
+    unit : str
+        Unit of the signal, for display.
+
+    Returns
+    -------
+    Sidebands
+
+    Raises
+    ------
+    InputError
+        If a sideband lies below zero or above half the rate, or the record is shorter than two
+        periods of the modulation.
+    ComputationError
+        If nothing vibrates at the carrier.
+
+    Notes
+    -----
+    The lines and the mean are fitted to the record by least squares, so that neither window nor
+    leakage matters; strong lines elsewhere should be filtered off. The lines over the carrier's,
+    summed over one period of the modulation, give its envelope and its phase, whose first
+    harmonics are the two indices: amplitude modulation makes equal sidebands whose phases mirror
+    each other, phase modulation opposite ones (P. D. McFadden, J. Vib. Acoust. 108 (1986) 165).
+    ``count`` must hold all sidebands that matter: a phase modulation of 1 rad has four.
+
+    Examples
+    --------
+    >>> time = np.arange(3000) / 3000.0
+    >>> turn = 2 * np.pi * 7.3 * time
+    >>> wave = (1 + 0.3 * np.cos(turn)) * np.cos(2 * np.pi * 400 * time + 0.2 * np.sin(turn + 1))
+    >>> made = sidebands(wave, 3000.0, 400.0, 7.3)
+    >>> round(made.amplitude_modulation, 5), round(made.phase_modulation, 5)
+    (0.3, 0.2)
+    """
+    values = checked_signal(signal, 16)
+    require_positive("count", count)
+    require_positive("modulation", modulation, "Hz")
+    highest = carrier + count * modulation
+    refuse_above_half(highest, sampling_rate, f"Sideband {count}", "argument count")
+    periods = values.size / sampling_rate * modulation
+    if carrier - count * modulation <= 0.0 or periods < 2.0:
+        low = carrier - count * modulation
+        raise InputError(
+            f"sideband -{count} is at {low:.6g} Hz, the record holds {periods:.3g} "
+            "periods of the modulation",
+            where="arguments carrier, modulation and count",
+            why="All sidebands must lie above zero, and two periods are needed to part them",
+            remedy="Ask for fewer sidebands, or record longer",
+        )
+    number = np.arange(-count, count + 1)
+    frequency = carrier + modulation * number.astype(np.float64)
+    lines = _fitted(values, frequency / sampling_rate)
+    size = np.abs(lines)
+    if not size[count] > 1e-9 * max(float(size.max()), float(np.abs(values).max())):
+        raise ComputationError(
+            f"nothing vibrates at the carrier of {carrier:.6g} Hz",
+            why="Modulation is told over the amplitude of the carrier",
+            remedy="Check the carrier against the peaks of tribodyn.analysis.spectrum",
+        )
+    shape = lines / lines[count]
+    over = np.exp(2j * np.pi * np.outer(np.arange(_POINTS) / _POINTS, number)) @ shape
+    hull, turn = np.abs(over), np.unwrap(np.angle(over))
+    once = np.exp(-2j * np.pi * np.arange(_POINTS) / _POINTS) * 2.0 / _POINTS
+    return Sidebands(
+        carrier,
+        modulation,
+        number,
+        frequency,
+        size,
+        np.angle(lines),
+        float(np.abs(once @ hull) / hull.mean()),
+        float(np.abs(once @ turn)),
+        unit,
+    )
+
+
+def _fitted(values: Array, cycles: Array) -> ComplexArray:
+    """Complex amplitudes of cosines with so many cycles per sample, fitted with a mean."""
+    sample = np.arange(values.size)
+    waves = np.exp(2j * np.pi * np.outer(sample, cycles))
+    columns = np.hstack([waves.real, -waves.imag, np.ones((values.size, 1))])
+    weights = np.linalg.solve(columns.T @ columns, columns.T @ values)
+    return np.asarray(weights[: cycles.size] + 1j * weights[cycles.size : -1])

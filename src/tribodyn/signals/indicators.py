@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.time.response import FineSamples, Response
+from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
 from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.recorded_signal import checked_signal
@@ -49,15 +49,13 @@ def rms(samples: FineSamples, signal: Array) -> Array:
 
     Parameters
     ----------
-    samples : FineSamples
-        ``response.fine``.
-    signal : (3 * steps, ...) array
-        Signal in any unit.
+    samples, signal
+        As :func:`mean` takes them.
 
     Returns
     -------
     array
-        Shape ``signal.shape[1:]``, in the unit of the signal.
+        As :func:`mean` gives it.
 
     Examples
     --------
@@ -76,15 +74,13 @@ def alternating_rms(samples: FineSamples, signal: Array) -> Array:
 
     Parameters
     ----------
-    samples : FineSamples
-        ``response.fine``.
-    signal : (3 * steps, ...) array
-        Signal in any unit.
+    samples, signal
+        As :func:`mean` takes them.
 
     Returns
     -------
     array
-        Shape ``signal.shape[1:]``, in the unit of the signal.
+        As :func:`mean` gives it.
 
     Examples
     --------
@@ -122,12 +118,7 @@ def extremes(signal: Array) -> tuple[Array, Array]:
     >>> round(float(high), 12)
     1.0
     """
-    left, middle, right = np.moveaxis(signal.reshape(-1, 3, *signal.shape[1:]), 1, 0)
-    slope, bend = right - left, left - 2.0 * middle + right
-    inside = np.abs(slope) < 2.0 * np.abs(bend)
-    vertex = np.where(inside, middle - slope**2 / (8.0 * np.where(inside, bend, 1.0)), middle)
-    values = np.concatenate((signal, vertex))
-    return values.min(axis=0), values.max(axis=0)
+    return sample_extremes(signal)
 
 
 def peak_to_peak(signal: Array) -> Array:
@@ -135,8 +126,8 @@ def peak_to_peak(signal: Array) -> Array:
 
     Parameters
     ----------
-    signal : (3 * steps, ...) array
-        Signal on fine samples, in any unit.
+    signal
+        As :func:`extremes` takes it.
 
     Returns
     -------
@@ -157,10 +148,8 @@ def crest_factor(samples: FineSamples, signal: Array) -> Array:
 
     Parameters
     ----------
-    samples : FineSamples
-        ``response.fine``.
-    signal : (3 * steps, ...) array
-        Signal in any unit.
+    samples, signal
+        As :func:`mean` takes them.
 
     Returns
     -------

@@ -31,10 +31,8 @@ def order_map(
 
     Parameters
     ----------
-    signal : (n,) array
-        Signal over time, in any unit.
-    time : (n,) array
-        Time of each sample [s].
+    signal, time
+        As :func:`tribodyn.analysis.angular_resampling` takes them [s].
     rotation : (n,) array, optional
         Rotation of the shaft at each sample [rad], counted on without wrap.
     speed : float or (n,) array, optional
@@ -86,11 +84,7 @@ def order_map(
     require_between("overlap", overlap, 0.0, 0.95)
     per_turn = 2 * int(np.ceil(1.3 * highest_order + 2))
     made = angular_resampling(
-        values,
-        moments,
-        angle,
-        samples_per_revolution=per_turn,
-        highest_order=highest_order,
+        values, moments, angle, samples_per_revolution=per_turn, highest_order=highest_order
     )
     length = revolutions * per_turn
     if made.signal.size < length:

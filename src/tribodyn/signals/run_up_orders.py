@@ -185,8 +185,8 @@ def order_cut(
     cycles : int, optional
         Mesh cycles in a block; by default the fewest, from 4 to 64, in which the order fits a whole
         number of times: orders that do so too leave no trace.
-    part : "all", "up" or "down"
-        Part of the run.
+    part
+        As :func:`run_up_order_map` takes it.
 
     Returns
     -------
@@ -252,13 +252,12 @@ def overall_level(
 
     Parameters
     ----------
-    run : RunUp
-    signal : str
-        ``"deflection"``, ``"contact_force"``, a coordinate (its acceleration) or an output.
+    run, signal
+        As :func:`run_up_order_map` takes them.
     cycles : int
         Mesh cycles over which the mean and the mean square are taken.
-    part : "all", "up" or "down"
-        Part of the run.
+    part
+        Likewise.
 
     Returns
     -------
@@ -367,9 +366,8 @@ def resonances(
 
     Parameters
     ----------
-    run : RunUp
-    signal : str
-        ``"deflection"``, ``"contact_force"``, a coordinate (its acceleration) or an output.
+    run, signal
+        As :func:`run_up_order_map` takes them.
     orders : iterable of float
         Mesh orders [-].
     modes : NaturalModes, optional

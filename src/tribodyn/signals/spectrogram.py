@@ -93,19 +93,13 @@ def spectrogram(
 
     Parameters
     ----------
-    signal : (n,) array
-        Equally spaced samples, in any unit.
-    sampling_rate : float
-        Samples per second [Hz].
+    signal, sampling_rate
+        As :func:`tribodyn.analysis.spectrum` takes them [Hz].
     block_length : int, optional
         Samples of a block; by default about the square root of eight times their number. Longer
         blocks tell closer frequencies apart and blur what changes faster.
-    overlap : float
-        Part of a block that it shares with the next [-].
-    window : str
-        Window of :func:`scipy.signal.get_window`.
-    unit : str
-        Unit of the signal, for display.
+    overlap, window, unit
+        As :func:`tribodyn.analysis.spectrum` takes them [-].
 
     Returns
     -------
@@ -142,12 +136,7 @@ def spectrogram(
     from scipy.signal import ShortTimeFFT
 
     transform = ShortTimeFFT(
-        weights,
-        hop,
-        sampling_rate,
-        fft_mode="onesided2X",
-        scale_to="magnitude",
-        phase_shift=None,
+        weights, hop, sampling_rate, fft_mode="onesided2X", scale_to="magnitude", phase_shift=None
     )
     lines = transform.stft(values, p0=first, p1=last + 1)
     return Spectrogram(

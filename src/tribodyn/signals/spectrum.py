@@ -10,11 +10,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.signals.recorded_signal import (
-    checked_signal,
-    refuse_above_half,
-    window_values,
-)
+from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half, window_values
 from tribodyn.types import Array, ComplexArray, Mask
 
 _SCALINGS = ("amplitude", "power", "density")
@@ -164,12 +160,7 @@ def window_gain(window: str, length: int) -> tuple[Array, ComplexArray]:
 
 
 def interpolated_peaks(
-    frequency: Array,
-    amplitude: Array,
-    phase: Array | None,
-    window: str,
-    length: int,
-    count: int,
+    frequency: Array, amplitude: Array, phase: Array | None, window: str, length: int, count: int
 ) -> list[Peak]:
     """Largest local maxima, each as the sine that would make its three lines."""
     inner = np.arange(1, amplitude.size - 1)
@@ -310,18 +301,14 @@ def zoom_spectrum(
 
     Parameters
     ----------
-    signal : (n,) array
-        Equally spaced samples, in any unit.
-    sampling_rate : float
-        Samples per second [Hz].
+    signal, sampling_rate
+        As :func:`spectrum` takes them [Hz].
     lowest, highest : float
         Ends of the band [Hz].
     points : int
         Number of lines.
-    window : str
-        Window of :func:`scipy.signal.get_window`.
-    unit : str
-        Unit of the signal, for display.
+    window, unit
+        As :func:`spectrum` takes them.
 
     Returns
     -------

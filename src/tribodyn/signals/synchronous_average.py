@@ -93,8 +93,8 @@ class SynchronousAverage(Record):
 
         Parameters
         ----------
-        shaft_orders : int
-            Highest shaft order that is taken out; 0 leaves them.
+        shaft_orders
+            As for :meth:`residual`.
 
         Returns
         -------
@@ -131,16 +131,12 @@ def time_synchronous_average(
 
     Parameters
     ----------
-    signal : (n,) array
-        Signal over time, in any unit.
-    time : (n,) array
-        Time of each sample [s].
+    signal, time
+        As :func:`tribodyn.analysis.order_map` takes them [s].
     teeth : int
         Number of teeth of the gear on the shaft.
-    rotation : (n,) array, optional
-        Rotation of the shaft at each sample [rad], counted on without wrap.
-    speed : float or (n,) array, optional
-        Rotational speed [rad/s], instead of the rotation.
+    rotation, speed
+        Likewise [rad], [rad/s].
     mesh_harmonics : int
         Mesh harmonics that must come through.
     unit : str
@@ -180,11 +176,7 @@ def time_synchronous_average(
     highest = teeth * mesh_harmonics + 2
     per_turn = 2 * int(np.ceil(1.3 * highest))
     made = angular_resampling(
-        values,
-        moments,
-        angle,
-        samples_per_revolution=per_turn,
-        highest_order=float(highest),
+        values, moments, angle, samples_per_revolution=per_turn, highest_order=float(highest)
     )
     count = made.signal.size // per_turn
     if count < 2:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.modes import campbell, natural_modes
     from tribodyn.study.studies.run_up import run_up
+    from tribodyn.study.studies.speed_sweep import speed_sweep
     from tribodyn.study.studies.static import (
         comprehensive_stiffness,
         film_over_operation,
@@ -40,6 +41,7 @@ __all__ = [
     "read_case",
     "run",
     "run_up",
+    "speed_sweep",
     "summary_figure",
     "sweep",
 ]
@@ -57,6 +59,7 @@ _HOMES = {
     "read_case": "case.read",
     "run": "pipeline.run",
     "run_up": "studies.run_up",
+    "speed_sweep": "studies.speed_sweep",
     "Result": "pipeline.result",
     "SUMMARY": "pipeline.summary",
     "summary_figure": "pipeline.summary",

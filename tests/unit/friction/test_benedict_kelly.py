@@ -144,3 +144,11 @@ def test_creeping_surfaces_are_warned_of(changes):
         friction(**changes)
     assert caught[0].message.code == "friction-range"
     assert caught[0].filename == __file__
+
+
+def test_a_rough_flank_is_named_as_the_cause():
+    with pytest.warns(ModelWarning, match="roughness factor") as caught:
+        friction(sliding_speed=1e-3, roughness=0.75e-6)
+    text = str(caught[0].message)
+    assert "by 2.97 at S = 0.75 um" in text
+    assert "Do not use it below" not in text

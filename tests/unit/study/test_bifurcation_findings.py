@@ -78,6 +78,10 @@ def test_periods_jumps_and_two_motions(case):
     assert "down: the rms jumps between 1200 rpm and 1300 rpm, from 1.02 um to 2.06 um" in told
     assert "two motions are possible from 1300 rpm to 1400 rpm: up and down differ" in told
     assert [jump["branch"] for jump in found.figures()["jumps"]] == ["up", "down"]
+    rms = plain.rms.copy()
+    rms[1, -2:] *= 2.0
+    told = "\n".join(Findings(case, replace(plain, rms=rms)).sentences())
+    assert "up and down differ; the range ends there, and they may go on beyond it" in told
 
 
 def test_the_title_of_the_figure_tells_what_matters_most():

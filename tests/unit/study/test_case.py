@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import tomllib
 from typing import Any
 
 import pytest
@@ -208,3 +210,26 @@ def test_ra_becomes_rms_and_is_told(case: Any) -> None:
     again = read_case(rough.to_toml())
     assert again == rough
     assert again.composite_roughness == rough.composite_roughness
+
+
+def test_a_line_of_a_written_case_is_toml_when_its_comment_sign_goes(case: Any) -> None:
+    lines = [line for line in case.to_toml().splitlines() if re.match(r"# \w+ = ", line)]
+    assert len(lines) > 40
+    for line in lines:
+        assert tomllib.loads(line.removeprefix("# "))
+    told = {line.split()[1]: line for line in lines}
+    assert told["inlet_heating"].endswith("belongs to law = ehl")
+    assert told["nodes"].endswith("belongs to model = newton, multigrid")
+
+
+@pytest.mark.parametrize("distance", [92.5, 95.0, 99.0])
+def test_the_centre_distance_that_is_advised_leaves_the_backlash(distance: float) -> None:
+    text = SOUND.replace("91.5 mm", f"{distance} mm").replace(
+        "[dynamics]", '[dynamics]\nbacklash = "0.05 mm"'
+    )
+    with pytest.raises(InputError) as told:
+        read_case(text)
+    near = re.search(r"Reduce the centre distance to ([\d.]+) mm", str(told.value))
+    assert near is not None
+    pair = read_case(text.replace(f"{distance} mm", f"{near.group(1)} mm"))
+    assert pair.gear_pair.backlash == pytest.approx(5e-5, abs=2e-6)

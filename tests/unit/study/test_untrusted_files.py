@@ -58,6 +58,14 @@ def test_what_is_no_table_is_not_shown(tmp_path: Path) -> None:
         assert "topsecret" not in str(caught.value)
 
 
+def test_a_profile_map_far_from_a_grid_is_told_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "map.csv"
+    head = "roll_length,face_position,deviation\nmm,mm,um\n"
+    path.write_text(head + "".join(f"{row},{row},0.1\n" for row in range(100_000)))
+    with pytest.raises(InputError, match="make no full grid"):
+        read_case(_with_map(path), str(tmp_path / "case.toml"))
+
+
 @pytest.mark.parametrize(
     "text",
     ["4.5 m^9^9^9", "4.5 m^99", "1 km^400", "10 rpm²1**3", "4.5 mm # x", "4.5 mm\0", "٤.٥ mm",

@@ -7,17 +7,14 @@ is repeated up to there, the contact changes its side, and the motion goes on.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import announced
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
-    JIT,
     Law,
     acceleration,
     first_contact,
@@ -48,17 +45,13 @@ from tribodyn.dynamics._engine.dormand_prince import (
     set_scale,
     try_step,
 )
-from tribodyn.dynamics._engine.lanes import address
+from tribodyn.dynamics._engine.lanes import address, ahead
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
+from tribodyn.dynamics._engine.method import INNER, JIT, ONCE, kernel_digest
 from tribodyn.dynamics._engine.phase_table import PhaseTable
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "lanes", "contact_forces", "method", "crossing", "dormand_prince", "marching", "adaptive",
-    "../equations/program", "../equations/motion", "../equations/divergence",
-)  # fmt: skip
 #: Changes of side of one lane within this much mesh phase; more is chatter, and is reported.
 MAX_CHANGES, CHATTER = 64, 1e-6
 #: Narrowest step in phase that may be rejected.
@@ -156,7 +149,7 @@ def _leaves(lane: int, width: int, law: Law, w: Array) -> bool:
     return False
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _enclose(law: Law, cells: Cells, trial: Trial, room: Array, w: Array) -> tuple[float, float]:
     """Places of the step between which the first contact leaves its side; the far one 2 if none."""
     s, o, contacts = slots_of(law.code), adaptive_slots(law.code), law.code[1]
@@ -192,7 +185,7 @@ def _enclose(law: Law, cells: Cells, trial: Trial, room: Array, w: Array) -> tup
     return low, high
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _first_crossing(
     law: Law, cells: Cells, trial: Trial, room: Array, w: Array
 ) -> tuple[float, float]:
@@ -247,7 +240,7 @@ def _accept(lanes: Any, law: Law, w: Array) -> None:
         w[o.stage * width + item] = w[o.last * width + item]
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _advance_lane(
     law: Law, cells: Cells, segment: Trial, end: float, tolerance: Any, kept: Kept, point: int,
     shift: int, lane: int, room: Array, w: Array,
@@ -335,14 +328,14 @@ def _build(digest: str) -> Any:
         n, contacts, slots = s.n, s.contacts, s.end + o.end
         work = np.zeros(slots * (block + 1))
         aside = np.empty(table.constant.size + WIDTH * (contacts + 1))
-        aside[: table.constant.size] = table.constant
+        for column in range(table.constant.size):
+            aside[column] = table.constant[column]
         law = Law(code, address(program.reads), address(aside))
-        room, w = address(aside[table.constant.size :]), address(work)
-        single, atol = address(work[slots * block :]), address(atol_)
-        cells = Cells(
-            address(table.edge), address(table.degree), address(table.start),
-            address(table.coefficients), address(table.varying), table.varying.size,
-        )  # fmt: skip
+        room, w = ahead(law.rows, table.constant.size), address(work)
+        single, atol = ahead(w, slots * block), address(atol_)
+        edge, degree, start = address(table.edge), address(table.degree), address(table.start)
+        coefficients, varying = address(table.coefficients), address(table.varying)
+        cells = Cells(edge, degree, start, coefficients, varying, table.varying.size)
         set_up(block, code, period, load_, state, w)
         for lane in range(block):
             w[o.period * block + lane] = period[lane]
@@ -440,7 +433,4 @@ def _build(digest: str) -> Any:
     return march_adaptive_block
 
 
-march_adaptive_block = announced(
-    _build(source_digest(Path(__file__).parent, _SOURCES)),
-    "the adaptive engine", "half a minute",
-)  # fmt: skip
+march_adaptive_block = announced(_build(kernel_digest()), "the adaptive engine", "half a minute")

@@ -145,11 +145,12 @@ class AdaptiveLanes:
         width, double = state.shape
         kept = np.zeros((0, double, width)) if record is None else record
         report = np.zeros(10)
+        lanes = (0.0,) * width, engine.table, self.period[block.index], self.load[block.index]
+        tolerances = engine.safety * engine.rtol, engine.safety * engine.atol
+        left = Kept(points, kept, trail, report)
         slots = march_adaptive_block(
-            (0.0,) * width, engine.table, self.period[block.index], self.load[block.index], state,
-            self.memory[place], engine.safety * engine.rtol, engine.safety * engine.atol, cycles,
-            Kept(points, kept, trail, report), stop_flag(),
-        )  # fmt: skip
+            *lanes, state, self.memory[place], *tolerances, cycles, left, stop_flag()
+        )
         refuse_stopped(int(report[4]))
         if report[4]:
             self._report(block, report, slots[:double], elapsed)
@@ -162,10 +163,9 @@ class AdaptiveLanes:
             number = int(self.numbers[lane])
         report[9] += elapsed
         # The state at the failed step, and its largest sizes before.
-        raise adaptive_failure(
-            report, float(self.period[lane]), state, engine.atol / (SMALL * engine.rtol),
-            engine.system, self.load[lane, engine.system.size :], number,
-        )  # fmt: skip
+        scale, factors = engine.atol / (SMALL * engine.rtol), self.load[lane, engine.system.size :]
+        period = float(self.period[lane])
+        raise adaptive_failure(report, period, state, scale, engine.system, factors, number)
 
 
 def adaptive_engine(

@@ -10,12 +10,7 @@ import numpy as np
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import (
-    Failed,
-    newmark_failure,
-    runaway,
-    unparted_step,
-)
+from tribodyn.dynamics.equations.divergence import Failed, newmark_failure, runaway, unparted_step
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import lane_load
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
@@ -167,10 +162,8 @@ class _Run:
             moments = np.ascontiguousarray(statistics.moments[:, index]).reshape(-1)
             harmonics = statistics.waves.shape[2]
             gathered = Gathered(statistics.outputs, waves, harmonics, moments)
-        code = march_block(
-            (0.0,) * width, self.method, program, rows, self.period[index], self.load[index],
-            state, cycles, states, gathered, stop_flag(),
-        )  # fmt: skip
+        lanes = (0.0,) * width, self.method, program, rows, self.period[index], self.load[index]
+        code = march_block(*lanes, state, cycles, states, gathered, stop_flag())
         if statistics is not None and gathered is not None:
             numbers = gathered.moments.reshape(-1, width)
             statistics.moments[:, block.lanes] = numbers[:, : block.count]
@@ -187,16 +180,13 @@ class _Run:
             cycle, number = divmod(place // contacts, grid.steps)
             lane = int(block.index[item])
             phase = elapsed + cycle + float(grid.left[number])
-            raise unparted_step(
-                place % contacts, contacts, phase, phase * float(self.period[lane]),
-                lane if several else None,
-            )  # fmt: skip
+            time, who = phase * float(self.period[lane]), lane if several else None
+            raise unparted_step(place % contacts, contacts, phase, time, who)
         lane, before, record, last = self._again(block, code % UNPARTED)
         member = self.members[self.member[lane]]
-        failed = Failed(
-            member.system, member.nodes, grid, record, before + elapsed, float(self.period[lane]),
-            lane if several else None, self.scales[lane], self.compiled.step_number,
-        )  # fmt: skip
+        cycles, period, who = before + elapsed, float(self.period[lane]), lane if several else None
+        facts = cycles, period, who, self.scales[lane], self.compiled.step_number
+        failed = Failed(member.system, member.nodes, grid, record, *facts)
         if isinstance(self.method, Newmark):
             done = last % UNPARTED if last >= 0 else grid.steps
             raise newmark_failure(failed, done, last >= UNFOUND, self.method[:3])

@@ -28,21 +28,12 @@ from tribodyn.dynamics._engine.lanes import (
     negative_lanes,
     store,
 )
+from tribodyn.dynamics._engine.method import INNER
 from tribodyn.dynamics.equations.program import Slots, lay_out
 from tribodyn.types import Array, Index
 
 #: Without it every literal integer argument makes the compiler translate the callee anew.
 I64: Any = np.int64
-
-#: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
-JIT: dict[str, Any] = {
-    "nogil": True,
-    "fastmath": {"contract", "nsz"},
-    "error_model": "numpy",
-}
-
-#: For what only compiled functions call: no entry from Python has to be compiled.
-INNER: dict[str, Any] = {**JIT, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 class Law(NamedTuple):

@@ -21,7 +21,6 @@ import numpy as np
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
     Law,
     compression,
     dead_zone,
@@ -31,7 +30,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.lanes import first_lane
-from tribodyn.dynamics._engine.method import part_step, restart
+from tribodyn.dynamics._engine.method import INNER, ONCE, prepare, restart, step
 from tribodyn.dynamics.equations import divergence, motion
 from tribodyn.types import Array
 
@@ -236,7 +235,7 @@ def row_within(law: Law, base: int, tau: float, part: Array, node: int) -> None:
         )
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _note(law: Law, start: float, end: float, w: Array, parts: Array) -> None:
     """Add a part to the list of them: where it begins and ends, sides, state at both ends."""
     n, contacts, side = law.code[0], law.code[1], slots_of(law.code).side
@@ -251,7 +250,7 @@ def _note(law: Law, start: float, end: float, w: Array, parts: Array) -> None:
         parts[at + i], parts[at + 2 * n + i] = w[i], w[4 * n + i]
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def _try(
     method: Any, law: Law, base: int, width: float, part: Array, w: Array, room: Array,
     start: float, target: float,
@@ -261,12 +260,13 @@ def _try(
         row_within(law, base, start + 0.5 * node * (target - start), part, I64(node))
     own = Law(law.code, law.reads, part)
     w[slots_of(law.code).h] = width * (target - start)
-    good: bool = part_step(method, own, w)
+    prepare(method, own, 2 * law.code[2], width * (target - start), I64(-1), w)
+    good: bool = step((0.0,), method, own, I64(-1), I64(0), w)
     measure(own, 2 * law.code[2], I64(2), w, room, I64(NOW))
     return good
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def split_step(
     method: Any, law: Law, base: int, width: float, part: Array, w: Array, parts: Array, room: Array
 ) -> tuple[bool, int]:
@@ -286,24 +286,26 @@ def split_step(
     row_within(law, base, 0.0, part, I64(0))
     own = Law(law.code, law.reads, part)
     measure(own, I64(0), I64(0), w, room, I64(NEAR))
-    for _ in range(most_splits(contacts) + 1):
-        good = _try(method, law, base, width, part, w, room, start, 1.0) and good
-        target = begin_search(room, contacts, start, 1.0, sides, w)
-        if target < 0.0:
-            _note(law, start, 1.0, w, parts)
-            return good, I64(-1)
-        there = False
-        while not there:
-            good = _try(method, law, base, width, part, w, room, start, target) and good
+    target, searching, left = 1.0, False, most_splits(contacts) + 1
+    while left > 0:
+        good = _try(method, law, base, width, part, w, room, start, target) and good
+        there, following = True, 0.0
+        if searching:
             there, following = go_on(room, contacts, start, target, sides, w)
-            if not there:
-                target = following
+        else:
+            following = begin_search(room, contacts, start, 1.0, sides, w)
+            there, searching = following < 0.0, True
+        if not there:
+            target = following
+            continue
         _note(law, start, target, w, parts)
+        if following < 0.0:
+            return good, I64(-1)
         contact = change_sides(room, contacts, start, target, sides, w)
         for i in range(2 * n):
             w[i] = w[4 * n + i]
         restart((0.0,), method, own, 2 * law.code[2], w)
-        start = target
+        start, target, searching, left = target, 1.0, False, left - 1
     for i in range(2 * n):
         if not np.isfinite(w[i]):
             return good, I64(-1)

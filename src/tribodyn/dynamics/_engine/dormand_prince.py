@@ -17,7 +17,6 @@ import numpy as np
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
     Law,
     acceleration,
     clearances,
@@ -26,7 +25,8 @@ from tribodyn.dynamics._engine.contact_forces import (
     next_contact,
     slots_of,
 )
-from tribodyn.dynamics._engine.lanes import any_negative, greatest, load, store
+from tribodyn.dynamics._engine.lanes import any_negative, greatest, keep_apart, load, store
+from tribodyn.dynamics._engine.method import INNER
 from tribodyn.types import Array, Index
 
 #: Places of the stages, their weights (the last row is the step itself) and those of the error.
@@ -147,6 +147,7 @@ def set_scale(width: int, code: Index, rtol: float, atol: Array, w: Array) -> No
 @nb.njit(**INNER)
 def try_step(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> float:
     """Step every lane, from buffer 0 to buffer 2; returns the worst error over the tolerance."""
+    keep_apart()
     s, o = slots_of(law.code), adaptive_slots(law.code)
     n = s.n
     h = trial.width * load(lanes, w, o.period)
@@ -233,6 +234,7 @@ def _distances(lanes: Any, law: Law, buffer: int, slot: int, w: Array) -> None:
 @nb.njit(**INNER)
 def may_cross(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> bool:
     """Tell whether a contact of any lane may have left its side within the step just tried."""
+    keep_apart()
     contacts, table = law.code[1], adaptive_slots(law.code).table
     cell = trial.cell
     for m in range(5):

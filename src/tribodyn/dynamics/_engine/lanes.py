@@ -10,12 +10,14 @@ it cannot prove that the slots written differ from the slots read.
 from __future__ import annotations
 
 import operator
+from itertools import product
 from typing import Any
 
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic, models, overload, register_model
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, models, register_model
 
 _FLAGS = ("contract", "nsz")
 
@@ -48,10 +50,31 @@ def address(typing: Any, array: Any) -> Any:
     return types.CPointer(array.dtype)(array), generate
 
 
+@intrinsic
+def ahead(typing: Any, place: Any, count: Any) -> Any:
+    """Address that many items after another."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.gep(arguments[0], [arguments[1]])
+
+    return place(place, types.intp), generate
+
+
 def _pointer(context: Any, builder: Any, kind: Any, array: Any, slot: Any, width: int) -> Any:
     data = array if isinstance(kind, types.CPointer) else _data(context, builder, kind, array)
     place = builder.gep(data, [builder.mul(slot, ir.Constant(slot.type, width))])
     return builder.bitcast(place, ir.VectorType(ir.DoubleType(), width).as_pointer())
+
+
+@intrinsic
+def keep_apart(typing: Any) -> Any:
+    """Keep the function that calls this one out of its callers, which would be compiled longer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        builder.function.attributes.add("noinline")
+        return context.get_dummy_value()
+
+    return types.none(), generate
 
 
 @intrinsic
@@ -177,43 +200,36 @@ def entry(typing: Any, lanes: Any, rows: Any, item: Any) -> Any:
     return kind(lanes, rows, types.intp), generate
 
 
-def _operation(name: str) -> Any:
-    @intrinsic
-    def operate(typing: Any, left: Any, right: Any) -> Any:
-        kind = left if isinstance(left, LaneType) else right
+def _arithmetic(operation: Any, name: str) -> None:
+    """Let lanes and numbers be combined by an operator."""
 
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            operands = [
-                item
-                if isinstance(argument, LaneType)
-                else _broadcast(
-                    builder, context.cast(builder, item, argument, types.float64), kind.width
-                )
-                for item, argument in zip(arguments, signature.args, strict=True)
-            ]
-            return getattr(builder, name)(*operands, flags=_FLAGS)
+    @infer_global(operation)
+    class _Combine(AbstractTemplate):
+        def generic(self, arguments: Any, named: Any) -> Any:
+            lanes = [kind for kind in arguments if isinstance(kind, LaneType)]
+            known = (LaneType, types.Float, types.Integer)
+            if not lanes or not all(isinstance(kind, known) for kind in arguments):
+                return None
+            taken = [kind if isinstance(kind, LaneType) else types.float64 for kind in arguments]
+            return signature(lanes[0], *taken)
 
-        return kind(left, right), generate
+    def generate(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
+        operands = [
+            item
+            if isinstance(kind, LaneType)
+            else _broadcast(builder, item, kinds.return_type.width)
+            for item, kind in zip(arguments, kinds.args, strict=True)
+        ]
+        return getattr(builder, name)(*operands, flags=_FLAGS)
 
-    return operate
-
-
-_add, _sub, _mul = _operation("fadd"), _operation("fsub"), _operation("fmul")
-
-
-def _overload(function: Any, operate: Any) -> None:
-    @overload(function)
-    def choose(left, right):  # type: ignore[no-untyped-def]  # numba compares the signatures
-        numbers = (LaneType, types.Float, types.Integer)
-        lanes = isinstance(left, LaneType) or isinstance(right, LaneType)
-        if lanes and isinstance(left, numbers) and isinstance(right, numbers):
-            return lambda left, right: operate(left, right)
-        return None
+    for left, right in product((LaneType, types.Float), repeat=2):
+        if LaneType in (left, right):
+            lower_builtin(operation, left, right)(generate)
 
 
-_overload(operator.add, _add)
-_overload(operator.sub, _sub)
-_overload(operator.mul, _mul)
+_arithmetic(operator.add, "fadd")
+_arithmetic(operator.sub, "fsub")
+_arithmetic(operator.mul, "fmul")
 
 
 @intrinsic

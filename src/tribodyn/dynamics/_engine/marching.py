@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numba as nb
@@ -10,12 +9,10 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import announced
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
-    JIT,
     Law,
     first_contact,
     is_dead_zone,
@@ -25,18 +22,23 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
-from tribodyn.dynamics._engine.lanes import address, open_rows
-from tribodyn.dynamics._engine.method import accept, own_slots, prepare, restart, step
+from tribodyn.dynamics._engine.lanes import address, ahead, open_rows
+from tribodyn.dynamics._engine.method import (
+    INNER,
+    JIT,
+    ONCE,
+    accept,
+    kernel_digest,
+    own_slots,
+    prepare,
+    restart,
+    step,
+)
 from tribodyn.dynamics._engine.moments import Gathered, gather, gather_parts
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
-#: Every file whose code ends up in the compiled kernel.
-_SOURCES = (
-    "lanes", "contact_forces", "method", "runge_kutta", "newmark", "crossing", "statistics",
-    "moments", "marching", "../equations/program", "../equations/motion", "../equations/divergence",
-)  # fmt: skip
 #: What :func:`march_block` returns from here on tells of a step that comes to no end, and of one
 #: whose forces were not found.
 UNPARTED, UNFOUND = 1 << 40, 1 << 50
@@ -61,7 +63,7 @@ def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> 
     raise TypeError("chosen by type where it is compiled")
 
 
-@overload(_rows_of_lane)
+@overload(_rows_of_lane, inline="always")
 def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-def]
     if not isinstance(law.types[2], types.BaseTuple):
         return lambda law, base, width, lane, gathered: (law, base)
@@ -80,14 +82,14 @@ def _moments_of(gathered: Any) -> Any:
     raise TypeError("chosen by type where it is compiled")
 
 
-@overload(_moments_of)
+@overload(_moments_of, inline="always")
 def _choose_moments(gathered):  # type: ignore[no-untyped-def]
     if isinstance(gathered, types.NoneType):
         return lambda gathered: (0, 0)
     return lambda gathered: (gathered.moments.size, 6 * gathered.harmonics)
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w: Array) -> None:
     """Fill the slots of all lanes: state, load and factors."""
     s = slots_of(code)
@@ -110,7 +112,7 @@ def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w:
             w[s.force_scale * width + lane] = load[lane, n + 5]
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def has_dead_zones(law: Law) -> bool:
     """Whether any contact has a dead zone."""
     here = first_contact(law, I64(0), I64(0))
@@ -146,26 +148,29 @@ def _build(digest: str) -> Any:
         share, again = program.width, program.restart
         law = Law(address(program.code), address(program.reads), open_rows(rows))
         s, n, columns, width = slots_of(law.code), law.code[0], law.code[2], len(lanes)
-        own, lasting = own_slots(method, law)
+        own, lasting, kinds = own_slots(method, law)
         slots = s.end + own
         # Slots of all lanes, those of one, rows of a part of a step, rows of one lane.
         work = np.zeros(slots * (width + 1) + 6 * columns)
-        single, part = address(work[slots * width :]), address(work[slots * (width + 1) :])
-        w, room = address(work), address(work[slots * (width + 1) + 3 * columns :])
+        w = address(work)
+        single, part = ahead(w, slots * width), ahead(w, slots * (width + 1))
+        room = ahead(part, 3 * columns)
         # A list of the parts of a step, the search, moments of the lanes that were split, waves.
         listed = 1 + (most_splits(s.contacts) + 1) * (2 + s.contacts + 4 * n)
         most = listed + WIDTH * (s.contacts + 1)
         counts = _moments_of(gathered)
         kept = np.empty(most + counts[0] + counts[1])
-        parts, search = address(kept), address(kept[listed:])
+        parts = address(kept)
+        search, others = ahead(parts, listed), ahead(parts, most)
         set_up(width, law.code, period, load, state, w)
         for lane in range(width if own > 0 else 0):
             take_lane(lane, width, slots, w, single)
             alone, first = _rows_of_lane(law, I64(0), width, lane, room)
-            prepare(method, alone, first, period[lane], single)
+            for kind in range(kinds):
+                prepare(method, alone, first, period[lane], kind, single)
             put_lane(lane, width, s.end, slots, w, single)
         switching = has_dead_zones(law)
-        keep = record.shape[0] > 0
+        keep, kept_states, states = record.shape[0] > 0, address(record), 2 * n * width
         point = 0
         for _cycle in range(cycles):
             for r in range(share.size):
@@ -179,9 +184,8 @@ def _build(digest: str) -> Any:
                         set_sides(lanes, law, base, I64(0), w)
                     restart(lanes, method, law, base, w)
                 if keep:
-                    for i in range(2 * n):
-                        for lane in range(width):
-                            record[point, i, lane] = w[i * width + lane]
+                    for item in range(states):
+                        kept_states[point * states + item] = w[item]
                 if not step(lanes, method, law, r, base, w):
                     return UNFOUND + point + 1
                 gone = I64(0)
@@ -206,32 +210,32 @@ def _build(digest: str) -> Any:
                         put_lane(lane, width, s.end, s.end + lasting, w, single)
                         if gathered is not None:
                             count = counts[0] // width
-                            mine = address(kept[most + lane * count :])
+                            mine = ahead(others, lane * count)
                             take_lane(lane, width, count, address(gathered.moments), mine)
+                            waves, number = address(gathered.waves), gathered.harmonics
+                            own_sums = Gathered(gathered.outputs, waves, number, mine)
+                            weight, wave = share[r] / cycles, 6 * number * r
+                            near = ahead(others, counts[0])
                             gather_parts(
-                                alone, first, parts, whole, part, single, gathered.outputs,
-                                share[r] / cycles, address(gathered.waves),
-                                6 * gathered.harmonics * r, gathered.harmonics,
-                                address(kept[most + counts[0] :]), mine,
+                                alone, first, parts, whole, part, weight, wave, near, own_sums,
+                                single,
                             )  # fmt: skip
                 if gathered is not None:
                     for lane in range(width):
                         w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
-                    moments = address(gathered.moments)
-                    gather(
-                        lanes, law, base, switching, w, gathered.outputs, share[r] / cycles,
-                        address(gathered.waves), 6 * gathered.harmonics * r, gathered.harmonics,
-                        moments,
-                    )  # fmt: skip
+                    moments, number = address(gathered.moments), gathered.harmonics
+                    sums = Gathered(gathered.outputs, address(gathered.waves), number, moments)
+                    weight, wave = share[r] / cycles, 6 * number * r
+                    gather(lanes, law, base, switching, weight, wave, sums, w)
                     # The whole step was added to lanes that were split: their own moments instead.
                     for lane in range(width if gone != 0 else 0):
                         if (gone >> lane) & 1:
                             count = counts[0] // width
-                            mine = address(kept[most + lane * count :])
+                            mine = ahead(others, lane * count)
                             put_lane(lane, width, I64(0), count, moments, mine)
                 accept(lanes, method, law, w)
                 point += 1
-            for item in range(2 * n * width):
+            for item in range(states):
                 if not np.isfinite(w[item]):
                     return point
         # Addresses hold only as long as their owners are in use.
@@ -240,14 +244,11 @@ def _build(digest: str) -> Any:
             for i in range(2 * n):
                 state[lane, i] = w[i * width + lane]
         if keep:
-            for i in range(2 * n):
-                for lane in range(width):
-                    record[point, i, lane] = w[i * width + lane]
+            for item in range(states):
+                kept_states[point * states + item] = w[item]
         return -1
 
     return march_block
 
 
-march_block = announced(
-    _build(source_digest(Path(__file__).parent, _SOURCES)), "the engine", "a quarter of a minute"
-)
+march_block = announced(_build(kernel_digest()), "the engine", "a quarter of a minute")

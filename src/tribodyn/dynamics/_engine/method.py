@@ -8,12 +8,22 @@ begin where those of the law end.
 
 from __future__ import annotations
 
+import inspect
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.compiled import source_digest
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.types import Array, Index
+
+
+def kernel_digest() -> str:
+    """Digest of every file whose code may end up in a compiled kernel."""
+    folder = Path(__file__).parent
+    law = (f"../equations/{name}" for name in ("program", "motion", "divergence"))
+    return source_digest(folder, [*sorted(path.stem for path in folder.glob("*.py")), *law])
 
 
 class RungeKutta4(NamedTuple):
@@ -38,18 +48,42 @@ class Newmark(NamedTuple):
         return cls(float(gamma), float(beta), float(tolerance), widths, kind.astype(np.int64))
 
 
-def is_method(kind: Any, method: type) -> bool:
-    """Whether a Numba type is that of a method."""
-    return getattr(kind, "instance_class", None) is method
+#: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
+JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
+
+#: For what only compiled functions call: no entry from Python has to be compiled.
+INNER: dict[str, Any] = {**JIT, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+#: For what is called in one place only: it is not compiled by itself, which would be done again
+#: with its caller.
+ONCE: dict[str, Any] = {**INNER, "inline": "always"}
 
 
-def own_slots(method: Any, law: Any) -> tuple[int, int]:
-    """Slots of the method, and how many of them a step changes for good."""
+def for_method(method: type, function: Any) -> Any:
+    """Take what follows as one of the functions below, for the methods of one type."""
+    from numba.extending import overload
+
+    place = list(inspect.signature(function).parameters).index("method")
+
+    def register(implementation: Any) -> Any:
+        def choose(*arguments: Any) -> Any:
+            kind = getattr(arguments[place], "instance_class", None)
+            return implementation if kind is method else None
+
+        choose.__signature__ = inspect.signature(implementation)  # type: ignore[attr-defined]
+        overload(function, jit_options=INNER)(choose)
+        return implementation
+
+    return register
+
+
+def own_slots(method: Any, law: Any) -> tuple[int, int, int]:
+    """Slots of the method, how many of them a step changes for good, kinds of steps to prepare."""
     raise TypeError("chosen by type where it is compiled")
 
 
-def prepare(method: Any, law: Any, base: int, period: float, w: Array) -> None:
-    """Set up the slots of one lane."""
+def prepare(method: Any, law: Any, base: int, duration: float, kind: int, w: Array) -> None:
+    """Set up the slots of one lane for a kind of steps; kind -1: for a part of that duration."""
     raise TypeError("chosen by type where it is compiled")
 
 
@@ -59,12 +93,7 @@ def restart(lanes: Any, method: Any, law: Any, base: int, w: Array) -> None:
 
 
 def step(lanes: Any, method: Any, law: Any, number: int, base: int, w: Array) -> bool:
-    """March every lane by a whole step, from buffer 0 to buffer 2; False if it was not found."""
-    raise TypeError("chosen by type where it is compiled")
-
-
-def part_step(method: Any, law: Any, w: Array) -> bool:
-    """March one lane by a part of a step, whose three rows are those of ``law``."""
+    """March every lane by step ``number``, -1 for a part of one; False if it was not found."""
     raise TypeError("chosen by type where it is compiled")
 
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
     Law,
     acceleration,
     compression,
@@ -27,6 +26,7 @@ from tribodyn.dynamics._engine.contact_forces import (
 )
 from tribodyn.dynamics._engine.crossing import row_within
 from tribodyn.dynamics._engine.lanes import greatest, least, load, store
+from tribodyn.dynamics._engine.method import INNER, ONCE
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array
@@ -38,12 +38,12 @@ _SHORTEST = 1e-7
 
 
 class Gathered(NamedTuple):
-    """What statistics are gathered."""
+    """What statistics are gathered; in kernels with addresses instead of arrays."""
 
     outputs: Array  #: linear outputs of the state
-    waves: Array  #: cosine and sine of every harmonic at the three nodes of every step
+    waves: Any  #: cosine and sine of every harmonic at the three nodes of every step
     harmonics: int
-    moments: Array  #: of all lanes
+    moments: Any  #: of all lanes, or of one
 
 
 @nb.njit(**INNER)
@@ -52,67 +52,69 @@ def _middle(lanes: Any, law: Law, w: Array) -> None:
     s = slots_of(law.code)
     n, h, inverse = s.n, load(lanes, w, s.h), load(lanes, w, s.inverse)
     for i in range(n):
-        q, v = cubic_middle(
-            h, inverse, load(lanes, w, i), load(lanes, w, n + i),
-            load(lanes, w, 4 * n + i), load(lanes, w, 5 * n + i),
-        )  # fmt: skip
+        q0, v0 = load(lanes, w, i), load(lanes, w, n + i)
+        q1, v1 = load(lanes, w, 4 * n + i), load(lanes, w, 5 * n + i)
+        q, v = cubic_middle(h, inverse, q0, v0, q1, v1)
         store(w, 2 * n + i, q)
         store(w, 3 * n + i, v)
 
 
 @nb.njit(**INNER)
-def _add(
-    lanes: Any, value: Any, weight: float, at: int, waves: Array, wave: int, harmonics: int,
-    m: Array,
-) -> None:  # fmt: skip
+def _add(lanes: Any, value: Any, weight: float, at: int, m: Array) -> Any:
+    """Add to the plain moments of a signal; returns the value times its weight."""
     weighted = weight * value
     store(m, at, load(lanes, m, at) + weighted)
     store(m, at + 1, load(lanes, m, at + 1) + weighted * value)
     store(m, at + 2, least(load(lanes, m, at + 2), value))
     store(m, at + 3, greatest(load(lanes, m, at + 3), value))
-    for item in range(2 * harmonics):
+    return weighted
+
+
+@nb.njit(**INNER)
+def _add_waves(lanes: Any, weighted: Any, at: int, wave: int, into: Gathered) -> None:
+    """Add to the harmonics of a signal of a contact."""
+    for item in range(2 * into.harmonics):
         slot = at + PLAIN_MOMENTS + item
-        store(m, slot, load(lanes, m, slot) + waves[wave + item] * weighted)
+        part = into.waves[wave + item] * weighted
+        store(into.moments, slot, load(lanes, into.moments, slot) + part)
 
 
 @nb.njit(**INNER)
 def gather(
-    lanes: Any, law: Law, base: int, switching: bool, w: Array, outputs: Array, share: float,
-    waves: Array, wave: int, harmonics: int, m: Array,
-) -> None:  # fmt: skip
-    """Add one step, whose ends are in buffers 0 and 2, to the moments ``m``."""
-    s, columns = slots_of(law.code), law.code[2]
-    n, contacts = s.n, s.contacts
-    long = PLAIN_MOMENTS + 2 * harmonics
+    lanes: Any, law: Law, row: int, switching: bool, share: float, wave: int, into: Gathered, w: Any
+) -> None:
+    """Add one step, whose ends are in buffers 0 and 2, to the moments."""
+    s, columns, m = slots_of(law.code), law.code[2], into.moments
+    n, contacts, outputs = s.n, s.contacts, into.outputs
+    long = PLAIN_MOMENTS + 2 * into.harmonics
     _middle(lanes, law, w)
     for node in range(3):
-        buffer, row = (0, 1, 2)[node], base + node * columns
-        weight = (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)[node] * share
-        phase = wave + node * 2 * harmonics
+        at, phase = row + node * columns, wave + node * 2 * into.harmonics
+        weight = (4.0 / 6.0 if node == 1 else 1.0 / 6.0) * share
         if switching:
-            set_sides(lanes, law, row, buffer, w)
-        acceleration(lanes, law, row, buffer, s.first, w)
-        here = first_contact(law, row, buffer)
+            set_sides(lanes, law, at, node, w)
+        acceleration(lanes, law, at, node, s.first, w)
+        here = first_contact(law, at, node)
         for j in range(contacts):
             d = compression(lanes, law, here, s.error, w)
-            _add(lanes, d, weight, j * long, waves, phase, harmonics, m)
-            force = load(lanes, w, s.force + j)
-            _add(lanes, force, weight, (contacts + j) * long, waves, phase, harmonics, m)
+            weighted = _add(lanes, d, weight, j * long, m)
+            _add_waves(lanes, weighted, j * long, phase, into)
+            slot = (contacts + j) * long
+            weighted = _add(lanes, load(lanes, w, s.force + j), weight, slot, m)
+            _add_waves(lanes, weighted, slot, phase, into)
             off = weight * (1.0 - greatest(load(lanes, w, s.side + j), 0.0 * d))
-            slot = (contacts + j) * long + 4
-            store(m, slot, load(lanes, m, slot) + off)
+            store(m, slot + 4, load(lanes, m, slot + 4) + off)
             here = next_contact(law, here)
         signal = 2 * contacts * long
         for i in range(n):
-            a = load(lanes, w, s.first + i)
-            _add(lanes, a, weight, signal, waves, phase, 0, m)
+            _add(lanes, load(lanes, w, s.first + i), weight, signal, m)
             signal += PLAIN_MOMENTS
         for o in range(outputs.shape[0]):
             y = 0.0 * load(lanes, w, 0)
             for i in range(2 * n):
                 if outputs[o, i] != 0.0:
-                    y = y + outputs[o, i] * load(lanes, w, 2 * n * buffer + i)
-            _add(lanes, y, weight, signal, waves, phase, 0, m)
+                    y = y + outputs[o, i] * load(lanes, w, 2 * n * node + i)
+            _add(lanes, y, weight, signal, m)
             signal += PLAIN_MOMENTS
 
 
@@ -130,13 +132,14 @@ def _waves_within(
         near[2 * harmonics * node + item + 1] = math.sin(angle)
 
 
-@nb.njit(**INNER)
+@nb.njit(**ONCE)
 def gather_parts(
-    law: Law, base: int, parts: Array, width: float, part: Array, w: Array, outputs: Array,
-    share: float, waves: Array, wave: int, harmonics: int, near: Array, m: Array,
+    law: Law, base: int, parts: Array, width: float, part: Array, share: float, wave: int,
+    near: Array, into: Gathered, w: Array,
 ) -> None:  # fmt: skip
     """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``."""
     s, own = slots_of(law.code), Law(law.code, law.reads, part)
+    here = Gathered(into.outputs, near, into.harmonics, into.moments)
     n, contacts, at = s.n, s.contacts, I64(1)
     for _ in range(I64(parts[0])):
         start, end = parts[at], parts[at + 1]
@@ -150,11 +153,8 @@ def gather_parts(
             for node in range(3):
                 tau = start + 0.5 * node * (end - start)
                 row_within(law, base, tau, part, I64(node))
-                _waves_within(waves, wave, harmonics, tau, near, I64(node))
+                _waves_within(into.waves, wave, into.harmonics, tau, near, I64(node))
             w[s.h] = width * (end - start)
             w[s.inverse] = 1.0 / w[s.h]
-            gather(
-                (0.0,), own, I64(0), np.bool_(False), w, outputs, share * (end - start), near,
-                I64(0), harmonics, m,
-            )  # fmt: skip
+            gather((0.0,), own, I64(0), np.bool_(False), share * (end - start), I64(0), here, w)
         at += contacts + 4 * n

@@ -14,11 +14,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numba as nb
-from numba.extending import overload
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    INNER,
     Cursor,
     Law,
     acceleration,
@@ -36,17 +34,18 @@ from tribodyn.dynamics._engine.lanes import (
     any_above,
     entry,
     greatest,
+    keep_apart,
     load,
     magnitude,
     quotient,
     store,
 )
 from tribodyn.dynamics._engine.method import (
+    INNER,
     Newmark,
     accept,
-    is_method,
+    for_method,
     own_slots,
-    part_step,
     prepare,
     restart,
     step,
@@ -123,10 +122,13 @@ def _coordinate_terms(law: Law, base: int, buffer: int) -> Cursor:
     return here
 
 
-@nb.njit(**INNER)
-def _invert(method: Newmark, law: Law, base: int, h: float, inverse: int, w: Array) -> None:
+@for_method(Newmark, prepare)
+def _invert(method: Newmark, law: Law, base: int, duration: float, kind: int, w: Array) -> None:
     """Inverse of ``1 + gamma h C + beta h^2 K`` of one lane, by elimination with pivots."""
+    keep_apart()
     n, spare = law.code[0], _slots_of(law.code).spare
+    h = duration if kind < 0 else method.widths[kind] * duration
+    inverse = _slots_of(law.code).inverse + max(kind, 0) * n * n
     for item in range(n * n):
         w[spare + item] = w[inverse + item] = 0.0
     here = _coordinate_terms(law, base, I64(0))
@@ -336,11 +338,15 @@ def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> boo
     return False
 
 
-@nb.njit(**INNER)
-def newmark_step(lanes: Any, method: Newmark, law: Law, base: int, inverse: int, w: Array) -> bool:
-    """March every lane by one step with the sides at its start; ``base`` is the row at its end."""
+@for_method(Newmark, step)
+def newmark_step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array) -> bool:
+    """March every lane by one step with the sides at its start."""
+    keep_apart()
     s, o = slots_of(law.code), _slots_of(law.code)
     n, m = s.n, s.contacts
+    # The row at the end of the step is read.
+    base = base + 2 * law.code[2]
+    inverse = o.inverse + (method.kind[number] if number >= 0 else I64(0)) * n * n
     _without_contacts(lanes, method, law, base, inverse, w)
     if m == 0:
         return True
@@ -361,75 +367,20 @@ def newmark_step(lanes: Any, method: Newmark, law: Law, base: int, inverse: int,
     return there
 
 
-@overload(own_slots)
-def _own_slots(method, law):  # type: ignore[no-untyped-def]
-    if not is_method(method, Newmark):
-        return None
-
-    def count(method, law):  # type: ignore[no-untyped-def]
-        n = law.code[0]
-        return _slots_of(law.code).end + method.widths.size * n * n, 2 * n
-
-    return count
+@for_method(Newmark, own_slots)
+def _own_slots(method: Newmark, law: Law) -> tuple[int, int, int]:
+    n, kinds = law.code[0], method.widths.size
+    return _slots_of(law.code).end + kinds * n * n, 2 * n, kinds
 
 
-@overload(prepare)
-def _prepare(method, law, base, period, w):  # type: ignore[no-untyped-def]
-    if not is_method(method, Newmark):
-        return None
-
-    def invert(method, law, base, period, w):  # type: ignore[no-untyped-def]
-        n, inverse = law.code[0], _slots_of(law.code).inverse
-        for kind in range(method.widths.size):
-            h = method.widths[kind] * period
-            _invert(method, law, base, h, inverse + kind * n * n, w)
-
-    return invert
+@for_method(Newmark, restart)
+def _restart(lanes: Any, method: Newmark, law: Law, base: int, w: Array) -> None:
+    acceleration(lanes, law, base, I64(0), _slots_of(law.code).now, w)
 
 
-@overload(restart)
-def _restart(lanes, method, law, base, w):  # type: ignore[no-untyped-def]
-    if not is_method(method, Newmark):
-        return None
-    return lambda lanes, method, law, base, w: acceleration(
-        lanes, law, base, I64(0), _slots_of(law.code).now, w
-    )
-
-
-@overload(step)
-def _step(lanes, method, law, number, base, w):  # type: ignore[no-untyped-def]
-    if not is_method(method, Newmark):
-        return None
-
-    def march(lanes, method, law, number, base, w):  # type: ignore[no-untyped-def]
-        inverse = _slots_of(law.code).inverse + method.kind[number] * law.code[0] ** 2
-        return newmark_step(lanes, method, law, base + 2 * law.code[2], inverse, w)
-
-    return march
-
-
-@overload(part_step)
-def _part_step(method, law, w):  # type: ignore[no-untyped-def]
-    if not is_method(method, Newmark):
-        return None
-
-    def march(method, law, w):  # type: ignore[no-untyped-def]
-        base, inverse = 2 * law.code[2], _slots_of(law.code).inverse
-        _invert(method, law, base, w[slots_of(law.code).h], inverse, w)
-        return newmark_step((0.0,), method, law, base, inverse, w)
-
-    return march
-
-
-@overload(accept)
-def _accept(lanes, method, law, w):  # type: ignore[no-untyped-def]
-    if not is_method(method, Newmark):
-        return None
-
-    def keep(lanes, method, law, w):  # type: ignore[no-untyped-def]
-        n, o = law.code[0], _slots_of(law.code)
-        take_over(lanes, n, w)
-        for i in range(n):
-            store(w, o.now + i, load(lanes, w, o.new + i))
-
-    return keep
+@for_method(Newmark, accept)
+def _accept(lanes: Any, method: Newmark, law: Law, w: Array) -> None:
+    n, o = law.code[0], _slots_of(law.code)
+    take_over(lanes, n, w)
+    for i in range(n):
+        store(w, o.now + i, load(lanes, w, o.new + i))

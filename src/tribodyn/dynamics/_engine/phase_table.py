@@ -114,10 +114,8 @@ def _noise(system: System, nodes: Nodes, program: Program) -> Array:
     inverse = np.linalg.inv(np.asarray(system.mass))
     size = np.abs(inverse)
     pushes = (nodes.force_direction, nodes.direction, nodes.force_direction - nodes.direction)
-    parts = [
-        (np.einsum("ik,rsk->rsi", inverse, nodes.force), _CANCELLED,
-         np.einsum("ik,rsk->rsi", size, np.abs(nodes.force)))
-    ]  # fmt: skip
+    load = np.einsum("ik,rsk->rsi", inverse, nodes.force)
+    parts = [(load, _CANCELLED, np.einsum("ik,rsk->rsi", size, np.abs(nodes.force)))]
     for j in range(nodes.error.shape[-1]):
         parts += [
             (nodes.error_slope[:, :, j, None], _NOISE, nodes.error[:, :, j, None]),

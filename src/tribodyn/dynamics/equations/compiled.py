@@ -79,21 +79,20 @@ class Compiled:
         return self.members or (Member(self.system, self.nodes, np.arange(lanes)),)
 
 
-def require_steps(steps: int) -> None:
-    """Refuse steps that are no whole number of at least one."""
-    if int(steps) != steps or steps < 1:
-        raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
+def require_whole(name: str, value: float, least: int = 1) -> None:
+    """Refuse what is no whole number, or too small a one."""
+    if int(value) != value or value < least:
+        raise InputError(
+            f"{name} = {value}", where=f"argument {name}", why=f"A whole number >= {least}"
+        )
 
 
 def compile_for(
-    system: System,
-    mesh_frequency: ArrayLike,
-    steps: int,
-    parameters: LaneParameters | None = None,
+    system: System, mesh_frequency: ArrayLike, steps: int, parameters: LaneParameters | None = None
 ) -> Compiled:
     """Compile a system and refuse a step that the integrator cannot follow."""
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    require_steps(steps)
+    require_whole("steps", steps)
     grid, nodes, program = compile_system(system, int(steps))
     beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if parameters is None:
@@ -118,7 +117,7 @@ def compile_lanes(
         return compile_for(distinct[0], mesh_frequency, steps, parameters)
     _refuse_different(given)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    require_steps(steps)
+    require_whole("steps", steps)
     if len(distinct) == 1:
         system, (grid, nodes, program) = distinct[0], compile_system(distinct[0], int(steps))
         rate = largest_rate(system, nodes) if parameters is None else float("nan")

@@ -133,9 +133,8 @@ def probable_cause(
 ) -> tuple[str, str]:
     """Look for what can make a motion grow."""
     stiff, damp = factors[:2]
-    for kind, entry, factor, unit in (
-        ("stiffness", nodes.stiffness, stiff, "N/m"), ("damping", nodes.damping, damp, "N*s/m"),
-    ):  # fmt: skip
+    spring, damper = ("stiffness", stiff, "N/m"), ("damping", damp, "N*s/m")
+    for (kind, factor, unit), entry in ((spring, nodes.stiffness), (damper, nodes.damping)):
         values = factor * entry
         if values.size and values.min() < 0.0:
             row, node, j = np.unravel_index(int(values.argmin()), values.shape)
@@ -144,10 +143,10 @@ def probable_cause(
                 f"phase {nodes.phase[row, node]:.4g}",
                 f"Look for a wrong sign in contacts[{j}].{kind}",
             )
-    spring, damper, push = _mean_matrices(system, nodes, factors)
+    stiffness, damping, push = _mean_matrices(system, nodes, factors)
     checks = (
-        ("stiffness", spring, np.asarray(system.stiffness)),
-        ("damping", damper, np.asarray(system.damping)),
+        ("stiffness", stiffness, np.asarray(system.stiffness)),
+        ("damping", damping, np.asarray(system.damping)),
     )
     for kind, total, own in checks:
         found = _negative_direction(total, system)
@@ -157,7 +156,7 @@ def probable_cause(
                 f"The {kind} matrix has a negative eigenvalue, in a motion of {found}",
                 f"Look for a wrong sign or place in {where}",
             )
-    rubbing = _friction_cause(system, nodes, factors[2], (spring, damper, push))
+    rubbing = _friction_cause(system, nodes, factors[2], (stiffness, damping, push))
     if rubbing is not None:
         return rubbing
     if step_number > _SUSPECT_STEP:

@@ -141,21 +141,19 @@ def refuse_unstable_lanes(
     least = largest_rate(system, nodes, tuple(table.max(axis=0))) * longest / float(beat.min())
     if least <= LIMIT:
         return least
-    likely = np.unique(
-        np.concatenate([np.argsort(-key)[:_LANES] for key in (table[:, 0] / beat**2,
-                                                             table[:, 1] / beat)])
-    )  # fmt: skip
+    keys = (table[:, 0] / beat**2, table[:, 1] / beat)
+    likely = np.unique(np.concatenate([np.argsort(-key)[:_LANES] for key in keys]))
     rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
     stiffest = np.array([int(nodes.stiffness.sum(axis=-1)[rows, stages].argmax())])
     rates = _rates(system, nodes, rows[stiffest], stages[stiffest], table[likely])
     worst = int(likely[np.argmax(rates / beat[likely])])
     names = ("stiffness_scale", "damping_scale", "friction_scale")
-    given = [f"{name} = {value:g}" for name, value in zip(names, table[worst], strict=True)
-             if value != 1.0]  # fmt: skip
+    factors = dict(zip(names, table[worst].tolist(), strict=True))
+    given = [f"{name} = {value:g}" for name, value in factors.items() if value != 1.0]
     number = worst if lanes is None else int(lanes[worst])
     who = f" in lane {number}" + (f" ({', '.join(given)})" if given else "")
-    factors = tuple(table[worst].tolist())
-    return refuse_unstable_step(system, nodes, grid, float(beat[worst]), factors, who)
+    scales = tuple(factors.values())
+    return refuse_unstable_step(system, nodes, grid, float(beat[worst]), scales, who)
 
 
 def _every_lane(

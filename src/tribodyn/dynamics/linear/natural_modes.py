@@ -8,11 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.linear.natural_modes_linear import (
-    LinearSystem,
-    ModePhase,
-    linear_system,
-)
+from tribodyn.dynamics.linear.natural_modes_linear import LinearSystem, ModePhase, linear_system
 from tribodyn.errors import InputError
 from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, ComplexArray

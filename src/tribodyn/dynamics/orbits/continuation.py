@@ -33,7 +33,7 @@ from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
-from tribodyn.dynamics.time.response import Response, build_response
+from tribodyn.dynamics.time.response import Response, build_response, sample_extremes
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, warn
 from tribodyn.progress import SILENT, Progress
@@ -362,17 +362,6 @@ def _signal(response: Response, name: str) -> Array:
     return response.fine.deflection[:, int(name.partition(" ")[2] or 0)]
 
 
-def _extremes(signal: Array) -> tuple[Array, Array]:
-    """Least and greatest value of (3 s, ...) of the parabolas through the samples of each step."""
-    left, middle, right = np.moveaxis(signal.reshape(-1, 3, *signal.shape[1:]), 1, 0)
-    bend, rise = left - 2.0 * middle + right, 0.5 * (right - left)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        place = np.where(bend != 0.0, -rise / bend, 0.0)
-    inner = np.where(np.abs(place) < 1.0, middle + 0.5 * rise * place, middle)
-    every = np.concatenate((left, middle, right, inner))
-    return every.min(axis=0), every.max(axis=0)
-
-
 def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures:
     """Record one orbit and measure it."""
     states, extra = mapping.record(y)
@@ -381,12 +370,12 @@ def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures
     fine, nodes = response.fine, mapping.compiled.nodes
     values = np.stack([_signal(response, name) for name in signals], axis=1)
     mean = fine.mean(values)
-    low, high = _extremes(values)
+    low, high = sample_extremes(values)
     count = nodes.gap.shape[2]
     gap = np.tile(nodes.gap, (response.periods, 1, 1))
     beyond = fine.deflection - gap.reshape(fine.deflection.shape)
     dead = np.any(nodes.gap > 0.0, axis=(0, 1))
-    clearance = _extremes(beyond)[0] if count else np.zeros(0)
+    clearance = sample_extremes(beyond)[0] if count else np.zeros(0)
     able = dead & lowest_of_each_law(nodes) if count else dead
     return OrbitFigures(
         mesh_frequency=frequency,
@@ -395,7 +384,7 @@ def measure(mapping: OrbitMap, y: Array, signals: Sequence[str]) -> OrbitFigures
         mean=mean,
         rms=np.sqrt(fine.mean((values - mean) ** 2)),
         peak_to_peak=high - low,
-        peak_force=_extremes(fine.contact_force)[1] if count else np.zeros(0),
+        peak_force=sample_extremes(fine.contact_force)[1] if count else np.zeros(0),
         contact_loss=fine.mean(1.0 * ((beyond <= 0.0) & dead)),
         clearance=clearance,
         opening=float(clearance[able].min()) if able.any() else float("nan"),

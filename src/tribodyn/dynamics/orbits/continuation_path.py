@@ -246,11 +246,7 @@ def _last(
 
 
 def _at(
-    function: FamilyMap,
-    before: BranchPoint,
-    beyond: BranchPoint,
-    end: float,
-    tolerance: float,
+    function: FamilyMap, before: BranchPoint, beyond: BranchPoint, end: float, tolerance: float
 ) -> BranchPoint | None:
     """Point at a scaled parameter between those of two neighbours."""
     part = (end - before.x[-1]) / (beyond.x[-1] - before.x[-1])

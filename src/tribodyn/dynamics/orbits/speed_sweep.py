@@ -51,7 +51,8 @@ def speed_sweep(
     mesh_frequency : (p,) array
         Mesh frequencies, rising [Hz].
     teeth : int
-        Mesh cycles per revolution of the shaft whose speed is told.
+        Mesh cycles per revolution of the shaft whose speed is told; where it is left out, figures
+        are drawn over the mesh frequency.
     directions : sequence of "up", "down"
         Ways to go.
     start : (position, velocity), optional

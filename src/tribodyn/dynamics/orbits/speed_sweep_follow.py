@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -100,12 +101,7 @@ class SpeedFamily:
         return state, extra
 
     def statistics(
-        self,
-        number: Index,
-        y: Array,
-        periods: Index,
-        cycles: int,
-        outputs: Array,
+        self, number: Index, y: Array, periods: Index, cycles: int, outputs: Array
     ) -> Array:
         """March motions over their periods and gather their figures."""
         contacts, others = len(self.system.contacts), self.system.size + len(outputs)
@@ -117,10 +113,8 @@ class SpeedFamily:
                 lanes = np.flatnonzero(inside & (periods == length))
                 compiled, beat = self.compiled(int(group[0])), self.frequency[number[lanes]]
                 statistics = Statistics.of(compiled, outputs, lanes.size)
-                march(
-                    compiled, 1.0 / beat, state[lanes], int(length) or cycles,
-                    extra_force=extra[lanes], statistics=statistics,
-                )  # fmt: skip
+                options: dict[str, Any] = {"extra_force": extra[lanes], "statistics": statistics}
+                march(compiled, 1.0 / beat, state[lanes], int(length) or cycles, **options)
                 figures[:, :, lanes] = statistics.figures
         return figures
 

@@ -154,11 +154,7 @@ def _advice(mapping: OrbitMap, apart: Array) -> str:
 
 
 def _finish(
-    mapping: OrbitMap,
-    orbit: OrbitPoint,
-    frequency: float,
-    tolerance: float,
-    apart: Array,
+    mapping: OrbitMap, orbit: OrbitPoint, frequency: float, tolerance: float, apart: Array
 ) -> Response:
     error = max(orbit.error, float(np.finfo(float).eps))
     converged = bool(np.isfinite(error) and error <= tolerance)

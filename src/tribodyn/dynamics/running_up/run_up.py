@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
+from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
@@ -19,12 +20,7 @@ from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import (
-    ComputationError,
-    InputError,
-    quiet,
-    require_positive,
-)
+from tribodyn.errors import ComputationError, InputError, quiet, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -109,12 +105,11 @@ def run_up(
     >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
     >>> system = System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair])
     >>> run_up(system, ([0.0, 40.0], [0.2, 0.8]), samples=16)
-    RunUp(40 s, 20 mesh cycles from 0.2 over 0.8 to 0.8 Hz, 1 coordinates, 16 samples per cycle)
+    RunUp(40 s, 20 mesh cycles, mesh frequency 0.2 to 0.8 Hz, 1 coordinate, 16 samples per cycle)
     """
     path = read_profile(profile, duration)
     require_positive("teeth", teeth)
-    if int(samples) != samples or samples < 2:
-        raise InputError(f"samples = {samples}", where="argument samples", why="Whole number >= 2")
+    require_whole("samples", samples, 2)
     frequency, systems = systems_by_frequency(system)
     first = systems[0]
     tables = Tables(systems, int(samples), path.lowest, steps)

@@ -113,10 +113,8 @@ class CycleMarcher:
             own[:, 1] += pace.shift[cycle][:, None] * (own[:, 2] - own[:, 0])
         for column in table.slopes:
             own[:, :, column] *= pace.ratio[cycle]
-        return base._replace(
-            rows=own.reshape(-1), width=np.ascontiguousarray(pace.share[cycle]),
-            constant_load=steady,
-        )  # fmt: skip
+        width = np.ascontiguousarray(pace.share[cycle])
+        return base._replace(rows=own.reshape(-1), width=width, constant_load=steady)
 
     def hold(self, torque: Array) -> None:
         """Begin with a known balancing torque."""
@@ -142,12 +140,9 @@ class CycleMarcher:
             extra = extra - (self.up @ load) @ direction * force
         moments, lane = self._fresh.copy(), state[None, :].copy()
         load = (program.constant_load + extra @ self.inverse.T)[None, :]
-        failed = refuse_stopped(
-            march_block(
-                (0.0,), RungeKutta4(), program, program.rows, np.array([period]), load, lane, 1,
-                record, Gathered(self.outputs, np.zeros(0), 0, moments), stop_flag(),
-            )
-        )  # fmt: skip
+        block = (0.0,), RungeKutta4(), program, program.rows, np.array([period]), load, lane, 1
+        gathered = Gathered(self.outputs, np.zeros(0), 0, moments)
+        failed = refuse_stopped(march_block(*block, record, gathered, stop_flag()))
         if failed >= UNPARTED:
             contacts = len(self.systems[0].contacts)
             step, contact = divmod(failed - UNPARTED, contacts)

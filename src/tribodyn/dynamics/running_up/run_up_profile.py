@@ -60,10 +60,8 @@ class SpeedProfile:
                 why="A profile has at least two corners, each with its time and frequency",
                 remedy="For example ([0.0, 10.0], [100.0, 800.0])",
             )
-        require_positive(
-            "mesh_frequency", frequency, "Hz",
-            remedy="A standing gear makes no mesh cycles: begin and end at a low speed",
-        )  # fmt: skip
+        remedy = "A standing gear makes no mesh cycles: begin and end at a low speed"
+        require_positive("mesh_frequency", frequency, "Hz", remedy=remedy)
         if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
             raise InputError(
                 "the times of the profile do not rise",

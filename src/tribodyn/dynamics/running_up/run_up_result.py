@@ -140,10 +140,12 @@ class RunUp(Record):
         """One line."""
         beat = np.asarray(self.profile.mesh_frequency)
         lost = float(np.max(self.cycles.contact_loss_share, initial=0.0))
+        top, count = self.profile.highest, len(self.names)
+        back = f" and back to {beat[-1]:.6g}" if beat[-1] < top else ""
         return (
-            f"RunUp({self.profile.duration:.6g} s, {self.cycles.time.size} mesh cycles from "
-            f"{beat[0]:.6g} over {self.profile.highest:.6g} to {beat[-1]:.6g} Hz, "
-            f"{len(self.names)} coordinates, "
+            f"RunUp({self.profile.duration:.6g} s, {self.cycles.time.size} mesh cycles, mesh "
+            f"frequency {beat[0]:.6g} to {top:.6g}{back} Hz, "
+            f"{count} coordinate{'s' if count > 1 else ''}, "
             f"{self.samples} samples per cycle{', teeth separate' if lost > 0.0 else ''})"
         )
 

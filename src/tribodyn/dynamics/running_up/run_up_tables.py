@@ -13,14 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import (
-    Program,
-    build_program,
-    compile_on,
-    compile_system,
-)
+from tribodyn.dynamics.equations.program import Program, build_program, compile_on, compile_system
 from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
@@ -118,8 +114,8 @@ class Tables:
     def _refuse(self, lowest: float) -> None:
         steps = self.fixed
         needed = self.rate / (LIMIT * lowest)
-        if steps is not None and (steps < 1 or int(steps) != steps):
-            raise InputError(f"steps = {steps}", where="argument steps", why="A whole number >= 1")
+        if steps is not None:
+            require_whole("steps", steps)
         if steps is not None and needed > steps:
             raise InputError(
                 f"omega_max*dt = {LIMIT * needed / steps:.3f} with {steps} steps per mesh "

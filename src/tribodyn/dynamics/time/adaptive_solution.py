@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
+from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.simulate import read_start, require_cycles
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.record import Parts, Record, fact, quantity, record
@@ -159,20 +160,15 @@ def solve_adaptive(
 
     Parameters
     ----------
-    system : System
-    mesh_frequency : float
-        Mesh frequency [Hz].
-    cycles : int
-        Whole mesh cycles.
-    start : (position, velocity)
-        Two (n,) arrays [m or rad, m/s or rad/s].
+    system, mesh_frequency, cycles, start
+        As :func:`simulate` takes them [Hz], [m or rad, m/s or rad/s].
     rtol : float
         Error over the largest size so far of each state [-].
     atol : float, (position, velocity) or (2 n,) array, optional
         Error allowed on top of that [m or rad, m/s or rad/s]; by default 0.001 ``rtol`` times the
         size of the static state.
-    extra_force : (n,) array, optional
-        Constant generalized force on top of the system's [N or N*m].
+    extra_force
+        As :func:`simulate` takes it [N or N*m].
 
     Returns
     -------
@@ -198,7 +194,7 @@ def solve_adaptive(
     True
     """
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    require_cycles(cycles)
+    require_whole("cycles", cycles)
     engine = adaptive_engine(system, mesh_frequency, cycles, rtol=rtol, atol=atol)
     state = read_start(system, start)[None, :]
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -37,26 +37,6 @@ class Setting(NamedTuple):
     parameters: LaneParameters | None = None
 
 
-class Marcher(Protocol):
-    """Lanes that march on from call to call."""
-
-    @property
-    def compiled(self) -> Compiled:
-        """The systems on their grid."""
-
-    def march(
-        self,
-        state: Array,
-        cycles: int,
-        *,
-        record: Array | None = None,
-        statistics: Statistics | None = None,
-        threads: int | None = None,
-        elapsed: int = 0,
-    ) -> Array:
-        """March by some mesh cycles, after ``elapsed`` others; returns the new state."""
-
-
 class FixedMarcher:
     """Lanes that march in the steps of the grid."""
 
@@ -66,10 +46,9 @@ class FixedMarcher:
     def march(self, state: Array, cycles: int, **options: Any) -> Array:
         """March by some mesh cycles."""
         setting = self.setting
-        return march(
-            self.compiled, 1.0 / setting.frequency, state, cycles, method=self.method,
-            extra_force=setting.extra_force, parameters=setting.parameters, **options,
-        )  # fmt: skip
+        options |= {"extra_force": setting.extra_force, "parameters": setting.parameters}
+        period = 1.0 / setting.frequency
+        return march(self.compiled, period, state, cycles, method=self.method, **options)
 
 
 class AdaptiveMarcher:
@@ -87,14 +66,15 @@ class AdaptiveMarcher:
         self.groups: list[tuple[Member, AdaptiveLanes]] = []
         for member in compiled.each(lanes):
             own = member.lanes
-            engine = adaptive_engine(
-                member.system, setting.frequency[own], setting.cycles, rtol=rtol, atol=atol,
-                parameters=setting.parameters,
-            )  # fmt: skip
-            group = AdaptiveLanes(
-                engine, 1.0 / setting.frequency[own], extra_force=setting.extra_force[own],
-                scales=scales[own], numbers=own if lanes > 1 else None,
-            )  # fmt: skip
+            beat, extra = setting.frequency[own], setting.extra_force[own]
+            tolerances: dict[str, Any] = {
+                "rtol": rtol,
+                "atol": atol,
+                "parameters": setting.parameters,
+            }
+            engine = adaptive_engine(member.system, beat, setting.cycles, **tolerances)
+            numbers = own if lanes > 1 else None
+            group = AdaptiveLanes(engine, 1.0 / beat, extra, scales[own], numbers)
             self.groups.append((member, group))
 
     @property
@@ -146,12 +126,15 @@ class AdaptiveMarcher:
         self, member: Member, lanes: Index, record: Array, statistics: Statistics, cycles: int
     ) -> None:
         setting, moments = self.setting, np.ascontiguousarray(statistics.moments[:, lanes])
-        recorded = RecordedLanes(
-            member, self._compiled.grid, 1.0 / setting.frequency[lanes],
-            setting.extra_force[lanes], self.scales[lanes], record,
-        )  # fmt: skip
+        period, extra = 1.0 / setting.frequency[lanes], setting.extra_force[lanes]
+        scales, grid = self.scales[lanes], self._compiled.grid
+        recorded = RecordedLanes(member, grid, period, extra, scales, record)
         statistics._replace(moments=moments).add(recorded, 1.0 / cycles)
         statistics.moments[:, lanes] = moments
+
+
+#: Lanes that march on from call to call.
+Marcher = FixedMarcher | AdaptiveMarcher
 
 
 def _runge_kutta(setting: Setting) -> Marcher:

@@ -13,6 +13,7 @@ from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS, Statistics
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
+from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, ComplexArray
@@ -138,17 +139,8 @@ def simulate_ensemble(
         Blocks of lanes marched at a time; the number of processors by default.
     progress : Progress
         Told about the mesh cycles.
-    method : "rk4", "dormand-prince" or "newmark"
-        Classical Runge-Kutta steps; adaptive steps of Dormand and Prince; Newmark's scheme.
-    rtol : float, optional
-        Of "dormand-prince": error over the largest size so far of each state, 1e-6 by default [-].
-    atol : float, (position, velocity) or (2 n,) array, optional
-        Of "dormand-prince": error allowed on top of that [m or rad, m/s or rad/s].
-    gamma, beta : float, optional
-        Of "newmark": its parameters, 1/2 and 1/4 (average acceleration) by default [-].
-    preset : str, optional
-        Of "newmark": "average acceleration", "linear acceleration", "central difference" or "seed"
-        (1/2, 1/2) instead of the two numbers.
+    method, rtol, atol, gamma, beta, preset
+        As :func:`simulate` takes them [m or rad, m/s or rad/s].
 
     Returns
     -------
@@ -181,7 +173,7 @@ def simulate_ensemble(
     extra = np.ascontiguousarray(np.broadcast_to(extra, (lanes, size)))
     setting = Setting(system, frequency, cycles, steps, extra, parameters)
     marcher = prepare(method, setting, **options)
-    state = _states(start, lanes, size)
+    state = read_start(marcher.compiled.system, start, lanes)
     compiled = marcher.compiled
     linear = np.zeros((0, 2 * size)) if outputs is None else np.asarray(outputs, float)
     statistics = Statistics.of(compiled, linear, lanes, harmonics)
@@ -198,9 +190,7 @@ def simulate_ensemble(
 
 
 def _frequencies(
-    system: System | Sequence[System],
-    mesh_frequency: ArrayLike,
-    parameters: LaneParameters | None,
+    system: System | Sequence[System], mesh_frequency: ArrayLike, parameters: LaneParameters | None
 ) -> Array:
     """Mesh frequency of every lane."""
     frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
@@ -219,21 +209,6 @@ def _frequencies(
             why="One for each lane, or one for all",
         )
     return np.array(np.broadcast_to(frequency, (lanes,)))
-
-
-def _states(start: tuple[ArrayLike, ArrayLike], lanes: int, size: int) -> Array:
-    try:
-        parts = [np.broadcast_to(np.asarray(part, float), (lanes, size)) for part in start]
-        state = np.ascontiguousarray(np.concatenate(parts, axis=1))
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            "start is not a pair (position, velocity)",
-            where="argument start",
-            why=f"Each of the two has the shape ({size},) or ({lanes}, {size})",
-        ) from error
-    if state.shape != (lanes, 2 * size) or not np.all(np.isfinite(state)):
-        raise InputError("start holds NaN or infinity", where="argument start")
-    return state
 
 
 def _collect(frequency: Array, state: Array, gathered: Statistics, averaged: int) -> Ensemble:

@@ -94,10 +94,9 @@ def refuse_newmark(
     for member in compiled.each(period.size):
         for lane in _outermost(scales[member.lanes, 0], period[member.lanes]):
             number = int(member.lanes[lane])
-            _refuse_step(
-                compiled, member, float(period[number]), gamma, beta, tuple(scales[number, :3]),
-                f" in lane {number}" if period.size > 1 else "",
-            )  # fmt: skip
+            who = f" in lane {number}" if period.size > 1 else ""
+            lane_period, factors = float(period[number]), tuple(scales[number, :3])
+            _refuse_step(compiled, member, lane_period, gamma, beta, factors, who)
 
 
 def _outermost(stiffness: Array, period: Array) -> list[int]:

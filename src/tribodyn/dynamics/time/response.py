@@ -66,6 +66,16 @@ class FineSamples:
         return np.asarray(np.tensordot(self.weight, signal, axes=(0, 0)))
 
 
+def sample_extremes(signal: Array) -> tuple[Array, Array]:
+    """Least and greatest value of (3 s, ...), with the vertices of the parabolas of the steps."""
+    left, middle, right = np.moveaxis(signal.reshape(-1, 3, *signal.shape[1:]), 1, 0)
+    slope, bend = right - left, left - 2.0 * middle + right
+    inside = np.abs(slope) < 2.0 * np.abs(bend)
+    vertex = np.where(inside, middle - slope**2 / (8.0 * np.where(inside, bend, 1.0)), middle)
+    values = np.concatenate((signal, vertex))
+    return values.min(axis=0), values.max(axis=0)
+
+
 @record
 class Response(Record):
     """Motion of a system over one periodic orbit or over time.

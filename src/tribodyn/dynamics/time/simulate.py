@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
+from tribodyn.dynamics.equations.compiled import require_whole
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.dynamics.time.response import Response, build_response, later
@@ -17,30 +18,23 @@ from tribodyn.types import Array
 _CHUNK = 64
 
 
-def read_start(system: System, start: tuple[ArrayLike, ArrayLike]) -> Array:
-    """Check a start and return it as one state."""
+def read_start(
+    system: System, start: tuple[ArrayLike, ArrayLike], lanes: int | None = None
+) -> Array:
+    """Check a start and return it as one state (2 n,), or as those of all lanes."""
+    size, several = system.size, f" or ({lanes}, {system.size})" if lanes else ""
     try:
-        parts = [np.broadcast_to(np.asarray(part, dtype=float), (system.size,)) for part in start]
-        state = np.concatenate(parts)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            "start is not a pair (position, velocity)",
-            where="argument start",
-            why=f"Each of the two has the shape ({system.size},)",
-        ) from error
-    if state.size != 2 * system.size or not np.all(np.isfinite(state)):
+        parts = [np.broadcast_to(np.asarray(part, float), (lanes or 1, size)) for part in start]
+        state = np.ascontiguousarray(np.concatenate(parts, axis=1))
+    except (TypeError, ValueError):
+        state = np.zeros((0, 0))
+    if state.shape != (lanes or 1, 2 * size) or not np.all(np.isfinite(state)):
         raise InputError(
             "start holds NaN or infinity, or is not a pair (position, velocity)",
             where="argument start",
-            why=f"Each of the two has the shape ({system.size},)",
+            why=f"Each of the two has the shape ({size},){several}",
         )
-    return state
-
-
-def require_cycles(cycles: int) -> None:
-    """Raise :class:`InputError` unless ``cycles`` is a whole number of at least one."""
-    if int(cycles) != cycles or cycles < 1:
-        raise InputError(f"cycles = {cycles}", where="argument cycles", why="A whole number >= 1")
+    return state if lanes else state[0]
 
 
 def simulate(
@@ -117,7 +111,7 @@ def simulate(
     >>> bool(abs(motion.position[128, 0] - np.cos(1.0)) < 1e-9)
     True
     """
-    require_cycles(cycles)
+    require_whole("cycles", cycles)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     state = read_start(system, start)[None, :]

@@ -27,8 +27,17 @@ _COLORS = (PINION, WHEEL, *PAIR_COLORS)
 _CURVES = len(_COLORS)
 
 
+def _axis(sweep: SpeedSweep) -> tuple[str, Any]:
+    """Quantity of the horizontal axis: the speed of a shaft whose teeth are told, or the beat."""
+    return ("speed", sweep.speed) if sweep.teeth > 1 else ("mesh_frequency", sweep.mesh_frequency)
+
+
+def _places(sweep: SpeedSweep) -> Any:
+    return displayed(*_axis(sweep))
+
+
 def _speed_curves(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
-    speed = displayed("speed", sweep.speed)
+    speed = _places(sweep)
     traces = []
     for number, direction in enumerate(sweep.directions):
         color, dash = _WAYS[direction]
@@ -40,7 +49,7 @@ def _speed_curves(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
 
 
 def _dots(sweep: SpeedSweep, values: Any, chosen: Any, name: str, color: str, symbol: str) -> Any:
-    x = np.concatenate([displayed("speed", sweep.speed[each]) for each in chosen])
+    x = np.concatenate([_places(sweep)[each] for each in chosen])
     y = np.concatenate([row[each] for row, each in zip(values, chosen, strict=True)])
     if not x.size:
         return []
@@ -52,7 +61,7 @@ def _jumps(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
     for number, jump in enumerate(sweep.jumps):
         row = sweep.directions.index(jump.direction)
         at = [int(np.argmin(np.abs(sweep.mesh_frequency - f))) for f in (jump.before, jump.after)]
-        x = displayed("speed", sweep.speed[at])
+        x = _places(sweep)[at]
         made = line(x, values[row][at], "jump", MUTED, unit=unit, dash="dot", width=1.2)
         marker = {"symbol": "arrow", "angleref": "previous", "size": [0, 11], "color": MUTED}
         mode = {"mode": "lines+markers", "marker": marker, "showlegend": number == 0}
@@ -61,16 +70,16 @@ def _jumps(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
 
 
 def _speed_title(sweep: SpeedSweep) -> str:
-    where = np.flatnonzero(sweep.differs)
+    where, (name, places) = np.flatnonzero(sweep.differs), _axis(sweep)
     if where.size:
-        ends = (rounded("speed", float(sweep.speed[k])) for k in (where[0], where[-1]))
+        first, last = (rounded(name, float(places[k])) for k in (where[0], where[-1]))
         told = f"The ways up and down differ at {where.size} of {sweep.differs.size} speeds"
-        return "{}, from {} to {}".format(told, *ends)
+        return f"{told}, " + (f"from {first} to {last}" if where.size > 1 else f"at {first}")
     lost = int(np.count_nonzero(~sweep.stable))
     if lost:
         return f"{lost} of {sweep.stable.size} motions are not stable or do not repeat"
     top = int(np.argmax(sweep.rms[0, :, 0]))
-    return f"The mesh vibrates most at {rounded('speed', float(sweep.speed[top]))}"
+    return f"The mesh vibrates most at {rounded(name, float(places[top]))}"
 
 
 @drawing(
@@ -123,7 +132,8 @@ def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
     loss = 100.0 * sweep.contact_loss.max(axis=-1, initial=0.0)
     if np.any(loss > 0.0):
         panels.append(Panel("Contact lost [%]", _speed_curves(sweep, loss, "%"), top, 0.8))
-    return stack(_speed_title(sweep), axis_label("speed"), panels, {"hovermode": "closest"})
+    label = axis_label(_axis(sweep)[0])
+    return stack(_speed_title(sweep), label, panels, {"hovermode": "closest"})
 
 
 def _words(name: str) -> str:

@@ -303,5 +303,12 @@ class Case(Section, whole=True):
 
     __str__ = __repr__
 
+    def _repr_html_(self) -> str:
+        """Table of all values for notebooks."""
+        from tribodyn.record import html_table
+        from tribodyn.study.case.write import case_rows
+
+        return html_table(f"Case: {self.title}", ("key", "value", "origin"), case_rows(self))
+
 
 Case.__signature__ = signature_of(Case)

@@ -156,7 +156,7 @@ class Source:
         if not self.name:
             return key
         line = self.line(key)
-        return f"{self.name}:{line}: {key}" if line else f"{self.name}: {key}"
+        return f"{self.name}:{line}: {key}" if line else f"{self.name}: {key}".removesuffix(": ")
 
     def place(self, found: Iterable[tuple[str, Problem]]) -> list[Problem]:
         """Set the place of each problem and order the problems as the file is read."""

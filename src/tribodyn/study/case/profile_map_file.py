@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,7 +42,7 @@ def read_profile_map(path: str, interpolation: str) -> ProfileMap:
 @lru_cache(maxsize=16)
 def _read(path: str, interpolation: str, _: tuple[int, int]) -> ProfileMap:
     try:
-        text = read_bytes(path, "table").decode("utf-8-sig")
+        text = read_bytes(path, "profile map").decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
         what, remedy = f"the file cannot be read: {reason}", "Give a text file in UTF-8"
@@ -121,9 +122,9 @@ def _grid(
     from tribodyn.gear import ProfileMap
 
     places, faces = (sorted({at[axis] for at in points}) for axis in (0, 1))
-    absent = [(place, face) for place in places for face in faces if (place, face) not in points]
+    absent = next((at for at in product(places, faces) if at not in points), None)
     if absent:
-        place, face = (1e3 * value for value in absent[0])
+        place, face = (1e3 * value for value in absent)
         what = f"the profile map has {len(points)} points, which make no full grid of "
         what += f"{len(places)} x {len(faces)} places"
         why = f"There is none at {coordinate} {place:.6g} mm and face_position {face:.6g} mm"

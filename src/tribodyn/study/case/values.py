@@ -57,7 +57,8 @@ def written(value: Any, depth: int = 5) -> str:
         text = ", ".join(f"{key} = {written(item, depth - 1)}" for key, item in items)
         return shortened(f"{{{text}}}")
     if isinstance(value, list | tuple):
-        return shortened(f"[{', '.join(written(item, depth - 1) for item in value[:_SHOWN])}]")
+        shown = [written(item, depth - 1) for item in value[:_SHOWN]]
+        return shortened(f"[{', '.join(shown)}{', ...' if len(value) > _SHOWN else ''}]")
     if isinstance(value, int) and abs(value) > _LARGEST:
         return f"a whole number of about {int(0.30103 * value.bit_length()) + 1} digits"
     return str(value).lower() if isinstance(value, bool) else shortened(str(value))

@@ -16,7 +16,7 @@ from tribodyn.study.case.provenance import (
     provenance,
     spec_of,
 )
-from tribodyn.study.case.section import Table, section_at
+from tribodyn.study.case.section import Section, Table, section_at
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -49,20 +49,38 @@ def _comment(spec: Option, note: str) -> str:
     return "; ".join(part for part in (meaning, limits, note) if part)
 
 
-def _line(spec: Option, name: str, value: Any, origin: str, derived: float | None) -> str:
+def _line(
+    spec: Option, name: str, value: Any, origin: str, derived: float | None, owners: str
+) -> str:
     if value is None and derived is not None:
         note = f"default: from {spec.basis}"
         return f'# {name} = "{spec.show(derived)}"  # {_comment(spec, note)}'
     if value is None:
-        return f"# {name} = {_unset_example(spec)}  # {_comment(spec, 'not given')}"
+        return f"# {name} = {_unset_example(spec)}  # {_comment(spec, owners)}"
     note = origin if origin == DEFAULT_MARK else ""
     return f"{name} = {_toml_value(spec, value)}  # {_comment(spec, note)}"
 
 
 def _unset_example(spec: Option) -> str:
+    """A value that makes the line valid TOML when its comment sign is taken away."""
     if spec.kind == "numbers":
         return f"[{spec.example}]"
-    return f'"{spec.names()[0]}"' if spec.names is not None else spec.example
+    if spec.kind == "flag":
+        return "true"
+    return f'"{spec.names()[0]}"' if spec.names is not None else spec.example or '"..."'
+
+
+def _owners(case: Case, key: str) -> str:
+    """The models that have an option which the model of the case has not."""
+    table, _, name = key.rpartition(".")
+    section = section_at((table,)) if "." not in table else None
+    owners = section.known().owners.get(name, []) if section else []
+    chosen = vars(case).get(table)
+    if not (section and owners and isinstance(chosen, Section)) or chosen.chosen is None:
+        return "not given"
+    names = ", ".join(owners)
+    here = chosen.chosen.name in owners
+    return "not given" if here else f"belongs to {section.selector} = {names}"
 
 
 def case_toml(case: Case) -> str:
@@ -82,7 +100,8 @@ def case_toml(case: Case) -> str:
             table = place
             section = section_at(tuple(place.split("."))) if place else None
             lines += ["", f"[{place}]  # {_table_meaning(case, place)}" if section else ""]
-        lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key)))
+        own = _owners(case, key)
+        lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key), own))
         if key == "origin" and value is not None and changed:
             lines[-1] += f"; {len(changed)} of the values have changed since: see [based_on]"
     if case.lubricant is None:
@@ -144,15 +163,20 @@ def _table_meaning(case: Case, place: str) -> str:
     return table.meaning if isinstance(table, Table) else ""
 
 
-def case_table(case: Case) -> str:
-    """Write the case as a table with units, one row for each value in force."""
+def case_rows(case: Case) -> list[tuple[str, str, str]]:
+    """Key, value with its unit and origin of every value in force."""
     origins, derived = provenance(case), derived_values(case)
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
-    rows = [
+    return [
         (key, spec.show(value), origins.get(key, "").partition(":")[0])
         for key, value in values.items()
         if value is not None and (spec := spec_of(case, key)) is not None and key != "title"
     ]
+
+
+def case_table(case: Case) -> str:
+    """Write the case as a table with units, one row for each value in force."""
+    rows = case_rows(case)
     widths = [max(len(row[column]) for row in rows) for column in range(2)]
     head = f"Case: {case.title}"
     body = [f"  {k:<{widths[0]}}  {v:<{widths[1]}}  {origin}" for k, v, origin in rows]

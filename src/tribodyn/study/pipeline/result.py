@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from tribodyn.drawing import FIGURES, draw, figures_of
-from tribodyn.record import Parts, Record, record
+from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.reporting import write_report_of
 from tribodyn.stored import write_dataset
 from tribodyn.study.case.provenance import Assumption, assumptions
@@ -212,6 +212,18 @@ class Result(Record):
                 (place / "response.csv").write_text(self.to_csv(), encoding="utf-8")
             write_report_of(self, place / "report.html")
         return target
+
+    def _repr_html_(self) -> str:
+        """Table of the summary by topic for notebooks."""
+        from tribodyn.study.pipeline.summary import SUMMARY, by_topic
+        from tribodyn.study.pipeline.words import in_words
+
+        rows = [
+            (topic, in_words(name), SUMMARY[name].show(self._summary[name]), SUMMARY[name].meaning)
+            for topic, names in by_topic(self._summary).items()
+            for name in names
+        ]
+        return html_table(repr(self), ("topic", "figure", "value", "meaning"), rows)
 
     def __reduce__(self) -> NoReturn:
         """Refuse to be pickled: a result holds functions of the models."""

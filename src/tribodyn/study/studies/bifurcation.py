@@ -330,6 +330,8 @@ class Findings:
         up, down = self.found.rms[:2]
         both = np.flatnonzero(np.abs(up - down) > _APART * np.fmax(up, down))
         for _, group in groupby(enumerate(both), key=lambda pair: pair[1] - pair[0]):
-            places = [self.found.parameter[place] for _, place in group]
-            span = self._span(places[0], places[-1])
-            yield f"two motions are possible {span}: up and down differ"
+            at = [place for _, place in group]
+            span = self._span(self.found.parameter[at[0]], self.found.parameter[at[-1]])
+            ends = at[0] == 0 or at[-1] == self.found.parameter.size - 1
+            beyond = "; the range ends there, and they may go on beyond it" if ends else ""
+            yield f"two motions are possible {span}: up and down differ{beyond}"

@@ -68,7 +68,7 @@ def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
     """
     from tribodyn.dynamics import natural_modes as compute
 
-    return compute(_system(case, progress)[0])
+    return compute(system_of_case(case, progress)[0])
 
 
 def campbell(
@@ -110,12 +110,13 @@ def campbell(
     >>> [(met.order, round(met.speed * 30 / np.pi)) for met in diagram.resonances]
     [(5, 3784), (4, 4730)]
     """
-    system, mesh_frequency = _system(case, progress)
+    system, mesh_frequency = system_of_case(case, progress)
     ends = None if between is None else operation_values("speed", between, case)
     return diagram_of(system, case, mesh_frequency, ends, orders)
 
 
-def _system(case: Case, progress: Progress) -> tuple[System, float]:
+def system_of_case(case: Case, progress: Progress) -> tuple[System, float]:
+    """Structure of a case, and its mesh frequency."""
     with placed(case), collected():
         progress.start("Tooth contact")
         member = built(case)

@@ -72,7 +72,7 @@ def run_up(
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> run_up(case, ("3000 rpm", "3300 rpm"), 0.1, tables=2)
-    RunUp(0.1 s, 84 mesh cycles from 800 over 880 to 880 Hz, 6 coordinates, 128 samples per cycle)
+    RunUp(0.1 s, 84 mesh cycles, mesh frequency 800 to 880 Hz, 6 coordinates, 128 samples per cycle)
     """
     from tribodyn.dynamics import run_up as compute
     from tribodyn.dynamics import speed_ramp
@@ -92,7 +92,7 @@ def run_up(
             teeth=round(2.0 * np.pi * per_speed),
             samples=samples,
             steps=steps or case.solver.steps_per_mesh_cycle,
-            outputs=_supports(first),
+            outputs=supports(first),
             rotation=_rotation(case, first, per_speed),
             progress=progress,
         )
@@ -132,7 +132,7 @@ def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
     return low, high
 
 
-def _supports(system: System) -> dict[str, Any]:
+def supports(system: System) -> dict[str, Any]:
     """Forces on the supports of the gears as rows over positions and velocities."""
     rows = {}
     for column, name in enumerate(system.names):

@@ -9,6 +9,8 @@ import numpy as np
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import record
+from tribodyn.stiffness import TipReliefOptimum
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.values import FaultError, Plain, read_value
@@ -18,13 +20,31 @@ from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
 
 if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness, FilmOverOperation
-    from tribodyn.stiffness import HarrisMap, TipReliefOptimum
+    from tribodyn.stiffness import HarrisMap
     from tribodyn.study.case.case import Case
 
 
 #: Torques of a map over those of the case.
 _RANGE = (0.1, 2.0)
 _TORQUES = 20
+
+
+@record
+class CaseTipReliefOptimum(TipReliefOptimum):
+    """Best tip relief of a case: ``case`` is the case with it."""
+
+    studied: Any = None
+
+    @property
+    def case(self) -> Case:
+        """The case that was studied, with the relief that was found."""
+        gears = ("pinion", "wheel") if self.gears == "both" else (self.gears,)
+        values = {"tip_relief": self.amount, "tip_relief_length": self.length,
+                  "tip_relief_shape": self.shape}  # fmt: skip
+        changed: Case = self.studied.replace(
+            {f"gears.{gear}.modification.{n}": v for gear in gears for n, v in values.items()}
+        )
+        return changed
 
 
 def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> HarrisMap:
@@ -74,7 +94,7 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
 
 def optimize_tip_relief(
     case: Case, torque: Any = None, *, amount: Any = None, length: Any = None, **options: Any
-) -> TipReliefOptimum:
+) -> CaseTipReliefOptimum:
     """Find the tip relief of a case that leaves least transmission error over a torque range.
 
     Parameters
@@ -93,7 +113,7 @@ def optimize_tip_relief(
     Returns
     -------
     TipReliefOptimum
-        Torques in it are those of the pinion.
+        Torques in it are those of the pinion; ``case`` is the case with the relief.
 
     Raises
     ------
@@ -116,13 +136,14 @@ def optimize_tip_relief(
     if torque is None:
         torques = [0.5 * torques[0], torques[0]]
     with placed(case):
-        return compute(
+        found = compute(
             case.gear_pair,
             torques,
             amount=_lengths("amount", amount),
             length=_lengths("length", length),
             **{**loaded_settings(case), **options},
         )
+    return CaseTipReliefOptimum(**vars(found), studied=case)
 
 
 def _lengths(name: str, given: Any) -> tuple[float, float] | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import prod
@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 
 from tribodyn.drawing import draw
 from tribodyn.errors import InputError, Problem
-from tribodyn.record import Parts, Record, record
+from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.reporting import write_report_of
 from tribodyn.stored import write_dataset
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.words import in_words
 from tribodyn.study.studies.axes import Axis
 from tribodyn.types import Array
 
@@ -27,6 +28,16 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
+#: Figures that tables and reports show, and those of the film where it varies.
+_SHOWN = (
+    "rms_mesh_force",
+    "peak_mesh_force",
+    "peak_to_peak_dynamic_transmission_error",
+    "rms_bearing_force_loa_pinion",
+    "mean_friction_power",
+    "contact_loss_share",
+)
+_FILMS = ("central_film", "minimum_film_ratio", "mean_friction_coefficient")
 #: Reason where a sweep was interrupted before.
 _NOT_REACHED = "not computed: the sweep was interrupted before"
 
@@ -157,6 +168,63 @@ class Sweep(Record):
         plotly.graph_objects.Figure
         """
         return draw(self, figure=figure, **options)
+
+    def to_pandas(self) -> Any:
+        """Return what is done as a table of pandas.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each value: keys and figures in SI, ``failed`` and ``warnings``.
+
+        Raises
+        ------
+        InputError
+            If pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            remedy = "Install it: pip install pandas, or use to_csv() or to_xarray()"
+            raise InputError("pandas is not installed", remedy=remedy) from None
+        return pandas.DataFrame(list(self.rows()))
+
+    def _repr_html_(self) -> str:
+        """Table for notebooks: keys and the figures that reports of sweeps show."""
+        names = self.shown()
+        head = [*(axis.key for axis in self.axes), *map(in_words, names), "failed"]
+        rows = [
+            [*(axis.show(value) for axis, value in zip(self.axes, point.values, strict=True)),
+             *(SUMMARY[n].show(point.figures[n]) if n in point.figures else "" for n in names),
+             point.failed]
+            for point in self.points
+        ]  # fmt: skip
+        return html_table(repr(self), head, rows)
+
+    def shown(self, names: Sequence[str] = ()) -> list[str]:
+        """Choose the figures that tables show.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Figures that are asked for; by default those of forces and motion, and of the film
+            where a key of the film or the oil varies.
+
+        Returns
+        -------
+        list of str
+            Those of them that occur.
+
+        Raises
+        ------
+        InputError
+            If there is no such figure.
+        """
+        for name in names:
+            self[name]  # tells what there is
+        film = any(axis.key.startswith(("film", "lubricant")) for axis in self.axes)
+        usual = (*_SHOWN, *(_FILMS if film else ()))
+        return list(names) or [name for name in usual if name in self.figures]
 
     def to_csv(self) -> str:
         """Write what is done as comma-separated values in SI.

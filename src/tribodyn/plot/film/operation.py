@@ -1,0 +1,69 @@
+"""Least film over the speed, a curve for each torque."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import Need, drawing
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import FilmOverOperation
+
+_COLORS = (PINION, WHEEL, *PAIR_COLORS, TOTAL)
+_DASHES = ("solid", "dash", "dot")
+
+_has_film = Need("central_film minimum_film", "The film model gives no film thickness.")
+
+
+@drawing(
+    "film_over_operation",
+    heading="Oil film over speed and torque",
+    caption="The least film that a tooth pair meets on its way, over the speed for each torque. "
+    "Below, its ratio to the composite roughness: below one asperities touch.",
+    missing=_has_film,
+    of="FilmOverOperation",
+    made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) and its plot method.",
+)
+def film_over_operation(found: FilmOverOperation) -> Any:
+    """Draw the least film over the speed, a curve for each torque.
+
+    Parameters
+    ----------
+    found : FilmOverOperation
+        What :func:`tribodyn.film_over_operation` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    known = found.minimum_film if found.minimum_film is not None else found.central_film
+    film = np.nanmin(np.asarray(known), axis=2)
+    row, column = np.unravel_index(int(np.argmin(film)), film.shape)
+    title = (
+        f"The oil film is thinnest with {rounded('film_thickness', float(film.min()))} at "
+        f"{rounded('torque', float(found.pinion_torque[row]))} and "
+        f"{rounded('pinion_speed', float(found.pinion_speed[column]))} of the pinion"
+    )
+    panels = [Panel(axis_label("film_thickness"), _curves(found, film, "film_thickness"),
+                    {"rangemode": "tozero"}, height=1.4)]  # fmt: skip
+    if found.film_ratio is not None:
+        ratio = np.nanmin(found.film_ratio, axis=2)
+        curves = _curves(found, ratio, "film_ratio")
+        panels.append(Panel(axis_label("film_ratio"), curves, {"rangemode": "tozero"}))
+    return stack(title, axis_label("pinion_speed"), panels)
+
+
+def _curves(found: FilmOverOperation, values: Any, quantity: str) -> list[Trace]:
+    speed, unit = displayed("pinion_speed", found.pinion_speed), display_unit(quantity)
+    drawn = []
+    for number, torque in enumerate(found.pinion_torque):
+        color, dash = _COLORS[number % len(_COLORS)], _DASHES[number // len(_COLORS) % 3]
+        name = rounded("torque", float(torque))
+        curve = line(speed, displayed(quantity, values[number]), name, color, unit=unit, dash=dash)
+        drawn.append({**curve, "mode": "lines+markers"})
+    return drawn
