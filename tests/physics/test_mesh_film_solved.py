@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
+from tribodyn.contact import path_of_contact
 from tribodyn.ehl import FILM_MODELS, FilmState
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.friction import LAWS
@@ -70,7 +71,7 @@ def table(name: str = "pinion drives", **changes: Any) -> Any:
 
 
 def touching(mesh: Any) -> Any:
-    cycle = mesh_cycle(mesh.gear_pair, 32)
+    cycle = mesh_cycle(path_of_contact(mesh.gear_pair), 32)
     motion = cycle.motion(mesh.pinion_speed)
     return pairs_in_contact(cycle, motion, OIL, STEEL), motion
 
