@@ -26,7 +26,7 @@ pair_stiffness = "2e8 N/m"
 [dynamics]
 model = "torsional"
 [solver]
-steps_per_mesh_cycle = 256
+steps_per_mesh_cycle = 512
 """
 STIFFNESS = 'model = "rectangular"\npair_stiffness = "2e8 N/m"'
 DYNAMICS = 'model = "torsional"'

@@ -60,26 +60,15 @@ def test_relief_makes_one_torque_the_quietest(pair):
     assert plain.unloaded_transmission_error.max() == 0.0
 
 
-def test_teeth_that_differ_are_followed_until_they_meet_again(fzg):
+def test_teeth_that_differ_are_followed_over_the_hunting_period(fzg):
     steps = (3e-6, -3e-6) * 8
     pair = fzg(pinion_modification=FlankModification(single_pitch_deviation=steps))
-    alone = transmission_error_over_torque(pair, [30.0, 60.0], provider="analytic", phases=16)
-    # one tooth of the wheel is like the other: a turn of the pinion is all there is
-    assert alone.mesh_cycles == 16
-    one_high = FlankModification(cumulative_pitch_deviation=(1e-9, *[0.0] * 23))
-    pair = fzg(
-        pinion_modification=FlankModification(single_pitch_deviation=steps),
-        wheel_modification=one_high,
-    )
     found = transmission_error_over_torque(pair, [30.0, 60.0], provider="analytic", phases=16)
     assert found.mesh_cycles == 48
     assert found.transmission_error.shape == (2, 48 * 16)
-    np.testing.assert_allclose(
-        found.transmission_error, np.tile(alone.transmission_error, 3), atol=1.1e-9
-    )
     # a tooth in two stands on: every second mesh cycle is another one, and the third like the first
     error = found.transmission_error[0].reshape(48, 16)
-    np.testing.assert_allclose(error[3], error[5], rtol=1e-9)
+    np.testing.assert_allclose(error[2], error[0], rtol=1e-9)
     assert np.max(np.abs(error[1] - error[0])) > 0.5e-6
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.contact import PathOfContact, extended_contact
 from tribodyn.errors import Argument, ComputationError, InputError
-from tribodyn.gear import Material, flank_gap, pitch_gap, run_out_gap
+from tribodyn.gear import Material, flank_gap, hunting_period, pitch_gap, run_out_gap
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.weber import local_terms
 from tribodyn.types import Array, Index, Mask
@@ -112,10 +112,8 @@ _MOST_SLICES = 1001
 
 
 def mesh_period(contact: PathOfContact) -> int:
-    """Mesh cycles after which everything repeats: turns of the gears whose teeth differ."""
-    gears = (contact.pair.pinion, contact.pair.wheel)
-    differ = [gear for gear in gears if gear.modification.teeth_differ]
-    return math.lcm(*(gear.teeth for gear in differ))
+    """Mesh cycles until the same teeth meet again, where teeth differ; otherwise one."""
+    return hunting_period(contact.pair) if contact.pair.teeth_differ else 1
 
 
 def slice_widths(contact: PathOfContact, slices: int | None) -> Array:

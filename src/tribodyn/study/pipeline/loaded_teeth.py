@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tribodyn.study.case.derive import placed
 from tribodyn.study.pipeline.tooth_contact import model_settings
 from tribodyn.study.studies.axes import pinion_torques
 
 if TYPE_CHECKING:
+    from tribodyn.gear import SpurPair
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
+    from tribodyn.types import Array
+
+_PHASES = 64  #: phases of a mesh cycle
 
 
 def loaded_settings(case: Case) -> dict[str, Any]:
@@ -25,7 +32,16 @@ def loaded_settings(case: Case) -> dict[str, Any]:
     }
 
 
-def loaded_contact(case: Case, *, torque: Any = None, phases: int = 64) -> LoadedContact:
+def phases_of_turns(pair: SpurPair) -> Array:
+    """Phases until all repeats: shorter than the hunting period where one gear is even."""
+    gears = (pair.pinion, pair.wheel)
+    turns = math.lcm(*(gear.teeth for gear in gears if gear.modification.teeth_differ))
+    return np.arange(_PHASES * turns) / _PHASES
+
+
+def loaded_contact(
+    case: Case, *, torque: Any = None, phases: int | Array = _PHASES
+) -> LoadedContact:
     """Find load sharing, transmission error and stiffness of a case under torques at rest.
 
     Parameters
@@ -35,8 +51,8 @@ def loaded_contact(case: Case, *, torque: Any = None, phases: int = 64) -> Loade
     torque : float, str or list, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
         That of the case where absent.
-    phases : int
-        Evenly spaced phases of a mesh cycle.
+    phases : int or array (p,)
+        Evenly spaced phases of a mesh cycle, or the phases themselves.
 
     Returns
     -------

@@ -108,15 +108,15 @@ class Result(Record):
         return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 
     def loaded_contact(self) -> LoadedContact:
-        """Loaded tooth contact at rest: over all teeth where these differ, without oil film.
+        """Loaded tooth contact at rest, without oil film: a turn of each gear whose teeth differ.
 
         Returns
         -------
         LoadedContact
         """
-        from tribodyn.study.pipeline.loaded_teeth import loaded_contact
+        from tribodyn.study.pipeline.loaded_teeth import loaded_contact, phases_of_turns
 
-        return loaded_contact(self.case)
+        return loaded_contact(self.case, phases=phases_of_turns(self.case.gear_pair))
 
     @cached_property
     def natural_modes(self) -> NaturalModes:
