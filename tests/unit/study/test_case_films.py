@@ -91,7 +91,9 @@ def test_a_case_without_film_says_so(case: Any) -> None:
 def test_a_film_below_the_roughness_is_told() -> None:
     steel = np.full((2, 1), 1e9)
     touching = np.ones((2, 1), dtype=bool)
-    mesh: Any = SimpleNamespace(hertz_pressure=steel, film_ratio=None, in_contact=touching)
+    mesh: Any = SimpleNamespace(
+        hertz_pressure=steel, film_ratio=None, in_contact=touching, gears=None
+    )
     assert mesh_cautions(mesh) == ()
     mesh.film_ratio = np.array([[1.2], [1.01]])
     assert mesh_cautions(mesh) == ()
@@ -106,6 +108,7 @@ def test_zeros_without_contact_are_no_thin_film() -> None:
         hertz_pressure=np.ones((1, 2)),
         film_ratio=np.array([[1.5, 0.0]]),
         in_contact=np.array([[True, False]]),
+        gears=None,
     )
     assert mesh_cautions(mesh) == ()
 
