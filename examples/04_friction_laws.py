@@ -6,7 +6,8 @@ where one tooth pair carries everything.
 
 import numpy as np
 
-from tribodyn.friction import LAWS, TribologicalContact
+import tribodyn as td
+from tribodyn.friction import LAWS, TribologicalContact, pitch_point
 
 options = {"constant": {"coefficient": 0.05}}
 sliding = np.array([0.913038, 0.7, 0.5])  # m/s, pinion minus wheel
@@ -21,6 +22,9 @@ contact = TribologicalContact(
     equivalent_radius=np.full(3, 8.577181e-3),  # m
     dynamic_viscosity=0.082,  # Pa*s
     composite_roughness=0.53e-6,  # m
+    oil_density=870.0,  # kg/m^3, for laws of the kinematic viscosity
+    film_thickness=np.full(3, 0.5e-6),  # m, for laws of mixed lubrication
+    pitch=pitch_point(td.load_case("fzg-roughness").gear_pair, 900.0 * np.pi / 30.0, 90.0),
 )
 
 print("sliding speed [m/s]   ", *(f"{speed:9.3f}" for speed in sliding))

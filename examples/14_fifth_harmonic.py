@@ -53,6 +53,6 @@ for name in ("fzg-12dof", "fzg-12dof-light"):
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
 folder.mkdir(parents=True, exist_ok=True)
 for (name, law), result in results.items():
-    result.plot_spectrum().write_html(folder / f"fifth-{name}-{law}.html")
+    result.plot_spectrum().write_html(folder / f"fifth-{name}-{law.replace('.', '-')}.html")
 print(f"figures in {folder.resolve()}:")
 print(*sorted(found.name for found in folder.glob("fifth-*.html")))

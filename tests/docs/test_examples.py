@@ -177,7 +177,7 @@ def fifth_harmonic(text: str) -> None:
 
 def run_up(text: str) -> None:
     # 16 teeth at 400 and 3000 rpm
-    assert "from 106.667 over 800 to 106.667 Hz" in text
+    assert "mesh frequency 106.667 to 800 and back to 106.667 Hz" in text
     order, speed, frequency, mode = (figure(text, "7 ", column - 1) if column else 7.0
                                      for column in range(4))  # fmt: skip
     # the strongest peak lies where order 7 meets the mesh mode

@@ -127,6 +127,7 @@ def test_a_lost_motion_leaves_the_others_alone():
     assert found.verdict[0].tolist() == ["physical", "undecided"]
 
 
+@pytest.mark.filterwarnings(r"ignore:\[step-size\]")  # coarse on purpose
 def test_a_coordinate_can_be_looked_at():
     system, options = reference_system(), {"steps": 256, "transient": 20, "cycles": 8, "keep": 8}
     found = bifurcation(system, [240.0], signal="pinion_y", **options)
@@ -138,6 +139,7 @@ def test_a_coordinate_can_be_looked_at():
     assert found.rms[0, 0] == pytest.approx(np.sqrt(spread), rel=1e-6)
 
 
+@pytest.mark.filterwarnings(r"ignore:\[step-size\]")  # coarse on purpose
 @pytest.mark.parametrize("coefficient", [0.0, 0.1])
 def test_section_of_a_gear_pair_is_one_point(coefficient):
     system = reference_system(coefficient)

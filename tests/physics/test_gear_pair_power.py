@@ -143,6 +143,7 @@ def test_friction_unloads_the_mesh_in_recess_with_both_torques_held():
         assert np.sign(mean[1] - mean[0]) == sign
 
 
+@pytest.mark.filterwarnings(r"ignore:\[step-size\]")  # coarse on purpose
 def test_torsional_pair_is_the_spur_pair_on_stiff_supports():
     stiff = _spur(0.1, bearing_stiffness=3e12, bearing_damping=0.0)
     mesh = Mesh(0.1)

@@ -14,7 +14,7 @@ import tribodyn as td
 from tribodyn.contact import path_of_contact
 from tribodyn.ehl import FILM_MODELS, FilmState
 from tribodyn.errors import ComputationError, InputError, ModelWarning
-from tribodyn.friction import LAWS
+from tribodyn.friction import LAWS, pitch_point
 from tribodyn.gear import BasicRack, FlankModification, Material, SpurPair, spur_pair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import build, film_columns, film_over_operation
@@ -47,6 +47,7 @@ def high_contact_ratio() -> SpurPair:
     )  # fmt: skip
 
 
+PITCH = pitch_point(fzg("pinion"), 900.0 * RPM, 100.0)
 PAIRS = {
     "pinion drives": (fzg("pinion"), 100.0),
     "wheel drives": (fzg("wheel"), 100.0),
@@ -108,9 +109,9 @@ def test_film_columns_solve_every_contact_for_itself() -> None:
     contacts, motion = touching(mesh)
     few = slice(0, 3)
     motion = replace(motion, **{name: getattr(motion, name)[few] for name in vars(motion)})
-    contact = tribological_contact(
-        motion, contacts, mesh.load_per_width[mesh.in_contact][few], 0.5e-6
-    )
+    loads = mesh.load_per_width[mesh.in_contact][few]
+    films = contacts.films("none", loads)
+    contact = tribological_contact(motion, contacts, loads, 0.5e-6, PITCH, films)
     found = film_columns("newton", contact, STEEL, OIL, common_face_width=20e-3)
     assert set(found) == {
         "central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness"
@@ -274,7 +275,8 @@ def test_friction_of_the_film_between_positions_is_that_at_the_knots(options: An
     here = mesh.in_contact
     contacts, motion = touching(mesh)
     films = contacts.films("newton", mesh.load_per_width[here])
-    contact = tribological_contact(motion, contacts, mesh.load_per_width[here], 0.5e-6)
+    loads = mesh.load_per_width[here]
+    contact = tribological_contact(motion, contacts, loads, 0.5e-6, PITCH, films)
     direct = LAWS["ehl"](
         replace(contact, film=FilmState.from_solutions(films.solutions)), **options
     )
@@ -288,7 +290,7 @@ def test_friction_of_the_film_between_positions_is_that_at_the_knots(options: An
 
 
 def test_friction_of_the_film_needs_a_solved_film() -> None:
-    with pytest.raises(InputError, match=r'friction law "ehl".*newton'):
+    with pytest.raises(InputError, match=r"film is not known.*newton"):
         table(friction_law="ehl", film_model="moes")
 
 

@@ -16,6 +16,7 @@ def spread(orbit):
     return abs(orbit.floquet_multipliers[0])
 
 
+@pytest.mark.filterwarnings(r"ignore:\[step-size\]")  # coarse on purpose
 @pytest.mark.parametrize("gap", [0.0, PLAY])
 @pytest.mark.parametrize("damping", [90.0, 900.0])
 @pytest.mark.parametrize("frequency", [240.0, 500.0, 4000.0, 7000.0, 9000.0])
