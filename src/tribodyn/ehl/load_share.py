@@ -41,7 +41,7 @@ def film_load_share(film_ratio: ArrayLike) -> Array:
     >>> [round(float(film_load_share(ratio)), 3) for ratio in (0.0, 0.2, 1.0, 10.0)]
     [0.0, 0.412, 0.883, 1.0]
     """
-    ratio = np.minimum(np.asarray(film_ratio, dtype=float), 1e300)
+    ratio = np.minimum(np.asarray(film_ratio, dtype=float), 1e50)
     require_between("film_ratio", ratio, 0.0, np.inf)
     ratio = np.minimum(ratio, _HELD)
     share = 1.21 * ratio ** _POWERS[0] / (1.0 + 0.37 * ratio ** _POWERS[1])
