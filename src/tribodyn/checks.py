@@ -42,12 +42,13 @@ def one_or_more(**quantities: ArrayLike) -> list[Array]:
     return lists
 
 
-def require_whole(name: str, value: Any, least: int = 1) -> int:
+def require_whole(name: str, value: Any, least: int = 1, *, why: str = "") -> int:
     """Return a whole number, or raise :class:`InputError`."""
-    number = real_numbers(Argument(name), value, "a whole number")
+    wanted = f"{why} a whole number".strip()
+    number = real_numbers(Argument(name), value, wanted)
     if number.ndim or not (float(number).is_integer() and least <= number <= 1e9):
-        why = f"A whole number from {least} to {1e9:g}"
-        raise InputError(Problem(f"{name} = {shortened(repr(value))}", Argument(name), why))
+        reason = f"Wanted: {wanted} from {least} to {1e9:g}"
+        raise InputError(Problem(f"{name} = {shortened(repr(value))}", Argument(name), reason))
     return int(number)
 
 

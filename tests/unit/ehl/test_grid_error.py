@@ -92,5 +92,7 @@ def test_the_film_of_a_case_tells_too_few_nodes():
     slow = td.load_case("fzg-film").replace(
         {"film.nodes": 129, "operation.speed": "20 rpm", "film.positions": 8}
     )
-    with pytest.warns(ModelWarning, match="film-resolution"):
-        td.run(slow)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)  # such a slow pair has more to tell
+        told = [warning.code for warning in td.run(slow).warnings]
+    assert "film-resolution" in told

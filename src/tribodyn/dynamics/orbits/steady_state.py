@@ -119,7 +119,7 @@ def _whole_periods(periods: int | str) -> int | None:
     """Check the number of mesh cycles; None stands for "auto"."""
     if isinstance(periods, str) and periods == "auto":
         return None
-    return require_whole("periods", periods)
+    return require_whole("periods", periods, why='"auto", or')
 
 
 def _told_step(mapping: OrbitMap, cost: float) -> str:
