@@ -84,7 +84,7 @@ def test_one_interruption_ends_a_march_and_its_process(lanes):
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize(
-    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=20000"],
+    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=100000"],
               ["bifurcation", "operation.speed=2000..3000 rpm:4000", "--cycles", "2"]]
 )  # fmt: skip
 def test_one_interruption_ends_a_command(words, tmp_path: Path):
