@@ -86,6 +86,7 @@ def test_arguments_of_wrong_kinds(draws):
 
 @pytest.mark.parametrize("function", SOUND)
 def test_the_sound_arguments_are_taken(function):
+    # A refusal of what is sound would raise here, and the draws above would prove nothing.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         assert function(**SOUND[function]) is not None

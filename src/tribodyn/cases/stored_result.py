@@ -14,8 +14,7 @@ import numpy as np
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
 from tribodyn.study.case.derive import placed
-from tribodyn.study.pipeline.assembly import system_of
-from tribodyn.study.pipeline.damping import damping_of
+from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.save import RESULT_FILES
 from tribodyn.study.pipeline.summary import SUMMARY

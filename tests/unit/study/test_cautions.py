@@ -11,9 +11,8 @@ from broken import SOUND
 import tribodyn as td
 from tribodyn.study import read_case
 from tribodyn.study.case.provenance import derived_values
-from tribodyn.study.pipeline.assembly import system_of
+from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import case_cautions
-from tribodyn.study.pipeline.damping import damping_of
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 

@@ -14,8 +14,7 @@ from tribodyn.dynamics import steady_state
 from tribodyn.mesh import MeshTable
 from tribodyn.plot import FIGURES
 from tribodyn.study import Result, read_case
-from tribodyn.study.pipeline.assembly import system_of
-from tribodyn.study.pipeline.damping import damping_of
+from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.record import first_touch
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 

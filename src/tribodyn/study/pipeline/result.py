@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
-    from tribodyn.study.pipeline.damping import Damping
+    from tribodyn.study.pipeline.assembly import Damping
 
 
 _PLOT = "plot_"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tribodyn.errors import collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
-from tribodyn.study.pipeline.assembly import system_of
+from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
     friction_cautions,
@@ -17,7 +17,6 @@ from tribodyn.study.pipeline.cautions import (
     motion_cautions,
     teeth_cautions,
 )
-from tribodyn.study.pipeline.damping import damping_of
 from tribodyn.study.pipeline.motion import motion_of, steps_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
