@@ -14,10 +14,13 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Registry
+
+Writer = TypeVar("Writer", bound=Callable[..., Path])
 
 #: Why a result lacks what a figure draws; empty if it has it.
 Lack = Callable[[Any], str]
@@ -240,5 +243,35 @@ def draw(result: Any, name: str = "", **options: Any) -> Any:
             what=f"no figure draws a {kinds[0]}",
             why="Figures say which classes they draw when they register",
             remedy=f'Register one with @drawing(..., of="{kinds[0]}")',
+        )
+    )
+
+
+#: Takes a result and a path, writes the file and returns its path; by the name of the class.
+REPORTS: Registry[Callable[..., Path]] = Registry("report")
+
+
+def report_of(kind: str) -> Callable[[Writer], Writer]:
+    """Register a function that writes the report of a class, given by its name."""
+
+    def keep(writer: Writer) -> Writer:
+        REPORTS.register(kind)(writer)
+        return writer
+
+    return keep
+
+
+def write_report_of(result: Any, path: Path) -> Path:
+    """Write the report of a result to a file."""
+    load_figures()
+    kinds = [kind.__name__ for kind in type(result).__mro__]
+    for kind in kinds:
+        if kind in REPORTS:
+            return REPORTS[kind](result, path)
+    raise InputError(
+        Problem(
+            what=f"no report tells of a {kinds[0]}",
+            why="Reports say which class they tell of when they register",
+            remedy=f'Register one with @report_of("{kinds[0]}")',
         )
     )

@@ -164,7 +164,7 @@ def test_ctrl_c_leaves_nothing(folder: Path, moment: str) -> None:
 _SLOW_REPORT = """
 import time
 import tribodyn.report
-from tribodyn.reporting import REPORTS
+from tribodyn.drawing import REPORTS
 REPORTS.register("Result")(lambda result, path: time.sleep(60))
 """
 

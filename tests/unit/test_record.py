@@ -114,7 +114,7 @@ def test_a_figure_of_something_else_is_refused_with_the_way_to_it(figure: Drawin
 
 
 def test_a_report_is_written_by_whoever_registered_for_the_class(tmp_path) -> None:
-    from tribodyn.reporting import REPORTS, report_of, write_report_of
+    from tribodyn.drawing import REPORTS, report_of, write_report_of
 
     @report_of("Level")
     def text_of_level(subject: Level, path):

@@ -7,12 +7,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from tribodyn.drawing import report_of
 from tribodyn.report.blocks import Block, figure_blocks
 from tribodyn.report.friction_loop import compared_friction
 from tribodyn.report.modes import HEAD, modes_table
 from tribodyn.report.numbers import headlines, table
 from tribodyn.report.origin import operating_point, provenance, version
-from tribodyn.reporting import report_of
 from tribodyn.study.pipeline.save import write_file
 
 _HERE = Path(__file__).parent

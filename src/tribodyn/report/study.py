@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from tribodyn import plot
+from tribodyn.drawing import report_of
 from tribodyn.report.blocks import Block, drawn_block
 from tribodyn.report.html import plotly_script, template, text_of
 from tribodyn.report.origin import operating_point, provenance, version
-from tribodyn.reporting import report_of
 from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from tribodyn.drawing import FIGURES, draw, figures_of
+from tribodyn.drawing import FIGURES, draw, figures_of, write_report_of
 from tribodyn.record import Parts, Record, html_table, record
-from tribodyn.reporting import write_report_of
 from tribodyn.stored import write_dataset
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.assembly import static_error

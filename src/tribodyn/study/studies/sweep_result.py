@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.drawing import draw
+from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import InputError, Problem
 from tribodyn.record import Parts, Record, html_table, record
-from tribodyn.reporting import write_report_of
 from tribodyn.stored import write_dataset
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
