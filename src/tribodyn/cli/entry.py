@@ -86,6 +86,8 @@ _EXAMPLES = {
     "harris": "fzg-roughness",
     "relief": "fzg-roughness",
     "run-up": 'fzg-roughness "400..3500 rpm"',
+    "losses": "fzg-roughness",
+    "friction-from-loss": "losses.csv --case fzg-roughness",
     "compare": "first second",
     "new": "my.toml",
     "explain": "epsilon_alpha",

@@ -13,6 +13,7 @@ from tribodyn.plot.film.operation import film_over_operation
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
+from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
@@ -58,12 +59,14 @@ __all__ = [
     "force_law",
     "forced_response",
     "friction",
+    "friction_from_loss",
     "gear_pair",
     "harris_map",
     "line_contact",
     "load_sharing",
     "loaded_contact",
     "loaded_sharing",
+    "losses",
     "lyapunov",
     "mesh_deformation",
     "mesh_force",
@@ -74,6 +77,7 @@ __all__ = [
     "path_of_contact",
     "phase_portrait",
     "poincare",
+    "power_flow",
     "run_up",
     "run_up_map",
     "spectrogram",

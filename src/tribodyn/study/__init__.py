@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.studies.bifurcation import bifurcation
+    from tribodyn.study.studies.losses import loss_map, rig_power_flow
     from tribodyn.study.studies.modes import campbell, natural_modes
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.study.studies.speed_sweep import speed_sweep
@@ -36,9 +37,11 @@ __all__ = [
     "film_over_operation",
     "harris_map",
     "loaded_contact",
+    "loss_map",
     "natural_modes",
     "optimize_tip_relief",
     "read_case",
+    "rig_power_flow",
     "run",
     "run_up",
     "speed_sweep",
@@ -54,9 +57,11 @@ _HOMES = {
     "film_over_operation": "studies.static",
     "harris_map": "studies.static",
     "loaded_contact": "pipeline.loaded_teeth",
+    "loss_map": "studies.losses",
     "natural_modes": "studies.modes",
     "optimize_tip_relief": "studies.static",
     "read_case": "case.read",
+    "rig_power_flow": "studies.losses",
     "run": "pipeline.run",
     "run_up": "studies.run_up",
     "speed_sweep": "studies.speed_sweep",
