@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 #: Pinion offset angles in the axial plane that are searched [rad], and how many.
 _LEAST, _MOST, _SEARCHED = 1e-7, 1.5, 2000
@@ -94,7 +94,7 @@ def limit_pressure_tangent(
     )
 
 
-def _cones_at(offset_angle: ArrayLike, given: PitchInput) -> PitchCones:
+def _cones_at(offset_angle: ArrayLike, given: PitchInput) -> Any:
     """Cones for pinion offset angles in the axial plane: clause 6.3.2; NaN where there are none."""
     eta, ratio, offset = np.asarray(offset_angle), given.ratio, given.offset
     radius, wanted = given.mean_radius_wheel, math.tan(given.mean_spiral_angle_pinion)
@@ -128,7 +128,7 @@ def _cones_at(offset_angle: ArrayLike, given: PitchInput) -> PitchCones:
     return PitchCones(pitches, spirals, distances, plane, limit, curvature)  # type: ignore[arg-type]
 
 
-def _possible(cones: PitchCones) -> Array:
+def _possible(cones: Any) -> Mask:
     """Whether cones open towards each other and their teeth are inclined by less than 90 deg."""
     finite = np.isfinite(cones.limit_curvature)
     angles = (*cones.pitch_angle, *cones.spiral_angle)

@@ -36,13 +36,13 @@ def _panel(blank: HypoidBlank, gear: str, color: str) -> Row:
     outline = np.hstack([tip, root[:, ::-1], tip[:, :1]])
     hand = blank.hand_pinion
     hand = hand if gear == "pinion" else {"left": "right", "right": "left"}[hand]
-    tooth: Trace = line(*outline, f"{gear}, {hand}-handed", color, unit="mm")
+    tooth: Trace = line(outline[0], outline[1], f"{gear}, {hand}-handed", color, unit="mm")
     tooth |= {"fill": "toself", "fillcolor": FILLS[color]}
     mean = 0.5e3 * getattr(blank, f"mean_pitch_diameter_{gear}")
     place = 1e3 * getattr(blank, f"calculation_point_{gear}")
     traces = [
         tooth,
-        line(*pitch, "pitch cone", MUTED, unit="mm", dash="dash"),
+        line(pitch[0], pitch[1], "pitch cone", MUTED, unit="mm", dash="dash"),
         line([place], [mean], "calculation point", color, unit="mm") | {"mode": "markers"},
     ]
     label = f"Place along the axis of the {gear} from the crossing point [mm]"
