@@ -13,6 +13,7 @@ from tribodyn.plot.film.operation import film_over_operation
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
+from tribodyn.plot.gear.hypoid_blank import hypoid_blank
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
@@ -32,6 +33,7 @@ from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
+from tribodyn.plot.signals.recorded import order_spectrum, recording, tracked_orders
 from tribodyn.plot.signals.run_up import run_up, run_up_map
 
 __all__ = [
@@ -62,6 +64,7 @@ __all__ = [
     "friction_from_loss",
     "gear_pair",
     "harris_map",
+    "hypoid_blank",
     "line_contact",
     "load_sharing",
     "loaded_contact",
@@ -73,11 +76,13 @@ __all__ = [
     "mesh_stiffness",
     "mode_shapes",
     "order_map",
+    "order_spectrum",
     "parameter_map",
     "path_of_contact",
     "phase_portrait",
     "poincare",
     "power_flow",
+    "recording",
     "run_up",
     "run_up_map",
     "spectrogram",
@@ -87,6 +92,7 @@ __all__ = [
     "static_transmission_error",
     "sweep",
     "tip_relief_map",
+    "tracked_orders",
     "transmission_error",
     "waterfall",
 ]
