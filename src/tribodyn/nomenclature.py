@@ -203,10 +203,6 @@ def lookup(name: str) -> Quantity:
     name : str
         Exact name.
 
-    Returns
-    -------
-    Quantity
-
     Raises
     ------
     KeyError

@@ -81,10 +81,6 @@ def build(
     progress : Progress
         Told how many oil films are solved.
 
-    Returns
-    -------
-    MeshTable
-
     Raises
     ------
     InputError
