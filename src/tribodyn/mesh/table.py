@@ -27,6 +27,7 @@ class MeshTable(MeshColumns):
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
         "mesh_stiffness": Labels(("knot",)),
+        "lubrication_regime": Labels(("knot", "pair")),
         "friction_sum": Labels(("knot",)),
         "friction_moment_pinion": Labels(("knot",)),
         "friction_moment_wheel": Labels(("knot",)),
