@@ -16,8 +16,6 @@ from tribodyn.friction.mixed_ehl import BOUNDARY, FILM, friction_of_film, shared
 from tribodyn.model import Option, number
 from tribodyn.types import Array
 
-#: Share of the load below which the film is sheared as if it carried this much.
-_LEAST = 1e-9
 #: Options of the asperities.
 _ASPERITIES: dict[str, Option] = {
     "boundary_friction_coefficient": BOUNDARY,
@@ -145,7 +143,9 @@ def mixed_solved(
     ----------
     contact : TribologicalContact
         Loaded contacts with their ``film``.
-    boundary_friction_coefficient, rms_slope, summit_density
+    boundary_friction_coefficient, rms_slope
+        As there.
+    summit_density : float, optional [1/m^2]
         As there.
     **shear : object
         Options of :func:`tribodyn.friction.ehl`, such as ``eyring_stress``.
@@ -186,9 +186,8 @@ def mixed_solved(
     central = film.central_film[film.contacts].reshape(contact.load_per_width.shape)
     asperities = _asperities_of(contact.composite_roughness, rms_slope, summit_density)
     share, gap = _load_share(replace(contact, central_film=central), asperities)
-    carried = np.maximum(share, _LEAST)
-    oil = ehl(_part_on_film(contact, film, carried, gap / central), **shear)
-    return FrictionParts(oil * carried, boundary_friction_coefficient * (1.0 - share), share)
+    oil = ehl(replace(contact, film=_lighter(film, share, gap / central)), **shear)
+    return FrictionParts(oil, boundary_friction_coefficient * (1.0 - share), share)
 
 
 LAWS.define(
@@ -201,23 +200,9 @@ LAWS.define(
 )(mixed_solved)
 
 
-def _part_on_film(
-    contact: TribologicalContact, film: FilmState, share: Array, growth: Array
-) -> TribologicalContact:
-    """Contacts with the part of the load that their film carries, at the gap that it then has.
-
-    The pressure keeps its shape, because film and asperities together bend the flanks as before.
-    """
+def _lighter(film: FilmState, share: Array, growth: Array) -> FilmState:
+    """Films with their part of the load: pressures of the same shape, thickness that has grown."""
     part, grown = np.ones(film.films), np.ones(film.films)
     part[film.contacts], grown[film.contacts] = np.ravel(share), np.ravel(growth)
-    lighter = replace(
-        film,
-        pressure=film.pressure * part[:, None],
-        film_thickness=film.film_thickness * grown[:, None],
-    )
-    return replace(
-        contact,
-        load_per_width=contact.load_per_width * share,
-        hertz_pressure=contact.hertz_pressure * share,
-        film=lighter,
-    )
+    pressure = film.pressure * part[:, None]
+    return replace(film, pressure=pressure, film_thickness=film.film_thickness * grown[:, None])

@@ -45,6 +45,12 @@ class MeshTable(MeshColumns):
         return float(self.grid.mean(self.by_share(self.friction_coefficient)))
 
     @property
+    def mean_asperity_friction_coefficient(self) -> float | None:
+        """Part of the mean friction coefficient from asperities; None where no law tells it."""
+        part = self.asperity_friction_coefficient
+        return None if part is None else float(self.grid.mean(self.by_share(part)))
+
+    @property
     def mean_friction_power(self) -> float:
         """Mean over the cycle of the sliding power lost in the quasi-static mesh [W]."""
         losses = self.by_share(self.friction_coefficient * np.abs(self.sliding_speed))
