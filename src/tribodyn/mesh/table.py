@@ -240,6 +240,9 @@ class MeshTable(MeshColumns):
     plot_film = drawn(
         "film", "Draw the oil film of a tooth pair and its ratio to the roughness over the path."
     )
+    plot_lubrication = drawn(
+        "lubrication", "Draw lubrication regime, load share of the film and parts of the friction."
+    )
     plot_film_stiffness = drawn(
         "film_stiffness", "Draw the stiffness of the oil film and of the teeth over the path."
     )
