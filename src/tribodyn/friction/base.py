@@ -57,10 +57,10 @@ class TribologicalContact:
         Density of the oil, for laws of kinematic viscosity.
     film_thickness : array, optional [m]
         Smallest thickness known of the oil film of each contact.
-    central_film : array, optional [m]
-        Film in the centre of each contact, where it is known.
     pitch : PitchPoint, optional
         The mesh at its pitch point, for laws of one mean value.
+    central_film : array, optional [m]
+        Film in the centre of each contact, where it is known.
 
     Raises
     ------

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from tribodyn.mesh import FilmOverOperation, MeshTable
 
 _OIL, _METAL = PAIR_COLORS[2], WHEEL
-#: Light fills of the regimes, from boundary to full film.
-_FILLS = ("rgba(213, 94, 0, 0.16)", "rgba(230, 159, 0, 0.10)", "rgba(86, 180, 233, 0.14)")
+#: Fills of the regimes, from boundary to full film.
+_FILLS = ("#f9dfcc", "#fdf5e5", "#e1f1fb")
 #: Film ratios that the axis shows at least.
 _SHOWN = (0.1, 4.0)
+_TICKS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
 _has_ratio = Need(
     "film_ratio",
     "There is no film ratio: it needs an oil film and rough flanks. Choose film.model, for example "
@@ -71,7 +72,11 @@ def lubrication(mesh: MeshTable) -> Any:
     path = Path(mesh)
     ratio, share = path.life("film_ratio"), path.life("film_load_share")
     low, high = min(_SHOWN[0], 0.8 * np.nanmin(ratio)), max(_SHOWN[1], 1.2 * np.nanmax(ratio))
-    axis = {"type": "log", "range": [float(np.log10(low)), float(np.log10(high))], "dtick": "D2"}
+    axis = {
+        "type": "log",
+        "range": [float(np.log10(low)), float(np.log10(high))],
+        "tickvals": _TICKS,
+    }
     shares = [
         line(path.angle, share, "oil film", _OIL),
         line(path.angle, 1.0 - share, "asperities", _METAL, dash="dash"),
@@ -83,7 +88,7 @@ def lubrication(mesh: MeshTable) -> Any:
     if mesh.asperity_friction_coefficient is not None:
         panels.append(_friction(path))
     marks = event_lines(roll_angle_positions(mesh).items())
-    marks["shapes"] += _bands(low, high)
+    marks["shapes"] = [*_bands(low, high), *marks["shapes"]]
     marks["annotations"] += _names(low, high)
     return stack(_title(mesh, share), roll_angle_label(mesh), panels, marks)
 
@@ -129,8 +134,8 @@ def _bands(low: float, high: float) -> list[dict[str, Any]]:
 
 
 def _names(low: float, high: float) -> list[dict[str, Any]]:
-    """Name the regimes at the right end of the first panel."""
-    common = {"xref": "paper", "x": 0.995, "xanchor": "right", "yref": "y", "showarrow": False}
+    """Name the regimes beside the first panel."""
+    common = {"xref": "paper", "x": 1.01, "xanchor": "left", "yref": "y", "showarrow": False}
     return [
         {**common, "y": 0.5 * float(np.log10(bottom) + np.log10(top)), "text": name}
         | {"font": {"size": 12, "color": MUTED}}
@@ -141,8 +146,8 @@ def _names(low: float, high: float) -> list[dict[str, Any]]:
 @drawing(
     "lubrication_map",
     heading="Lubrication regime over speed and torque",
-    caption="The least film ratio that a tooth pair meets on its way, over the speed and the torque "
-    f"of the pinion. {_LIMITS}",
+    caption="The least film ratio that a tooth pair meets on its way, over speed and torque of the "
+    f"pinion. {_LIMITS}",
     of="FilmOverOperation",
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) with several of both.",
     missing=lambda found: (
@@ -168,37 +173,44 @@ def lubrication_map(found: FilmOverOperation) -> Any:
     """
     ratio = np.nanmin(np.asarray(found.film_ratio), axis=2)
     turn, pull = display_unit("pinion_speed"), display_unit("torque")
+    low, high = REGIME_LIMITS
     common = {
         "type": "contour",
         "x": displayed("pinion_speed", found.pinion_speed),
         "y": displayed("torque", found.pinion_torque),
-        "z": np.log10(ratio),
-        "customdata": ratio,
+        "z": ratio,
         "showscale": False,
-        "hovertemplate": f"%{{x:.4g}} {turn}, %{{y:.4g}} {pull}: film ratio %{{customdata:.3g}}"
+        "hovertemplate": f"%{{x:.4g}} {turn}, %{{y:.4g}} {pull}: film ratio %{{z:.3g}}"
         "<extra></extra>",
     }
-    limits = np.log10(REGIME_LIMITS)
-    fills = {
-        **common,
-        "colorscale": _steps(),
-        "zmin": 2.0 * limits[0] - limits[1],
-        "zmax": 2.0 * limits[1] - limits[0],
-        "contours": {"start": limits[0], "end": limits[1], "size": limits[1] - limits[0]},
-        "line": {"width": 2, "color": TOTAL},
-    }
+    # What a constraint excludes is filled.
+    regimes: list[tuple[str, Any, str]] = [
+        (">", low, f"below {low:g}"),
+        ("][", [low, high], f"{low:g} to {high:g}"),
+        ("<", high, f"from {high:g} on"),
+    ]
+    filled = [
+        {
+            **common,
+            "contours": {"type": "constraint", "operation": sign, "value": limit},
+            "fillcolor": fill,
+            "line": {"width": 1.5, "color": TOTAL},
+            "name": f"{name}, {words}",
+            "showlegend": True,
+        }
+        for name, fill, (sign, limit, words) in zip(REGIMES, _FILLS, regimes, strict=True)
+    ]
     levels = {
         **common,
-        "contours": {"coloring": "none", "start": -2.0, "end": 2.0, "size": 0.1},
-        "line": {"width": 0.6, "color": MUTED},
-        "hoverinfo": "skip",
-        "hovertemplate": None,
+        "contours": {"coloring": "none", "showlabels": True, "labelfont": {"size": 11}},
+        "ncontours": 12,
+        "line": {"width": 0.8, "color": MUTED},
+        "showlegend": False,
     }
-    del levels["customdata"]
     least, most = significant(float(ratio.min())), significant(float(ratio.max()))
     return figure(
         f"The least film ratio is {least} to {most} over these speeds and torques",
-        [fills, levels, *_keys()],
+        [*filled, levels],
         {
             "xaxis": {"title": {"text": axis_label("pinion_speed")}},
             "yaxis": {"title": {"text": axis_label("torque", "Torque of the pinion")}},
@@ -206,25 +218,3 @@ def lubrication_map(found: FilmOverOperation) -> Any:
             "height": 460,
         },
     )
-
-
-def _steps() -> list[list[Any]]:
-    """One colour for each regime."""
-    parts = len(_FILLS)
-    return [[(number + end) / parts, fill] for number, fill in enumerate(_FILLS) for end in (0, 1)]
-
-
-def _keys() -> list[dict[str, Any]]:
-    """Legend of the regimes."""
-    limits = ("0", *(f"{limit:g}" for limit in REGIME_LIMITS), "")
-    return [
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "x": [None],
-            "y": [None],
-            "marker": {"size": 14, "symbol": "square", "color": fill},
-            "name": f"{name}: {low} to {high}" if high else f"{name}: from {low} on",
-        }
-        for name, fill, low, high in zip(REGIMES, _FILLS, limits[:-1], limits[1:], strict=True)
-    ]
