@@ -9,11 +9,12 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
-from tribodyn.plot.film.lubrication import lubrication, lubrication_map
-from tribodyn.plot.film.operation import film_over_operation
+from tribodyn.plot.film.lubrication import lubrication
+from tribodyn.plot.film.operation import film_over_operation, lubrication_map
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
+from tribodyn.plot.gear.hypoid_blank import hypoid_blank
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
@@ -61,6 +62,7 @@ __all__ = [
     "friction",
     "gear_pair",
     "harris_map",
+    "hypoid_blank",
     "line_contact",
     "load_sharing",
     "loaded_contact",

@@ -78,8 +78,10 @@ class FilmAt(Protocol):
     def warn_of_doubt(self) -> None:
         """Say where quantities are in doubt."""
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Friction:
-        """Friction coefficient of every pair in contact, with its parts where the law has them."""
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Friction:
+        """Friction of every pair in contact by the law of some settings, in parts if it has any."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,9 +107,11 @@ class FormulaFilm:
     def warn_of_doubt(self) -> None:
         """Say nothing: a formula is what it is."""
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Friction:
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Friction:
         """Ask the friction law."""
-        return LAWS[self.settings.friction_law].told(contact, self.settings.friction_options)
+        return LAWS[settings.friction_law].told(contact, settings.friction_options)
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,11 +226,12 @@ class SolvedPath:
             stacklevel=6,
         )
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Friction:
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Friction:
         """Friction of every pair; a law that shears the film knows it at solved places first."""
-        settings = self.path.settings
         if LAWS[settings.friction_law].needs_film:
-            return film_friction(self, motion)
+            return film_friction(self, motion, settings)
         return LAWS[settings.friction_law].told(contact, settings.friction_options)
 
 
@@ -270,7 +275,7 @@ def film_of(
     )
 
 
-def film_friction(solved: SolvedPath, motion: Kinematics) -> Friction:
+def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact) -> Friction:
     """Friction of the film: asked at every solved place, for a range of sliding speeds.
 
     A contact between two places takes its own sliding speed, so that the steep reversal at the
@@ -284,7 +289,7 @@ def film_friction(solved: SolvedPath, motion: Kinematics) -> Friction:
         here = path.zone == zone
         sliding = np.abs(motion.sliding_speed[here])
         speeds = _speeds(sliding)
-        told = _asked(solved, np.flatnonzero(places.zone == zone), speeds)
+        told = _asked(solved, settings, np.flatnonzero(places.zone == zone), speeds)
         over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
         curve = path.memory.curves.get((zone, PRESSURE), False)
         shared = isinstance(told, FrictionParts)
@@ -314,9 +319,9 @@ def _speeds(sliding: Array) -> Array:
     return np.asarray(_SLOW * np.sinh(inner))
 
 
-def _asked(solved: SolvedPath, chosen: Index, speeds: Array) -> Friction:
+def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array) -> Friction:
     """Friction of some of the solved places, each with all speeds in turn."""
-    settings, places = solved.path.settings, solved.places
+    places = solved.places
     index, speed = np.repeat(chosen, speeds.size), np.tile(speeds, chosen.size)
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
     entrainment = places.entrainment_speed[index]

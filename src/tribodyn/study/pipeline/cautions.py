@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.ehl import film_load_share
 from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
 from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
@@ -209,7 +210,8 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
         return
     least = float(np.nanmin(mesh.film_ratio[mesh.in_contact]))
     if least < 1.0:
-        share = float(np.nanmin(np.asarray(mesh.film_load_share)[mesh.in_contact]))
+        shares = mesh.film_load_share
+        share = film_load_share(least) if shares is None else np.nanmin(shares[mesh.in_contact])
         counted = mesh.asperity_friction_coefficient is not None
         yield ModelWarning(
             "mixed-lubrication",
