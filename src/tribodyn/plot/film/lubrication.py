@@ -44,8 +44,8 @@ def _caption(mesh: MeshTable) -> str:
         else f'by the film ratio, because the friction law "{mesh.friction_law}" has none'
     )
     return (
-        f"The least film of one tooth pair over the composite roughness. {LIMITS_IN_WORDS} The load "
-        f"share of the film is {whose}. {sharing_words(mesh.transverse_contact_ratio)}"
+        f"The least film of one tooth pair over the composite roughness. {LIMITS_IN_WORDS} The "
+        f"load share of the film is {whose}. {sharing_words(mesh.transverse_contact_ratio)}"
     )
 
 
