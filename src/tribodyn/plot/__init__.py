@@ -24,6 +24,7 @@ from tribodyn.plot.mesh.table import (
     static_transmission_error,
 )
 from tribodyn.plot.motion.courses import acceleration, bearing_force, mesh_force, transmission_error
+from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
 from tribodyn.plot.motion.sweeps import speed_sweep, sweep
@@ -58,6 +59,9 @@ __all__ = [
     "force_law",
     "forced_response",
     "friction",
+    "friction_claims",
+    "friction_effect",
+    "friction_harmonics",
     "gear_pair",
     "harris_map",
     "line_contact",
