@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
@@ -57,6 +57,12 @@ class PhaseGrid:
         ends = np.array((*self.event_phases[1:], 1.0))
         middles = 0.5 * (np.array(self.event_phases) + ends)
         return np.repeat(middles, np.array(self.intervals) + 1)
+
+    @cached_property
+    def _layout(self) -> tuple[Array, Index, Array, Index]:
+        """Begin, intervals, width and first knot of each segment."""
+        starts, counts = np.array(self.event_phases), np.array(self.intervals)
+        return starts, counts, np.diff(starts, append=1.0), np.cumsum(counts + 1) - counts - 1
 
     def mean(self, values: Array) -> Array:
         """Mean over the cycle by Simpson's rule in each segment.
@@ -113,14 +119,13 @@ class PhaseFunction:
         array
             Shape of ``phase`` followed by the further shape of the values.
         """
-        grid, folded = self.grid, np.mod(np.asarray(phase, dtype=float), 1.0)
-        starts = np.array((*grid.event_phases, 1.0))
-        segment = np.searchsorted(starts[:-1], folded, side="right") - 1
-        count = np.array(grid.intervals)[segment]
-        width = (starts[1:] - starts[:-1])[segment]
-        position = (folded - starts[segment]) / width * count
-        left = np.clip(position.astype(int) - 1, 0, count - 3)
-        first = np.array([part.start for part in grid.segments])[segment] + left
+        folded = np.mod(np.asarray(phase, dtype=float), 1.0)
+        starts, counts, widths, knots = self.grid._layout
+        segment = np.searchsorted(starts, folded, side="right") - 1
+        count = counts[segment]
+        position = (folded - starts[segment]) / widths[segment] * count
+        left = np.minimum(np.maximum(position.astype(int) - 1, 0), count - 3)
+        first = knots[segment] + left
         u = position - left
         weights = (
             (1.0 - u) * (2.0 - u) * (3.0 - u) / 6.0,
