@@ -13,6 +13,7 @@ from tribodyn.plot.film.operation import film_over_operation
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
+from tribodyn.plot.gear.hypoid_blank import hypoid_blank
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
@@ -64,6 +65,7 @@ __all__ = [
     "friction_harmonics",
     "gear_pair",
     "harris_map",
+    "hypoid_blank",
     "line_contact",
     "load_sharing",
     "loaded_contact",

@@ -90,17 +90,7 @@ def _no_harmonics(found: FrictionExperiment) -> str:
     made_by=_MADE,
 )
 def friction_effect(found: FrictionExperiment) -> Any:
-    """Draw the effect of friction on forces and transmission error over its mean coefficient.
-
-    Parameters
-    ----------
-    found : FrictionExperiment
-        What :func:`tribodyn.friction_experiment` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the effect of friction on forces and transmission error over its mean coefficient."""
     panels = [
         Panel(label, [{**t, "showlegend": number == 0} for t in _curves(found, name)])
         for number, (name, label) in enumerate(_EFFECTS)
@@ -119,17 +109,7 @@ def friction_effect(found: FrictionExperiment) -> Any:
     made_by=_MADE,
 )
 def friction_claims(found: FrictionExperiment) -> Any:
-    """Draw which claim holds under which assumption.
-
-    Parameters
-    ----------
-    found : FrictionExperiment
-        What :func:`tribodyn.friction_experiment` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw which claim holds under which assumption."""
     known = [(claim.statement, claim.holds.ravel()) for claim in found.claims
              if claim.holds is not None]  # fmt: skip
     holds = np.array([each for _, each in known]).reshape(len(known), -1)
@@ -160,17 +140,7 @@ def friction_claims(found: FrictionExperiment) -> Any:
     made_by=_MADE,
 )
 def friction_harmonics(found: FrictionExperiment) -> Any:
-    """Draw how friction changes the harmonics of the dynamic transmission error.
-
-    Parameters
-    ----------
-    found : FrictionExperiment
-        What :func:`tribodyn.friction_experiment` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw how friction changes the harmonics of the dynamic transmission error."""
     names = [f"{_HARMONIC}{k}" for k in range(1, _HARMONICS + 1)]
     change = 100.0 * np.array([found.change(name) for name in names])
     column = found.axes[1].values.index(found.case.operation.torque_balance)
