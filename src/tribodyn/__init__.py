@@ -7,7 +7,7 @@
 
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
-``analysis``, ``study``, ``cases``, ``plot`` and ``report``.
+``analysis``, ``measurement``, ``study``, ``cases``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -87,8 +87,8 @@ _HOMES = {
 
 _ROOMS = (
     "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
-    "lubricant", "mesh", "nomenclature", "plot", "progress", "report", "stiffness", "study",
-    "units",
+    "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report", "stiffness",
+    "study", "units",
 )  # fmt: skip
 
 

@@ -33,6 +33,7 @@ from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
+from tribodyn.plot.signals.recorded import order_spectrum, recording, tracked_orders
 from tribodyn.plot.signals.run_up import run_up, run_up_map
 
 __all__ = [
@@ -76,10 +77,12 @@ __all__ = [
     "mesh_stiffness",
     "mode_shapes",
     "order_map",
+    "order_spectrum",
     "parameter_map",
     "path_of_contact",
     "phase_portrait",
     "poincare",
+    "recording",
     "run_up",
     "run_up_map",
     "spectrogram",
@@ -89,6 +92,7 @@ __all__ = [
     "static_transmission_error",
     "sweep",
     "tip_relief_map",
+    "tracked_orders",
     "transmission_error",
     "waterfall",
 ]
