@@ -50,6 +50,11 @@ COMMANDS = (
         "Find friction coefficients from measured torque losses.",
     ),
     (
+        "experiment",
+        "tribodyn.cli.experiment_command:experiment",
+        "Judge published claims on one gear pair: friction.",
+    ),
+    (
         "compare",
         "tribodyn.cli.compare_command:compare",
         "Show what differs between two results.",
@@ -84,12 +89,7 @@ def _welcome(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
 
 
 def make_app() -> App:
-    """Build the command line; nothing heavy is imported.
-
-    Returns
-    -------
-    App
-    """
+    """Build the command line; nothing heavy is imported."""
     app = App(
         name="tribodyn",
         help="Gear tribo-dynamics: tooth contact, friction, stiffness and vibration.",

@@ -88,6 +88,7 @@ _EXAMPLES = {
     "run-up": 'fzg-roughness "400..3500 rpm"',
     "losses": "fzg-roughness",
     "friction-from-loss": "losses.csv --case fzg-roughness",
+    "experiment": "friction",
     "compare": "first second",
     "new": "my.toml",
     "explain": "epsilon_alpha",

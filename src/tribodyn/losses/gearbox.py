@@ -247,10 +247,6 @@ def gearbox_losses(
     torque_balance : str
         ``"load"`` where the torque is that of the load; else it is that of the driver.
 
-    Returns
-    -------
-    GearboxLosses
-
     Raises
     ------
     InputError

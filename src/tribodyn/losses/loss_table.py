@@ -136,9 +136,6 @@ class PowerLossTable:
         row : int
             Its number, from 0.
 
-        Returns
-        -------
-        str
         """
         return self.places[row] if self.places else f"row {row + 1}"
 
@@ -156,10 +153,6 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
         H_V of the gears.
     **more : object
         Further arguments of :class:`PowerLossTable`.
-
-    Returns
-    -------
-    PowerLossTable
 
     Raises
     ------

@@ -62,10 +62,6 @@ def rig_power_flow(test: GearboxLosses, slave: GearboxLosses) -> RigPowerFlow:
     test, slave : GearboxLosses
         Both gearboxes, each at one torque and speed, the same for both.
 
-    Returns
-    -------
-    RigPowerFlow
-
     Raises
     ------
     InputError

@@ -9,7 +9,8 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
-from tribodyn.plot.film.operation import film_over_operation
+from tribodyn.plot.film.lubrication import lubrication
+from tribodyn.plot.film.operation import film_over_operation, lubrication_map
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
@@ -26,6 +27,7 @@ from tribodyn.plot.mesh.table import (
     static_transmission_error,
 )
 from tribodyn.plot.motion.courses import acceleration, bearing_force, mesh_force, transmission_error
+from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
 from tribodyn.plot.motion.sweeps import speed_sweep, sweep
@@ -61,7 +63,10 @@ __all__ = [
     "force_law",
     "forced_response",
     "friction",
+    "friction_claims",
+    "friction_effect",
     "friction_from_loss",
+    "friction_harmonics",
     "gear_pair",
     "harris_map",
     "hypoid_blank",
@@ -70,6 +75,8 @@ __all__ = [
     "loaded_contact",
     "loaded_sharing",
     "losses",
+    "lubrication",
+    "lubrication_map",
     "lyapunov",
     "mesh_deformation",
     "mesh_force",

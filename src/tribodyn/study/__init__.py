@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.studies.bifurcation import bifurcation
+    from tribodyn.study.studies.friction_experiment import friction_experiment
     from tribodyn.study.studies.losses import loss_map, rig_power_flow
     from tribodyn.study.studies.modes import campbell, natural_modes
     from tribodyn.study.studies.run_up import run_up
@@ -35,6 +36,7 @@ __all__ = [
     "campbell",
     "comprehensive_stiffness",
     "film_over_operation",
+    "friction_experiment",
     "harris_map",
     "loaded_contact",
     "loss_map",
@@ -55,6 +57,7 @@ _HOMES = {
     "campbell": "studies.modes",
     "comprehensive_stiffness": "studies.static",
     "film_over_operation": "studies.static",
+    "friction_experiment": "studies.friction_experiment",
     "harris_map": "studies.static",
     "loaded_contact": "pipeline.loaded_teeth",
     "loss_map": "studies.losses",

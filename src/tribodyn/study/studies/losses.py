@@ -104,10 +104,6 @@ def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
         The gearbox that closes the loop, at the same torque and speed of the pinion; one like the
         first by default.
 
-    Returns
-    -------
-    RigPowerFlow
-
     Raises
     ------
     InputError
