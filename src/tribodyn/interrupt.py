@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["STOPPED", "Threads", "in_threads", "refuse_stopped", "stop_flag"]
+__all__ = ["STOPPED", "Threads", "in_threads", "refuse_stopped", "stop_flag", "stoppable"]
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -134,3 +134,10 @@ def in_threads(
             for future in done:
                 future.result()
         return [future.result() for future in running]
+
+
+def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:
+    """Call a compiled function that takes the flag last, and returns its status (first)."""
+    answer = in_threads(lambda _: kernel(*arguments, stop_flag()), (0,), 1, brief=brief)[0]
+    refuse_stopped(answer[0] if isinstance(answer, tuple) else answer)
+    return answer
