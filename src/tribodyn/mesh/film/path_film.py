@@ -75,8 +75,10 @@ class FilmAt(Protocol):
     def warn_of_doubt(self) -> None:
         """Say where quantities are in doubt."""
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
-        """Friction coefficient of every pair in contact."""
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Array:
+        """Friction coefficient of every pair in contact by the law of some settings."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +104,11 @@ class FormulaFilm:
     def warn_of_doubt(self) -> None:
         """Say nothing: a formula is what it is."""
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Array:
         """Ask the friction law."""
-        law, options = self.settings.friction_law, self.settings.friction_options
-        return LAWS[law](contact, **options)
+        return LAWS[settings.friction_law](contact, **settings.friction_options)
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,11 +223,12 @@ class SolvedPath:
             stacklevel=6,
         )
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Array:
         """Friction of every pair; a law that shears the film knows it at solved places first."""
-        settings = self.path.settings
         if LAWS[settings.friction_law].needs_film:
-            return film_friction(self, motion)
+            return film_friction(self, motion, settings)
         return LAWS[settings.friction_law](contact, **settings.friction_options)
 
 
@@ -268,7 +272,7 @@ def film_of(
     )
 
 
-def film_friction(solved: SolvedPath, motion: Kinematics) -> Array:
+def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact) -> Array:
     """Friction of the film: asked at every solved place, for a range of sliding speeds.
 
     A contact between two places takes its own sliding speed, so that the steep reversal at the
@@ -281,7 +285,7 @@ def film_friction(solved: SolvedPath, motion: Kinematics) -> Array:
         here = path.zone == zone
         sliding = np.abs(motion.sliding_speed[here])
         speeds = _speeds(sliding)
-        values = _asked(solved, np.flatnonzero(places.zone == zone), speeds)
+        values = _asked(solved, settings, np.flatnonzero(places.zone == zone), speeds)
         over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
         curve = path.memory.curves.get((zone, PRESSURE), False)
         along = joined_over_age(
@@ -299,9 +303,9 @@ def _speeds(sliding: Array) -> Array:
     return np.asarray(_SLOW * np.sinh(inner))
 
 
-def _asked(solved: SolvedPath, chosen: Index, speeds: Array) -> Array:
+def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array) -> Array:
     """Friction coefficient (places, speeds) of some of the solved places."""
-    settings, places = solved.path.settings, solved.places
+    places = solved.places
     index, speed = np.repeat(chosen, speeds.size), np.tile(speeds, chosen.size)
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
     entrainment = places.entrainment_speed[index]

@@ -30,17 +30,7 @@ _has_film = Need("central_film minimum_film", "The film model gives no film thic
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) and its plot method.",
 )
 def film_over_operation(found: FilmOverOperation) -> Any:
-    """Draw the least film over the speed, a curve for each torque.
-
-    Parameters
-    ----------
-    found : FilmOverOperation
-        What :func:`tribodyn.film_over_operation` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the least film over the speed, a curve for each torque."""
     known = found.minimum_film if found.minimum_film is not None else found.central_film
     film = np.nanmin(np.asarray(known), axis=2)
     row, column = np.unravel_index(int(np.argmin(film)), film.shape)
