@@ -5,7 +5,6 @@ their crossings go on for ever.
 """
 
 import random
-import time
 import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -166,11 +165,11 @@ def test_films_of_random_pairs_near_resonance_are_those_of_their_contacts(draws:
         changes = {**near_resonance(chance), **relief(chance), **film(chance)}
         print(changes)
         try:
-            begun, result = time.process_time(), computed(changes)
+            result = computed(changes)
         except ComputationError as error:
             told.append(str(error))
             continue
         found = deviations(result, chance)
-        print(f"{time.process_time() - begun:.1f} s,", found)
+        print(found)
         assert max(found.values()) < 0.02
     assert all(any(word in words for word in ("period", "orbit", "film")) for words in told), told
