@@ -24,7 +24,13 @@ from tribodyn.gear.flank_gap import (
     run_out_gap,
     tooth_positions,
 )
-from tribodyn.gear.hypoid import HypoidBlank, hypoid_blank
+from tribodyn.gear.hypoid import (
+    EaseOff,
+    HypoidBlank,
+    HypoidFlanks,
+    hypoid_blank,
+    hypoid_flanks,
+)
 from tribodyn.gear.mass_properties import MassProperties, Material, mass_properties, section_moments
 from tribodyn.gear.mesh_geometry import (
     FlankRange,
@@ -44,9 +50,11 @@ from tribodyn.gear.tooth_form import BasicRack, ToothForm
 
 __all__ = [
     "BasicRack",
+    "EaseOff",
     "FlankModification",
     "FlankRange",
     "HypoidBlank",
+    "HypoidFlanks",
     "MassProperties",
     "Material",
     "MeshGeometry",
@@ -61,6 +69,7 @@ __all__ = [
     "half_tooth",
     "hunting_period",
     "hypoid_blank",
+    "hypoid_flanks",
     "lead_gap",
     "mass_properties",
     "operating_pressure_angle",
