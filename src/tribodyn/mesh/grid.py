@@ -106,19 +106,7 @@ class PhaseFunction:
     values: Array
 
     def __call__(self, phase: Array | float) -> Array:
-        """Interpolate with the cubic through four knots of one segment.
-
-        Parameters
-        ----------
-        phase : float or array
-            Mesh phase, taken modulo one. Exactly on an event the value after it is returned,
-            below it the value before it.
-
-        Returns
-        -------
-        array
-            Shape of ``phase`` followed by the further shape of the values.
-        """
+        """Interpolate with the cubic through four knots; on an event the value after it."""
         folded = np.mod(np.asarray(phase, dtype=float), 1.0)
         starts, counts, widths, knots = self.grid._layout
         segment = np.searchsorted(starts, folded, side="right") - 1
@@ -233,18 +221,7 @@ class MonotonePhaseFunction:
         ]
 
     def __call__(self, phase: Array | float) -> Array:
-        """Interpolate.
-
-        Parameters
-        ----------
-        phase : float or array
-            Mesh phase, taken modulo one. Exactly on an event the value after it is returned.
-
-        Returns
-        -------
-        array
-            Shape of ``phase`` followed by the further shape of the values.
-        """
+        """Interpolate; exactly on an event the value after it is returned."""
         folded = np.mod(np.asarray(phase, dtype=float), 1.0)
         segment = np.searchsorted(np.array(self.grid.event_phases), folded, side="right") - 1
         found = np.empty(folded.shape + self.values.shape[1:])
