@@ -28,8 +28,11 @@ from tribodyn.gear.hypoid import (
     EaseOff,
     HypoidBlank,
     HypoidFlanks,
+    Misalignment,
+    ToothContact,
     hypoid_blank,
     hypoid_flanks,
+    tooth_contact,
 )
 from tribodyn.gear.mass_properties import MassProperties, Material, mass_properties, section_moments
 from tribodyn.gear.mesh_geometry import (
@@ -58,9 +61,11 @@ __all__ = [
     "MassProperties",
     "Material",
     "MeshGeometry",
+    "Misalignment",
     "ProfileMap",
     "SpurGear",
     "SpurPair",
+    "ToothContact",
     "ToothForm",
     "default_relief_length",
     "flank_gap",
@@ -79,6 +84,7 @@ __all__ = [
     "section_moments",
     "spur_pair",
     "tip_shortening_coefficient",
+    "tooth_contact",
     "tooth_outline",
     "tooth_positions",
     "zero_backlash_center_distance",

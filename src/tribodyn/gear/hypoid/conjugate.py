@@ -12,6 +12,8 @@ from tribodyn.gear.hypoid.ease_off import EaseOff
 from tribodyn.gear.hypoid.envelope import (
     Curvature,
     Envelope,
+    Surface,
+    cross,
     envelope,
     relative_curvature,
     turned_surface,
@@ -25,10 +27,13 @@ class Touch(NamedTuple):
 
     places: Array  #: (..., 2) along and across the wheel's pitch cone
     contact: Envelope
-    curvature: Curvature
     sliding: Array  #: (..., 3) of the pinion over the wheel, for a unit speed of the pinion
     lever: Array  #: of the normal about the wheel's axis, positive
-    margins: Array  #: (..., 4) room to tip of wheel and pinion, to toe and heel; negative outside
+
+    @property
+    def curvature(self) -> Curvature:
+        """Curvature of the gap about each contact."""
+        return relative_curvature(self.contact)
 
 
 class ConjugateFlanks:
@@ -37,31 +42,32 @@ class ConjugateFlanks:
     def __init__(self, blank: HypoidBlank, side: str, ease_off: EaseOff) -> None:
         self.blank, self.ease_off = blank, ease_off
         self.wheel, self.axes = FormateFlank(blank, side), pair_axes(blank)
-        moment = np.cross(self.wheel.point, self.wheel.normal)
+        moment = cross(self.wheel.point, self.wheel.normal)
         #: 1 where the rotations grow while the pinion drives, else -1.
         self.sense = -math.copysign(1.0, moment[2])
 
     def touch(self, places: Array) -> Touch:
         """Touch the wheel at places; NaN where it has no flank or never touches."""
-        parameters = self.wheel.parameters(places)
-        contact = envelope(self.wheel.at(parameters), self.axes)
+        return self.touch_at(self.wheel.at(self.wheel.parameters(places)))
+
+    def touch_at(self, surface: Surface) -> Touch:
+        """Touch the wheel at points of its flank."""
+        places, _ = self.wheel.projected(surface)
+        contact = envelope(surface, self.axes)
         position, normal = contact.wheel[:2]
-        lever = -self.sense * np.cross(position, normal)[..., 2]
         return Touch(
             places,
             contact,
-            relative_curvature(contact),
             self.axes.sliding(position),
-            lever,
-            self._margins(places, contact),
+            -self.sense * cross(position, normal)[..., 2],
         )
 
-    def _margins(self, places: Array, contact: Envelope) -> Array:
-        """Room to the ends of the active flank."""
+    def margins(self, touch: Touch) -> Array:
+        """Room (..., 4) to tip of wheel and pinion, to toe and heel; negative outside."""
         blank = self.blank
-        along, across = np.moveaxis(places, -1, 0)
+        along, across = np.moveaxis(touch.places, -1, 0)
         up = math.tan(blank.face_angle_wheel - blank.pitch_angle_wheel)
-        x, place, z = np.moveaxis(contact.pinion.position, -1, 0)
+        x, place, z = np.moveaxis(touch.contact.pinion.position, -1, 0)
         radius, pitch = np.hypot(x, z), blank.pitch_angle_pinion
         distance = radius * math.sin(pitch) + (place + blank.pitch_apex_pinion) * math.cos(pitch)
         tip = (place + blank.face_apex_pinion) * math.tan(blank.face_angle_pinion)
@@ -91,7 +97,7 @@ class ConjugateFlanks:
             - pinion.normal[..., :, None] * gap_slope[..., None, :]
             - gap[..., None, None] * pinion.turns
         )
-        normal = np.cross(tangents[..., 0], tangents[..., 1])
+        normal = cross(tangents[..., 0], tangents[..., 1])
         # A pinion that is undercut is run through backwards; its normal keeps its sense.
         normal *= np.sign(np.einsum("...i,...i->...", normal, pinion.normal))[..., None]
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)

@@ -24,11 +24,11 @@ class Axes(NamedTuple):
     @property
     def relative(self) -> Array:
         """Angular velocity of the pinion relative to the wheel."""
-        return self.axis + np.array([0.0, 0.0, self.ratio])
+        return np.asarray(self.axis + np.array([0.0, 0.0, self.ratio]))
 
     def sliding(self, position: Array) -> Array:
         """Velocity of the pinion less that of the wheel for a unit velocity of the pinion."""
-        return np.asarray(np.cross(self.relative, position) - np.cross(self.axis, self.origin))
+        return np.asarray(cross(self.relative, position) - cross(self.axis, self.origin))
 
     def to_pinion(self, vector: Array, rotation: Array) -> Array:
         """Vector of the fixed frame in a pinion that has turned."""
@@ -53,12 +53,18 @@ class Envelope(NamedTuple):
     slope: Array  #: (..., 2) derivatives of the rotation by the parameters of the flank
 
 
+def cross(one: Array, other: Array) -> Array:
+    """Cross product of vectors in the last axis; of small arrays much faster than numpy's."""
+    (a, b, c), (x, y, z) = (tuple(each[..., i] for i in range(3)) for each in (one, other))
+    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+
+
 def turned(vector: Array, axis: Array, angle: Array) -> Array:
     """Turn vectors about a unit axis: Rodrigues."""
     angle = np.asarray(angle)[..., None]
     along = (vector @ axis)[..., None] * axis
     return np.asarray(
-        along + np.cos(angle) * (vector - along) + np.sin(angle) * np.cross(axis, vector)
+        along + np.cos(angle) * (vector - along) + np.sin(angle) * cross(axis, vector)
     )
 
 
@@ -81,8 +87,8 @@ def contact_rotation(surface: Surface, axes: Axes) -> Array:
 
     The normal velocity is linear in cosine and sine of the rotation.
     """
-    moment = np.cross(surface.position, surface.normal)
-    drift = np.cross(axes.axis, axes.origin)
+    moment = cross(surface.position, surface.normal)
+    drift = cross(axes.axis, axes.origin)
 
     def part(about: Array) -> Array:
         return np.asarray(moment @ (about * axes.relative) - surface.normal @ (about * drift))
@@ -105,18 +111,16 @@ def envelope(surface: Surface, axes: Axes) -> Envelope:
     rotation = contact_rotation(surface, axes)
     wheel = turned_surface(surface, _WHEEL_AXIS, -rotation)
     position, normal, tangents, turns = wheel
-    drift = np.cross(axes.axis, axes.origin)
+    drift = cross(axes.axis, axes.origin)
 
     def meshing(moment: Array, direction: Array) -> Array:
         return np.asarray(moment @ axes.relative - direction @ drift)
 
-    rate = -meshing(
-        np.cross(_WHEEL_AXIS, np.cross(position, normal)), np.cross(_WHEEL_AXIS, normal)
-    )
+    rate = -meshing(cross(_WHEEL_AXIS, cross(position, normal)), cross(_WHEEL_AXIS, normal))
     slope = np.stack(
         [
             -meshing(
-                np.cross(tangents[..., i], normal) + np.cross(position, turns[..., i]),
+                cross(tangents[..., i], normal) + cross(position, turns[..., i]),
                 turns[..., i],
             )
             / rate
@@ -129,7 +133,7 @@ def envelope(surface: Surface, axes: Axes) -> Envelope:
         position - axes.origin,
         normal,
         tangents - axes.sliding(position)[..., None] * per_turn,
-        turns - np.cross(axes.relative, normal)[..., None] * per_turn,
+        turns - cross(axes.relative, normal)[..., None] * per_turn,
     )
     return Envelope(rotation, wheel, pinion, slope)
 
@@ -149,7 +153,7 @@ def relative_curvature(contact: Envelope) -> Curvature:
     wheel, pinion, slope = contact.wheel, contact.pinion, contact.slope
     direction = wheel.tangents[..., 1] * slope[..., :1] - wheel.tangents[..., 0] * slope[..., 1:]
     line = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
-    across = np.cross(wheel.normal, line)
+    across = cross(wheel.normal, line)
     basis = np.stack([line, across], axis=-2)
     shapes, areas = [], []
     for surface in (pinion, wheel):

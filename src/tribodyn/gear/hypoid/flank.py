@@ -275,6 +275,7 @@ def hypoid_flanks(
 
 def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
     touch = flanks.touch(places)
+    curvature = touch.curvature
     parameters = flanks.wheel.parameters(places)
     wheel, (position, normal) = flanks.wheel.at(parameters), flanks.pinion_at(parameters)
     if not np.all(np.isfinite(position)):
@@ -288,10 +289,10 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
         "pinion_position": position,
         "pinion_normal": normal,
         "gap": flanks.ease_off.gap(flanks.blank, places)[0],
-        "active": np.all(touch.margins >= 0.0, axis=-1),
+        "active": np.all(flanks.margins(touch) >= 0.0, axis=-1),
         "wheel_rotation": touch.contact.rotation,
-        "relative_curvature": touch.curvature.tensor[..., 1, 1],
-        "regularity": touch.curvature.regularity,
+        "relative_curvature": curvature.tensor[..., 1, 1],
+        "regularity": curvature.regularity,
     }
 
 

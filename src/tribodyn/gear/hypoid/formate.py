@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from tribodyn.gear.hypoid.blank import HypoidBlank
-from tribodyn.gear.hypoid.envelope import Axes, Surface, turned
+from tribodyn.gear.hypoid.envelope import Axes, Surface, cross, turned
 from tribodyn.types import Array
 
 #: Steps of Newton's method, and the greatest error left [m].
@@ -45,11 +45,11 @@ class FormateFlank:
         along = math.sin(pitch) * outward + np.array([0.0, 0.0, math.cos(pitch)])
         spiral = blank.mean_spiral_angle_wheel
         self.trace = math.cos(spiral) * along
-        self.trace -= sense * math.sin(spiral) * np.cross(normals[0], along)
+        self.trace -= sense * math.sin(spiral) * cross(normals[0], along)
         # The pinion pushes the drive flank towards the apex, the coast flank away from it.
         drive = side == "drive"
         pressure = getattr(blank, f"normal_pressure_angle_{side}")
-        push = np.cross(self.trace, normals[0])
+        push = cross(self.trace, normals[0])
         push *= -math.copysign(1.0, push @ along) * (1.0 if drive else -1.0)
         self.normal = math.cos(pressure) * push - math.sin(pressure) * normals[0]
         self.axis = normals[1]
@@ -66,8 +66,8 @@ class FormateFlank:
         swing = turned(arm, self.axis, angle)
         normal = turned(np.broadcast_to(self.normal, arm.shape), self.axis, angle)
         blade = turned(np.broadcast_to(self.generator, arm.shape), self.axis, angle)
-        tangents = np.stack([blade, np.cross(self.axis, swing)], axis=-1)
-        turns = np.stack([np.zeros_like(normal), np.cross(self.axis, normal)], axis=-1)
+        tangents = np.stack([blade, cross(self.axis, swing)], axis=-1)
+        turns = np.stack([np.zeros_like(normal), cross(self.axis, normal)], axis=-1)
         return Surface(self.center + swing, normal, tangents, turns)
 
     def projected(self, surface: Surface) -> tuple[Array, Array]:
