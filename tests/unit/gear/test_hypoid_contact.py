@@ -122,7 +122,7 @@ def test_conjugate_flanks_have_no_transmission_error():
         for side in SIDES:
             flanks = hypoid_flanks(blank, side, points=9)
             contact = tooth_contact(flanks, rotations_per_pitch=6, cells=9)
-            assert np.all(contact.transmission_error == 0.0)
+            assert np.all(contact.angular_transmission_error == 0.0)
             assert contact.contact_ratio > 1.0
             # The exact flanks, started beside their contact, come to the same rotation.
             lines = ContactLines(flanks.conjugate)
@@ -188,10 +188,12 @@ def test_misaligned_contact_agrees_with_the_surfaces(change):
     exact = tooth_contact(flanks, misaligned, exact=True, rotations_per_pitch=6, cells=9)
     inner = first.leads & ~first.on_edge
     assert inner.sum() >= 5
-    change = np.abs(first.transmission_error - exact.transmission_error)[inner].max()
+    change = np.abs(first.angular_transmission_error - exact.angular_transmission_error)[
+        inner
+    ].max()
     moved = np.abs(
-        tooth_contact(flanks, rotations_per_pitch=6, cells=9).transmission_error
-        - first.transmission_error
+        tooth_contact(flanks, rotations_per_pitch=6, cells=9).angular_transmission_error
+        - first.angular_transmission_error
     )
     assert change < 0.02 * moved[inner].max()
 
@@ -209,7 +211,9 @@ def test_a_pair_of_the_other_hand_and_the_coast_side():
             for hand in ("left", "right")
         )
         assert left.rotation == pytest.approx(right.rotation, abs=1e-12)
-        assert left.transmission_error == pytest.approx(right.transmission_error, abs=1e-11)
+        assert left.angular_transmission_error == pytest.approx(
+            right.angular_transmission_error, abs=1e-11
+        )
         assert left.position * [-1.0, 1.0, 1.0] == pytest.approx(right.position, abs=1e-9)
 
 

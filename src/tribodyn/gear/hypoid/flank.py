@@ -51,7 +51,7 @@ class HypoidFlanks(Record):
         Rotation of the wheel at which the point touches, from the calculation point on.
     relative_curvature : array (length, profile) [1/m]
         Curvature of the gap across the contact line; not positive where the flanks interfere.
-    regularity : array (length, profile)
+    regularity : array (length, profile) [-]
         Area of the conjugate pinion flank over that of the wheel; not positive where the pinion is
         undercut.
     side : str

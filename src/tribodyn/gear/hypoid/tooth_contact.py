@@ -35,7 +35,7 @@ class ToothContact(Record):
     ----------
     rotation : array (rotation,) [rad]
         Rotation of the wheel in its running sense at which the conjugate flanks would touch.
-    transmission_error : array (rotation,) [rad]
+    angular_transmission_error : array (rotation,) [rad]
         By how much the wheel runs ahead of the ratio; negative where it lags behind.
     along, across : array (rotation,) [m]
         Place of the contact on the wheel, along and across its pitch cone.
@@ -69,7 +69,7 @@ class ToothContact(Record):
     """
 
     rotation: Array = quantity(*_LINES, unit="rad", axis=True)
-    transmission_error: Array = quantity(*_LINES, unit="rad")
+    angular_transmission_error: Array = quantity(*_LINES, unit="rad")
     along: Array = quantity(*_LINES, unit="m")
     across: Array = quantity(*_LINES, unit="m")
     position: Array = quantity(*_LINES, "component", unit="m")
@@ -95,7 +95,7 @@ class ToothContact(Record):
     @property
     def peak_to_peak(self) -> float:
         """Transmission error of the running pair, from its least to its greatest value [rad]."""
-        return float(np.ptp(self.transmission_error[self.leads]))
+        return float(np.ptp(self.angular_transmission_error[self.leads]))
 
     @property
     def marked(self) -> Mask:
@@ -208,7 +208,7 @@ def _analysis(
         position[inner], normal[inner], places[inner] = found.position, found.normal, found.places
     return ToothContact(
         rotation=conjugate.sense * rotation,
-        transmission_error=error,
+        angular_transmission_error=error,
         along=places[:, 0],
         across=places[:, 1],
         position=position,
