@@ -12,13 +12,16 @@ from typing import Literal
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import system_events
-from tribodyn.dynamics.equations.load_friction import (
+from tribodyn.dynamics.equations.nodes import (
+    Nodes,
     carried_load,
+    force_laws,
     friction_secant,
     friction_tangent,
+    lowest_of_each_law,
     push_with_friction,
+    sampled,
 )
-from tribodyn.dynamics.equations.nodes import Nodes, force_laws, lowest_of_each_law, sampled
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_between
 from tribodyn.types import Array, Index, Mask
