@@ -121,10 +121,6 @@ class RoughnessProfile:
         beyond : {"refuse", "periodic", "level"}
             What lies beyond the ends.
 
-        Returns
-        -------
-        RoughnessProfile
-
         Raises
         ------
         InputError

@@ -114,10 +114,6 @@ def solve_line_contact(
     profile : callable, optional
         Heights [m] that are added to the gap, as a function of the position [m].
 
-    Returns
-    -------
-    LineContactSolution
-
     Raises
     ------
     InputError

@@ -194,10 +194,6 @@ def solve_transient_line_contact(
     keep_every : int
         Steps from one kept pressure and film to the next; zero to keep none.
 
-    Returns
-    -------
-    TransientLineContact
-
     Raises
     ------
     InputError

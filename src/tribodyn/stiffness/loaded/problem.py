@@ -252,10 +252,6 @@ class ContactProblem:
         ----------
         film_stiffness : array (p, n) [N/m]
             Stiffness of the film of each pair over the whole face width; infinite without film.
-
-        Returns
-        -------
-        ContactProblem
         """
         structure = self.compliance.structure.copy()
         pairs = np.arange(structure.shape[1])
@@ -274,10 +270,6 @@ class ContactProblem:
         ----------
         totals : array (t,) [N]
             Normal forces of all pairs together, positive; solved fastest in increasing order.
-
-        Returns
-        -------
-        Equilibrium
 
         Raises
         ------
