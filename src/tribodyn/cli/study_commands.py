@@ -93,7 +93,7 @@ def modes(
     """
     from tribodyn import plot
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.report.modes import HEAD, cells
+    from tribodyn.report.numbers import HEAD, cells
     from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows, system_of_case
 
     ready, target = begun("modes", case, out, set_, force)

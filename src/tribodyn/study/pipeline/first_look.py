@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected
 from tribodyn.study.case.derive import chosen_options
-from tribodyn.study.pipeline.loaded_teeth import loaded_settings
+from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
