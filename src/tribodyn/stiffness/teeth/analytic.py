@@ -10,8 +10,14 @@ import numpy as np
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import LoadPoint, flank_nodes, load_point
-from tribodyn.stiffness.teeth.tooth_bending import ToothSection, beam_to_axis, tooth_section
+from tribodyn.stiffness.teeth.tooth_bending import (
+    LoadPoint,
+    ToothSection,
+    beam_to_axis,
+    flank_nodes,
+    load_point,
+    tooth_section,
+)
 from tribodyn.stiffness.teeth.tooth_compliance import (
     LARGEST_RATIO,
     check_choice,

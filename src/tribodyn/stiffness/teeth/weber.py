@@ -11,8 +11,12 @@ from tribodyn.contact import effective_modulus
 from tribodyn.errors import ComputationError, InputError, require_between, require_positive
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
-from tribodyn.stiffness.teeth.tooth_bending import beam_to_axis, tooth_section
+from tribodyn.stiffness.teeth.tooth_bending import (
+    beam_to_axis,
+    flank_nodes,
+    load_point,
+    tooth_section,
+)
 from tribodyn.stiffness.teeth.tooth_compliance import check_reference
 from tribodyn.types import Array
 
