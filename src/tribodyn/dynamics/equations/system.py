@@ -237,9 +237,10 @@ class System:
         one = isinstance(self.frictions, LoadFriction)
         frictions = (self.frictions,) if one else self.frictions
         for name, parts, kind in (
-            ("contacts", contacts, Contact), ("frictions", frictions, LoadFriction),
+            ("contacts", contacts, Contact),
+            ("frictions", frictions, LoadFriction),
             ("names", self.names, str),
-        ):  # fmt: skip
+        ):
             if not isinstance(parts, list | tuple) or not all(isinstance(p, kind) for p in parts):
                 raise InputError(
                     f"{name} is no sequence of {kind.__name__}",

@@ -195,7 +195,7 @@ class Solver(Section):
             "half",
         },
         meaning="periodic motion, or motion from the static equilibrium",
-    )  # fmt: skip
+    )
     engine: str = model_choice(
         "runge-kutta-4", _engines, meaning="how the motion is marched over time"
     )
