@@ -18,11 +18,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
-from tribodyn.errors import (
-    InputError,
-    real_numbers,
-    require_positive,
-)
+from tribodyn.errors import InputError, real_numbers, require_positive
 from tribodyn.types import Array
 
 

@@ -256,11 +256,7 @@ def check_reference(reference: str) -> None:
 
 
 def tooth_compliance(
-    gear: SpurGear,
-    load: LoadPoint,
-    face_width: float,
-    material: Material,
-    reference: str = "bore",
+    gear: SpurGear, load: LoadPoint, face_width: float, material: Material, reference: str = "bore"
 ) -> ToothCompliance:
     """Structural compliance of one gear loaded at one tooth, without the local compression.
 

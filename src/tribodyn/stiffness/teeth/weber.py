@@ -103,10 +103,7 @@ def local_terms(
 
 
 def half_plane_compliance(
-    load_angle: Array | float,
-    load_height: Array | float,
-    foot_width: float,
-    material: Material,
+    load_angle: Array | float, load_height: Array | float, foot_width: float, material: Material
 ) -> Array:
     """Compliance of the half plane under a tooth, per unit face width [m^2/N].
 
