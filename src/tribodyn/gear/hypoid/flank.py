@@ -17,7 +17,7 @@ from tribodyn.gear.hypoid.blank import HypoidBlank
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
 from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
 from tribodyn.gear.hypoid.envelope import turned
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 SIDES = ("drive", "coast")
@@ -91,6 +91,9 @@ class HypoidFlanks(Record):
     def interference_share(self) -> float:
         """Share of the active flank on which the flanks cut into each other."""
         return float(np.mean(self.relative_curvature[self.active] <= 0.0))
+
+    plot = drawn("hypoid_pair", "Draw both gears in mesh, in space.")
+    plot_ease_off = drawn("ease_off", "Draw the ease-off over the flank.")
 
     @cached_property
     def conjugate(self) -> ConjugateFlanks:
