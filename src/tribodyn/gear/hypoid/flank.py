@@ -92,7 +92,6 @@ class HypoidFlanks(Record):
         """Share of the active flank on which the flanks cut into each other."""
         return float(np.mean(self.relative_curvature[self.active] <= 0.0))
 
-    plot = drawn("hypoid_pair", "Draw both gears in mesh, in space.")
     plot_ease_off = drawn("ease_off", "Draw the ease-off over the flank.")
 
     @cached_property
