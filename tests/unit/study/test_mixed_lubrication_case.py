@@ -180,9 +180,19 @@ def test_wrong_asperities_are_told_by_check(
 
 
 @pytest.mark.parametrize("law", [name for name in LAWS if name != "constant"])
-def test_check_passes_every_law_that_the_case_suits(tmp_path: Path, law: str) -> None:
+def test_check_refuses_a_law_for_its_film_only_where_there_is_none(
+    tmp_path: Path, law: str
+) -> None:
     film = "newton" if LAWS[law].needs_film else "dowson-higginson"
-    rehearse(case_of(tmp_path).replace({"friction.law": law, "film.model": film}))
+    needs = LAWS[law].needs_film or law in ("mixed", "mixed-ehl", "matsumoto")
+    refused = []
+    for model in (film, "none"):
+        try:
+            rehearse(case_of(tmp_path).replace({"friction.law": law, "film.model": model}))
+            refused.append(False)
+        except td.InputError:
+            refused.append(True)
+    assert refused == [False, needs]
 
 
 def test_smooth_flanks_have_no_asperities(tmp_path: Path) -> None:
