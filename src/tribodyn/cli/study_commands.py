@@ -22,7 +22,7 @@ Output = Path | None
 _ROWS = 40
 
 
-class _Found(NamedTuple):
+class Found(NamedTuple):
     """What a study tells: its data, figures, sentences and a table."""
 
     data: Any  #: result whose data set is stored
@@ -41,7 +41,7 @@ def _begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> t
     return ready, target
 
 
-def _finish(kind: str, case: Case, target: Path, found: _Found, force: bool, json: bool) -> None:
+def finish(kind: str, case: Case, target: Path, found: Found, force: bool, json: bool) -> None:
     """Write the directory of a study and tell what was found."""
     from tribodyn.report import write_study_report
     from tribodyn.stored import write_dataset
@@ -113,8 +113,8 @@ def modes(
             f"{ready.operation.speed_of}."]  # fmt: skip
     facts = {"mesh_frequency": mesh_frequency, "orders": list(ORDERS),
              "modes": [vars(row) for row in rows]}  # fmt: skip
-    answer = _Found(found, figures, told, HEAD, [cells(row) for row in rows], facts)
-    _finish("modes", ready, target, answer, force, json)
+    answer = Found(found, figures, told, HEAD, [cells(row) for row in rows], facts)
+    finish("modes", ready, target, answer, force, json)
 
 
 def harris(
@@ -159,8 +159,8 @@ def harris(
     figure = found.plot()
     figures = [(plot.harris_map.heading, figure, plot.harris_map.caption_of(found))]
     facts = {name: values.tolist() for name, values in columns.items()}
-    answer = _Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
-    _finish("harris", ready, target, answer, force, json)
+    answer = Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
+    finish("harris", ready, target, answer, force, json)
 
 
 def relief(
@@ -209,8 +209,8 @@ def relief(
     facts = {"amount": found.amount, "length": found.length, "torque": found.torque.tolist(),
              "peak_to_peak_before": before.tolist(), "peak_to_peak_after": after.tolist(),
              "on_edge": bool(found.on_edge)}  # fmt: skip
-    answer = _Found(found, figures, told, head, rows, facts, found.case)
-    _finish("relief", ready, target, answer, force, json)
+    answer = Found(found, figures, told, head, rows, facts, found.case)
+    finish("relief", ready, target, answer, force, json)
 
 
 def run_up(
@@ -265,5 +265,5 @@ def run_up(
                                                            plot.run_up_map(found)))]  # fmt: skip
     facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
     head = ["Speed [rpm]", "Mesh force, rms [N]"]
-    answer = _Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
-    _finish("run-up", ready, target, answer, force, json)
+    answer = Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
+    finish("run-up", ready, target, answer, force, json)

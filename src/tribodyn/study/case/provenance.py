@@ -204,6 +204,14 @@ def _derived_from(case: Case, key: str) -> str:
     return spec.basis if spec else ""
 
 
+def _unused(case: Case, key: str) -> bool:
+    """Whether a key does nothing in this case: of another kind of gears, or of another model."""
+    *path, name = key.split(".")
+    model, section = _model_of(case, path), section_at(tuple(path))
+    chosen = model is None or section is None or name in {*section.fields, *model.options}
+    return is_idle(key, case.gears.kind) or not chosen
+
+
 def provenance(case: Case) -> dict[str, str]:
     """Tell the origin of every value in force."""
     origins, changed, given = {}, changed_keys(case), case.given
@@ -212,7 +220,7 @@ def provenance(case: Case) -> dict[str, str]:
             origins[key] = _marked(case, key, value, changed)
         elif key in given:
             origins[key] = "given"
-        elif value is not None or (_derived_from(case, key) and not is_idle(key, case.gears.kind)):
+        elif value is not None or (_derived_from(case, key) and not _unused(case, key)):
             origins[key] = DEFAULT_MARK
     return origins
 
