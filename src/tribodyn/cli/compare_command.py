@@ -24,10 +24,8 @@ def compare(
     /,
     *,
     channel: Words = None,
-    sensitivity: Words = None,
     gain: str = "1",
     harmonics: int = 5,
-    mesh_frequency: str = "",
     out: Path | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
@@ -41,15 +39,12 @@ def compare(
     second : Path
         Another one, or a recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.
     channel : list of str
-        Measured channel and computed signal, such as "acc=acceleration_loa_pinion"; one for each.
-    sensitivity : list of str
-        Sensitivity of the sensor of a channel, such as "acc=100 mV/g".
+        Measured channel and computed signal, such as "acc=acceleration_loa_pinion", or with the
+        sensitivity of the sensor, "acc=acceleration_loa_pinion, 100 mV/g"; one for each.
     gain : str
         Measured over computed signal of the transfer path, or "fit".
     harmonics : int
         Mesh harmonics that are compared with a recording.
-    mesh_frequency : str
-        Mesh frequency on the rig, such as "245 Hz"; that of the result by default.
     out : Path
         Directory for the report of the comparison with a recording.
     force : bool
@@ -58,8 +53,7 @@ def compare(
         Write values and figures in SI as one JSON object to stdout.
     """
     if not second.is_dir() and second.exists():
-        pairs = _pairs(channel, "channel"), _pairs(sensitivity, "sensitivity")
-        _with_recording(first, second, pairs, (gain, harmonics, mesh_frequency), (out, force, json))
+        _with_recording(first, second, _pairs(channel), (gain, harmonics), (out, force, json))
         return
     from tribodyn.cases.load import load_case
     from tribodyn.cases.stored_result import read_summary
@@ -101,17 +95,20 @@ def _change(one: float | None, other: float | None) -> str:
     return f"{100.0 * (other - one) / abs(one):+.3g} %"
 
 
-def _pairs(words: list[str] | None, option: str) -> dict[str, str]:
-    """Words such as ``acc=100 mV/g`` by what stands before the sign."""
-    found = {}
+def _pairs(words: list[str] | None) -> tuple[dict[str, str], dict[str, str]]:
+    """Computed signals and sensitivities by measured channel."""
+    signals, sensitivity = {}, {}
     for word in words or []:
         name, sign, value = word.partition("=")
-        if not sign or not name.strip() or not value.strip():
-            what, why = f'"{word}" names no pair', "A sign of equality parts the two"
-            remedy = 'Write --channel "acc=acceleration_loa_pinion" --sensitivity "acc=100 mV/g"'
-            raise InputError(Problem(what, f"--{option}", why, remedy))
-        found[name.strip()] = value.strip()
-    return found
+        signal, comma, sensor = value.partition(",")
+        if not sign or not name.strip() or not signal.strip() or (comma and not sensor.strip()):
+            what, why = f'"{word}" names no pair', "A sign of equality parts channel and signal"
+            remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g"'
+            raise InputError(Problem(what, "--channel", why, remedy))
+        signals[name.strip()] = signal.strip()
+        if comma:
+            sensitivity[name.strip()] = sensor.strip()
+    return signals, sensitivity
 
 
 def _with_recording(
@@ -121,16 +118,11 @@ def _with_recording(
     from tribodyn.cli.study_commands import Found, finish
     from tribodyn.measurement import compare as compared
     from tribodyn.measurement import read
-    from tribodyn.units import UnitProblemError, parse
 
     channels, sensitivity = pairs
-    gain, harmonics, frequency = options
+    gain, harmonics = options
     out, force, json = output
     number = plain_number(gain)
-    try:
-        hertz = parse(frequency, "Hz") if frequency else None
-    except UnitProblemError as error:
-        raise InputError(Problem(str(error), "--mesh-frequency", "", 'Write "245 Hz"')) from None
     if number is None and gain != "fit":
         raise InputError(Problem(f'gain = "{gain}"', "--gain", "", 'Give a number, or "fit"'))
     if out is not None:
@@ -138,7 +130,7 @@ def _with_recording(
     result = load_result(first)
     found = compared(
         result, read(second, sensitivity=sensitivity), channels, harmonics=harmonics,
-        gain="fit" if number is None else number, mesh_frequency=hertz,
+        gain="fit" if number is None else number,
     )  # fmt: skip
     names = ("channel", "measure", "unit", "computed", "measured", "error")
     columns = tuple(getattr(found, name) for name in names)

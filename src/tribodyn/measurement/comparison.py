@@ -160,20 +160,7 @@ def compare(
     count = require_whole("harmonics", harmonics)
     require_one_of("base", base, ("measured", "computed", "mean"))
     require_between("frequency_tolerance", frequency_tolerance, 0.0, 0.2)
-    if not isinstance(measured, Recording):
-        raise InputError(
-            Problem(
-                f"measured = {shortened(repr(measured))}", Argument("measured"),
-                "Wanted: a Recording", "Read it with tribodyn.measurement.read",
-            )
-        )  # fmt: skip
-    if not isinstance(channels, Mapping) or not channels:
-        raise InputError(
-            Problem(
-                "no channels are compared", Argument("channels"), "",
-                'Write {"acc": "acceleration_loa_pinion"}',
-            )
-        )  # fmt: skip
+    _refuse(measured, channels)
     own = _frequency(data)
     frequency = own if mesh_frequency is None else require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", frequency, "Hz")
@@ -205,6 +192,23 @@ def compare(
     return Comparison(
         channel, measure, units, values, test, error, base, own, gains, gain == "fit", lines
     )
+
+
+def _refuse(measured: Any, channels: Any) -> None:
+    if not isinstance(measured, Recording):
+        raise InputError(
+            Problem(
+                f"measured = {shortened(repr(measured))}", Argument("measured"),
+                "Wanted: a Recording", "Read it with tribodyn.measurement.read",
+            )
+        )  # fmt: skip
+    if not isinstance(channels, Mapping) or not channels:
+        raise InputError(
+            Problem(
+                "no channels are compared", Argument("channels"), "",
+                'Write {"acc": "acceleration_loa_pinion"}',
+            )
+        )  # fmt: skip
 
 
 def _rms(amplitudes: Array) -> float:
