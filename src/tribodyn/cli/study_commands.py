@@ -34,7 +34,8 @@ class Found(NamedTuple):
     best: Case | None = None  #: a case that the study made
 
 
-def _begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
+def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
+    """The case of a study with its changes, and the directory to write."""
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
     ready = changed_case(case, settings or [])
     check_place(target, force)
@@ -92,10 +93,10 @@ def modes(
     """
     from tribodyn import plot
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.report.modes import HEAD, cells
+    from tribodyn.report.numbers import HEAD, cells
     from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows, system_of_case
 
-    ready, target = _begun("modes", case, out, set_, force)
+    ready, target = begun("modes", case, out, set_, force)
     with progress_bar() as progress:
         from tribodyn.dynamics import natural_modes
         from tribodyn.study.studies.axes import operation_values
@@ -146,7 +147,7 @@ def harris(
     from tribodyn import plot
     from tribodyn.study.studies.static import harris_map
 
-    ready, target = _begun("harris", case, out, set_, force)
+    ready, target = begun("harris", case, out, set_, force)
     found = harris_map(ready, list(torque) or None)
     columns = {
         "torque": found.torque, "mean_transmission_error": found.mean_transmission_error,
@@ -195,7 +196,7 @@ def relief(
     from tribodyn import plot
     from tribodyn.study.studies.static import optimize_tip_relief
 
-    ready, target = _begun("relief", case, out, set_, force)
+    ready, target = begun("relief", case, out, set_, force)
     found = optimize_tip_relief(ready, list(torque) or None, gears=gears)
     before, after = found.peak_to_peak_before, found.peak_to_peak_after
     rows = [[f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
@@ -252,7 +253,7 @@ def run_up(
     from tribodyn.study.studies.run_up import run_up as compute
     from tribodyn.units import convert
 
-    ready, target = _begun("run-up", case, out, set_, force)
+    ready, target = begun("run-up", case, out, set_, force)
     with progress_bar() as progress:
         found = compute(ready, read_ends(between), duration, down=down, progress=progress)
     level = overall_level(found, "contact_force")
