@@ -15,6 +15,8 @@ from tribodyn.plot.film.path import film, film_pressure, film_stiffness, frictio
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid_blank import hypoid_blank
+from tribodyn.plot.gear.hypoid_contact import hypoid_contact
+from tribodyn.plot.gear.hypoid_flanks import ease_off, hypoid_pair
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
@@ -57,6 +59,7 @@ __all__ = [
     "comprehensive_stiffness",
     "continuation",
     "drawing",
+    "ease_off",
     "film",
     "film_along_path",
     "film_over_operation",
@@ -76,6 +79,8 @@ __all__ = [
     "gear_pair",
     "harris_map",
     "hypoid_blank",
+    "hypoid_contact",
+    "hypoid_pair",
     "line_contact",
     "load_sharing",
     "loaded_contact",
