@@ -15,8 +15,8 @@ from tribodyn import load_case
 from tribodyn.cases.catalogue import case_files
 from tribodyn.errors import TribodynError, quiet
 from tribodyn.study.case.case import Case
+from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.cautions import case_cautions
-from tribodyn.study.pipeline.geometry import geometry
 
 Draws = Callable[[int], Iterator[random.Random]]
 

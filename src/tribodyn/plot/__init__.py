@@ -15,6 +15,7 @@ from tribodyn.plot.film.path import film, film_pressure, film_stiffness, frictio
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid_blank import hypoid_blank
+from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
@@ -64,6 +65,7 @@ __all__ = [
     "friction",
     "friction_claims",
     "friction_effect",
+    "friction_from_loss",
     "friction_harmonics",
     "gear_pair",
     "harris_map",
@@ -72,6 +74,7 @@ __all__ = [
     "load_sharing",
     "loaded_contact",
     "loaded_sharing",
+    "losses",
     "lubrication",
     "lubrication_map",
     "lyapunov",
@@ -85,6 +88,7 @@ __all__ = [
     "path_of_contact",
     "phase_portrait",
     "poincare",
+    "power_flow",
     "recording",
     "run_up",
     "run_up_map",

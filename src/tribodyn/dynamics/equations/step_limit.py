@@ -14,8 +14,7 @@ import numpy as np
 from tribodyn.checks import require_number
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
-from tribodyn.dynamics.equations.nodes import Nodes, sampled
+from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction, sampled
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import (
     InputError,

@@ -11,7 +11,7 @@ from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, line
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
-from tribodyn.study.pipeline import record
+from tribodyn.study.pipeline import series as record
 
 if TYPE_CHECKING:
     from tribodyn.study import Result

@@ -13,7 +13,7 @@ from tribodyn.ehl import film_load_share
 from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
 from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
-from tribodyn.study.pipeline.record import (
+from tribodyn.study.pipeline.series import (
     compression,
     first_touch,
     is_steady,

@@ -10,11 +10,12 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected
 from tribodyn.study.case.derive import chosen_options
-from tribodyn.study.pipeline.loaded_teeth import loaded_settings
+from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.gear import SpurPair
+    from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
@@ -55,12 +56,45 @@ def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> d
     if case.operation.torque_balance == "load":
         power += lost  # the driver brings up the friction
     found = {
+        "gear_power_loss": lost,
         "dynamic_factor_peak": figures["peak_mesh_force"] / static,
         "dynamic_factor_rms": figures["rms_mesh_force"] / static,
         "input_power": power,
         "efficiency": 1.0 - lost / power,
-    }
+    } | gearbox_figures(case, lost)
     return found | (standard_figures(case) if case.gears.kind != "table" else {})
+
+
+def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:
+    """Losses of the gearbox of a case whose teeth lose so much, at its own point or at others."""
+    from tribodyn.losses import Gearbox, gearbox_losses
+
+    point = {"pinion_torque": case.pinion_torque, "pinion_speed": case.pinion_speed, **point}
+    return gearbox_losses(
+        case.gear_pair,
+        case.gearbox or Gearbox(windage=False),
+        lost,
+        **point,
+        lubricant=case.lubricant_properties,
+        torque_balance=case.operation.torque_balance,
+    )
+
+
+def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
+    """Losses of shafts and oil, where the case has them, and the efficiency with them."""
+    if case.gearbox is None:
+        return {}
+    found = gearbox_losses_of(case, lost)
+    bearings = found.total_of("bearing_rolling", "bearing_sliding", "bearing_seal", "bearing_drag")
+    figures = {
+        "bearing_power_loss": bearings,
+        "seal_power_loss": found.seal,
+        "churning_power_loss": found.churning,
+        "windage_power_loss": found.windage,
+        "total_power_loss": found.total,
+        "total_efficiency": found.efficiency,
+    }
+    return {name: float(value[0, 0]) for name, value in figures.items()}
 
 
 def standard_figures(case: Case) -> dict[str, float]:
