@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tribodyn.study.pipeline.record import measured, mesh_force, one_sided_phase
 
 import tribodyn as td
 from tribodyn.mesh.functions import PhaseFunction
+from tribodyn.study.pipeline.series import measured, mesh_force, one_sided_phase
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

@@ -15,9 +15,8 @@ from pathlib import Path
 from tribodyn.errors import InputError
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.checks import DEFAULT_MARK
-from tribodyn.study.case.provenance import changed_keys
+from tribodyn.study.case.provenance import changed_keys, same
 from tribodyn.study.case.read import read_case, read_text
-from tribodyn.study.case.stated import same
 from tribodyn.study.case.values import Plain
 
 

@@ -110,8 +110,9 @@ def modes(
         (each.heading, each(thing), each.caption_of(thing))
         for each, thing in ((plot.mode_shapes, found), (plot.campbell, diagram))
     ]
-    told = [f"{diagram.plot().layout.title.text}; speeds are those of the "
-            f"{ready.operation.speed_of}."]  # fmt: skip
+    told = [
+        f"{diagram.plot().layout.title.text}; speeds are those of the {ready.operation.speed_of}."
+    ]
     facts = {"mesh_frequency": mesh_frequency, "orders": list(ORDERS),
              "modes": [vars(row) for row in rows]}  # fmt: skip
     answer = Found(found, figures, told, HEAD, [cells(row) for row in rows], facts)
@@ -150,10 +151,11 @@ def harris(
     ready, target = begun("harris", case, out, set_, force)
     found = harris_map(ready, list(torque) or None)
     columns = {
-        "torque": found.torque, "mean_transmission_error": found.mean_transmission_error,
+        "torque": found.torque,
+        "mean_transmission_error": found.mean_transmission_error,
         "peak_to_peak_transmission_error": found.peak_to_peak_transmission_error,
         "mean_mesh_stiffness_secant": found.mean_mesh_stiffness_secant,
-    }  # fmt: skip
+    }
     rows = [[f"{t:.4g}", f"{m * 1e6:.4g}", f"{p * 1e6:.4g}", f"{k * 1e-6:.4g}"]
             for t, m, p, k in zip(*columns.values(), strict=True)]  # fmt: skip
     head = ["Pinion torque [N*m]", "Mean error [um]", "Peak to peak [um]", "Stiffness [N/um]"]
@@ -261,9 +263,10 @@ def run_up(
     rpm = convert(1.0, "rad/s", "rpm") * level.speed
     rows = [[f"{rpm[k]:.5g}", f"{level.rms[k]:.4g}"] for k in picked]
     figure = found.plot()
-    figures = [(each.heading, drawn, each.caption_of(found))
-               for each, drawn in ((plot.run_up, figure), (plot.run_up_map,
-                                                           plot.run_up_map(found)))]  # fmt: skip
+    figures = [
+        (each.heading, drawn, each.caption_of(found))
+        for each, drawn in ((plot.run_up, figure), (plot.run_up_map, plot.run_up_map(found)))
+    ]
     facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
     head = ["Speed [rpm]", "Mesh force, rms [N]"]
     answer = Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)

@@ -23,10 +23,7 @@ from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import (
-    ComputationError,
-    InputError,
-)
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress

@@ -24,10 +24,7 @@ from tribodyn.dynamics.equations.step_limit import (
     refuse_unstable_step,
 )
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import (
-    InputError,
-    require_positive,
-)
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Index, Mask
 
 

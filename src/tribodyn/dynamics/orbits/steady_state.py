@@ -28,9 +28,7 @@ from tribodyn.dynamics.orbits.periods import find_any_orbit, shortest_period
 from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit, finish_orbit, motion_size
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import (
-    warn,
-)
+from tribodyn.errors import warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

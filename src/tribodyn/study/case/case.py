@@ -14,7 +14,16 @@ from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears, is_needed
 from tribodyn.study.case.given import Given, Source, plain, unsound
-from tribodyn.study.case.provenance import effective_values, provenance
+from tribodyn.study.case.provenance import (
+    Stated,
+    effective_values,
+    provenance,
+    read_stated,
+    reason_faults,
+    settled,
+    tables,
+    without_records,
+)
 from tribodyn.study.case.section import Section, Table, choices, flat, signature_of, table
 from tribodyn.study.case.sections import (
     Dynamics,
@@ -26,14 +35,6 @@ from tribodyn.study.case.sections import (
     Operation,
     Solver,
     Stiffness,
-)
-from tribodyn.study.case.stated import (
-    Stated,
-    read_stated,
-    reason_faults,
-    settled,
-    tables,
-    without_records,
 )
 from tribodyn.study.case.values import Plain, read_fields
 

@@ -142,11 +142,7 @@ class Friction(Section):
 class Dynamics(Section):
     """The ``[dynamics]`` table: the vibrating structure."""
 
-    model: str = model_choice(
-        "spur-6dof",
-        _structures,
-        meaning="structure that vibrates",
-    )
+    model: str = model_choice("spur-6dof", _structures, meaning="structure that vibrates")
     mesh_law: str | None = choice(
         None,
         {

@@ -14,7 +14,6 @@ from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.gear import SpurPair
     from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
@@ -109,27 +108,23 @@ def standard_figures(case: Case) -> dict[str, float]:
         mean = iso6336_mesh_stiffness(single, pair.transverse_contact_ratio)
         figures["iso_mesh_stiffness"] = pair.common_face_width * mean
     if chosen_options(case, "stiffness").get("reference") == "bore":
-        figures["gear_body_share"] = _body_share(case, _alike(pair), force)
+        figures["gear_body_share"] = _body_share(case, force)
     return figures
 
 
-def _alike(pair: SpurPair) -> SpurPair:
-    """The pair without what makes its teeth differ from each other."""
-    even: dict[str, Any] = {
+def _body_share(case: Case, force: float) -> float:
+    from tribodyn.stiffness import loaded_contact
+
+    even: dict[str, Any] = {  # without what makes the teeth differ from each other
         "run_out": 0.0,
         "single_pitch_deviation": (),
         "cumulative_pitch_deviation": (),
     }
     pinion, wheel = (
         replace(gear, modification=replace(gear.modification, **even))
-        for gear in (pair.pinion, pair.wheel)
+        for gear in (case.gear_pair.pinion, case.gear_pair.wheel)
     )
-    return replace(pair, pinion=pinion, wheel=wheel)
-
-
-def _body_share(case: Case, pair: SpurPair, force: float) -> float:
-    from tribodyn.stiffness import loaded_contact
-
+    pair = replace(case.gear_pair, pinion=pinion, wheel=wheel)
     settings = loaded_settings(case)
     torque = force * pair.pinion.base_radius
     with collected():

@@ -110,12 +110,13 @@ def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     found = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
         "dynamic_transmission_error": (
-            record.transmission_error(result, samples), "m",
+            record.transmission_error(result, samples),
+            "m",
             "lag of the driven gear on the line of action, from first contact of the flanks",
         ),
         "static_transmission_error": (static, "m", "the same at rest under the nominal load"),
         "friction_force": (rubbing, "N", "friction force of all tooth pairs"),
-    }  # fmt: skip
+    }
     forces = record.support_forces(result.system, samples)
     for gear in ("pinion", "wheel"):
         for direction, (axis, words) in _DIRECTIONS.items():

@@ -15,7 +15,6 @@ from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_l
 from tribodyn.study.studies.axes import pinion_torques
 
 if TYPE_CHECKING:
-    from tribodyn.gear import SpurPair
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.mesh.sharing import ToothContact
     from tribodyn.stiffness import LoadedContact
@@ -125,9 +124,9 @@ def loaded_settings(case: Case) -> dict[str, Any]:
     }
 
 
-def phases_of_turns(pair: SpurPair) -> Array:
+def phases_of_turns(case: Case) -> Array:
     """Phases until all repeats: shorter than the hunting period where one gear is even."""
-    gears = (pair.pinion, pair.wheel)
+    gears = (case.gear_pair.pinion, case.gear_pair.wheel)
     turns = math.lcm(*(gear.teeth for gear in gears if gear.modification.teeth_differ))
     return np.arange(_PHASES * turns) / _PHASES
 

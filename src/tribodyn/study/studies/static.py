@@ -223,11 +223,7 @@ def comprehensive_stiffness(
 
 
 def film_over_operation(
-    case: Case,
-    *,
-    torque: Any = None,
-    speed: Any = None,
-    progress: Progress = SILENT,
+    case: Case, *, torque: Any = None, speed: Any = None, progress: Progress = SILENT
 ) -> FilmOverOperation:
     """Find the films of a case along the path of contact, for every torque at every speed.
 
