@@ -285,7 +285,7 @@ def _model_of(case: Case, path: list[str]) -> Model | None:
 
 def _bored(case: Case, default: Any) -> Any:
     """Body against which deflection is measured; one without a bore has no shaft seat."""
-    if case.stiffness.reference is not None or case.gears.kind == "table":
+    if case.gears.kind == "table":
         return default
     bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
     return "rim" if default == "bore" and not all(bores) else default
@@ -298,7 +298,8 @@ def effective_values(case: Case) -> dict[str, Any]:
     if kind == "table":
         values |= {key: None for key in values if is_idle(key, kind)}
         values["film.model"] = "none"
-    values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
+    if case.stiffness.reference is None:
+        values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
     for name in ("mesh_damping", "bearing_damping"):
         if values[f"dynamics.{name}"] is not None:
             values[f"dynamics.{name}_ratio"] = None
