@@ -23,7 +23,9 @@ case = td.load_case("fzg-roughness")
 mesh = td.run(case).mesh
 steel, oil = case.material_properties, case.lubricant_properties
 
+print("The film moves through the mesh: 300 instants, a minute or so ...", flush=True)
 moving = moving_film(mesh, oil, steel, steps=300, nodes=257, keep_every=5)
+print(f"The same {moving.time.size} instants as steady contacts ...", flush=True)
 steady = solve_line_contacts(
     moving.load_per_width,
     moving.equivalent_radius,

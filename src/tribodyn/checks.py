@@ -48,7 +48,8 @@ def require_whole(name: str, value: Any, least: int = 1, *, why: str = "") -> in
     number = real_numbers(Argument(name), value, wanted)
     if number.ndim or not (float(number).is_integer() and least <= number <= 1e9):
         reason = f"Wanted: {wanted} from {least} to {1e9:g}"
-        raise InputError(Problem(f"{name} = {shortened(repr(value))}", Argument(name), reason))
+        what, remedy = f"{name} = {shortened(repr(value))}", "Give a number of this range"
+        raise InputError(Problem(what, Argument(name), reason, remedy))
     return int(number)
 
 
@@ -56,16 +57,14 @@ def require_number(name: str, value: Any) -> float:
     """Return one finite number, or raise :class:`InputError`."""
     number = real_numbers(Argument(name), value, "a number")
     if number.ndim or not np.abs(number) < 1e60:
-        raise InputError(
-            Problem(f"{name} = {shortened(repr(value))}", Argument(name), "A finite number")
-        )
+        what, why = f"{name} = {shortened(repr(value))}", "Wanted: one finite number"
+        raise InputError(Problem(what, Argument(name), why, "Give a number in SI units"))
     return float(number)
 
 
 def require_flag(name: str, value: Any) -> bool:
     """Return True or False, or raise :class:`InputError` for anything else."""
     if not isinstance(value, bool | int | np.bool_) or value not in (0, 1):
-        raise InputError(
-            Problem(f"{name} = {shortened(repr(value))}", Argument(name), "True or False")
-        )
+        what, why = f"{name} = {shortened(repr(value))}", "Wanted: True or False"
+        raise InputError(Problem(what, Argument(name), why, "Give one of the two"))
     return bool(value)

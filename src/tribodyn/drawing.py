@@ -152,7 +152,11 @@ class Drawing:
         """
         reason = self.missing(result)
         if reason:
-            raise InputError(Problem(what=reason))
+            what = f'no figure "{self.name}" of this {type(result).__name__}'
+            remedy = (
+                self.made_by or "tribodyn.plot.FIGURES lists the figures, each with its caption"
+            )
+            raise InputError(what, "", reason.removesuffix(self.made_by).strip(), remedy)
         return self.draw(self.subject(result), **options)
 
 

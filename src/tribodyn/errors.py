@@ -312,7 +312,8 @@ def real_numbers(
     except (TypeError, ValueError, OverflowError):
         array = np.asarray(None)
     if array.dtype.kind not in "fiub":
-        raise InputError(Problem(f"{_brief(value)} is not real", where, f"Wanted: {wanted}"))
+        remedy = "Give numbers in SI units, in rows of one length where there are several"
+        raise InputError(f"{_brief(value)} is not real", where, f"Wanted: {wanted}", remedy)
     return array.astype(float)
 
 
@@ -320,6 +321,25 @@ def _brief(value: Any) -> str:
     text = f'"{value}"' if isinstance(value, str) else repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
+
+#: What a value in the unit of engineers is in SI, told where a number is out of range.
+_IN_SI = {
+    "m": "1 mm is 1e-3 m, 1 um is 1e-6 m",
+    "N/m": "1 N/mm is 1000 N/m",
+    "Pa": "1 MPa is 1e6 Pa, 1 GPa is 1e9 Pa",
+    "Pa*s": "30 mPa s is 0.03 Pa*s",
+    "1/Pa": "20 1/GPa is 2e-8 1/Pa",
+    "m^2/s": "60 cSt is 60e-6 m^2/s",
+    "m/s": "Give the speed in m/s",
+    "rad/s": "1400 rpm is 146.6 rad/s",
+    "rad": "20 deg is 0.349 rad",
+    "K": "70 degC is 343.15 K",
+    "kg/m^3": "Steel has 7800 kg/m^3, oil about 870 kg/m^3",
+    "N": "1 kN is 1000 N",
+    "N*m": "Give the torque in N*m",
+    "Hz": "Give the number in 1/s",
+    "s": "1 ms is 1e-3 s",
+}
 
 #: No quantity in SI is as large, and powers of this one still are numbers of the machine.
 _ENDLESS = 1e60
@@ -330,7 +350,7 @@ def _check(
 ) -> None:
     array = real_numbers(Argument(name), value)
     if not array.size:
-        raise InputError(Problem(f"{name} is empty", Argument(name), "Wanted: numbers", remedy))
+        raise InputError(f"{name} is empty", Argument(name), "Wanted: numbers", "Give one at least")
     bad = ~((np.abs(array) < _ENDLESS) & holds(array))
     if np.any(bad):
         worst = np.atleast_1d(array)[np.atleast_1d(bad)][0]
@@ -339,7 +359,7 @@ def _check(
                 what=f"{name} = {worst:.6g} {unit}".rstrip(),
                 where=Argument(name),
                 why=f"{name} must be finite and {limit}",
-                remedy=remedy,
+                remedy=remedy or _IN_SI.get(unit, f"Give a number {limit}"),
             )
         )
 
@@ -436,6 +456,7 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
                 what=f'{name} = "{value}"',
                 where=f"argument {name}",
                 why=f"Known: {', '.join(words)}",
+                remedy="Choose one of these",
             )
         )
     return value

@@ -34,6 +34,7 @@ __all__ = ["FAULTS_OF_THE_PLACE", "cannot_write", "clear_leftovers", "lock", "wh
 FAULTS_OF_THE_PLACE = (
     errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EACCES, errno.EPERM,
     errno.ENAMETOOLONG, errno.ENOENT, errno.ENOTDIR, errno.ENODEV,
+    errno.EISDIR,
 )  # fmt: skip
 _CANNOT_EXCHANGE = (errno.EINVAL, errno.ENOSYS, errno.ENOTSUP, errno.EPERM)
 #: Without locks, what nobody has touched for so long is left over [s].

@@ -1,10 +1,13 @@
 """Messages answer what, where, why and what next; validators let no bad number through."""
 
+import math
 import warnings
 
 import numpy as np
 import pytest
 
+from tribodyn.checks import require_flag, require_number, require_whole
+from tribodyn.dynamics import Resonance
 from tribodyn.errors import (
     Argument,
     ComputationError,
@@ -15,6 +18,7 @@ from tribodyn.errors import (
     Problem,
     TribodynError,
     require_between,
+    require_one_of,
     require_positive,
     warn,
 )
@@ -128,3 +132,26 @@ def test_the_argument_at_fault_needs_no_reading() -> None:
     with pytest.raises(InputError) as caught:
         require_positive("load_per_width", -1.0, "N/m")
     assert caught.value.problems[0].where == Argument("load_per_width")
+
+
+@pytest.mark.parametrize("unit", ["", "m", "Pa", "rad/s", "mol"])
+@pytest.mark.parametrize("value", ["x", [], -1.0, math.nan, None, [[1.0], [2.0, 3.0]]])
+def test_every_refused_value_has_a_remedy(value, unit):
+    with pytest.raises(InputError) as caught:
+        require_positive("width", value, unit)
+    assert all(problem.why and problem.remedy for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize("check", [require_whole, require_number, require_flag])
+def test_whole_numbers_numbers_and_flags_have_one_too(check):
+    for value in ("x", None, [1.0, 2.0], math.inf):
+        with pytest.raises(InputError) as caught:
+            check("nodes", value)
+        assert caught.value.problems[0].remedy
+    with pytest.raises(InputError, match="Choose one of these"):
+        require_one_of("inlet", "dry", ("flooded", "zero"))
+
+
+def test_a_resonance_is_told_in_the_units_of_engineers():
+    met = Resonance(100.0 * math.pi, 1250.0, 2500.0, 2, 3, 0.4, 0.02)
+    assert repr(met) == "Resonance(order 2 meets mode 3 of 2500 Hz at 3000 rpm)"

@@ -13,9 +13,11 @@ import numpy as np
 
 from tribodyn import units
 from tribodyn.errors import (
+    Argument,
     InputError,
     Problem,
     quiet,
+    real_numbers,
     require_between,
     require_one_of,
     require_positive,
@@ -97,7 +99,9 @@ class PowerLossTable:
     def __post_init__(self) -> None:
         """Make arrays of the columns and look at every row."""
         for name in (*COLUMNS, "other_loss"):
-            object.__setattr__(self, name, np.atleast_1d(np.asarray(getattr(self, name), float)))
+            object.__setattr__(
+                self, name, np.atleast_1d(real_numbers(Argument(name), getattr(self, name)))
+            )
         counts = {name: np.size(getattr(self, name)) for name in COLUMNS}
         if len(set(counts.values())) > 1 or not counts["speed"]:
             listed = ", ".join(f"{count} of {name}" for name, count in counts.items())

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.checks import require_whole
 from tribodyn.errors import InputError, Problem, warn
 from tribodyn.losses.loss_table import PowerLossTable
 from tribodyn.record import Record, quantity, record
@@ -126,6 +127,8 @@ def friction_from_power_loss(
     >>> found.sensitivity.round(4).tolist(), found.verdict
     ([0.0661], ('ill-conditioned: 35 % standard uncertainty',))
     """
+    require_whole("draws", draws, 2)
+    require_whole("seed", seed, 0)
     idle = table.torque <= table.no_load_torque
     points = [_point(table, rows) for rows in _runs(table, np.flatnonzero(~idle))]
     idles = [_point(table, rows) for rows in _runs(table, np.flatnonzero(idle))]

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import Argument, InputError, real_numbers, require_positive
 from tribodyn.types import Array
 
 
 def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
     """Return a signal as floats, or say what is wrong with it."""
     where = f"argument {name}"
-    given = np.asarray(signal)
+    given = np.asarray(signal if hasattr(signal, "dtype") else real_numbers(where, signal))
     if given.dtype.kind not in "biuf":
         raise InputError(
             f"{name} holds {given.dtype} values",
@@ -56,6 +56,7 @@ def checked_rising(values: Any, size: int, name: str, unit: str) -> Array:
             f"{name} has {rising.size} samples, the signal has {size}",
             where=f"argument {name}",
             why="Each sample of the signal has its own value",
+            remedy=f"Give {size} values",
         )
     falls = np.flatnonzero(np.diff(rising) <= 0.0)
     if falls.size:
@@ -135,12 +136,13 @@ def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
             "neither or both of rotation and speed are given",
             where="arguments rotation and speed",
             why="One of them is needed to follow the shaft",
+            remedy="Give the angle of the shaft at each sample, or its speed",
         )
     if rotation is not None:
         return checked_rising(rotation, time.size, "rotation", "rad")
     from scipy.interpolate import CubicSpline
 
-    values = np.asarray(speed, dtype=float)
+    values = real_numbers(Argument("speed"), speed)
     if values.ndim == 0:
         values = np.full(time.size, float(values))
     values = checked_signal(values, 2, "speed")
@@ -150,6 +152,7 @@ def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
             f"speed has {values.size} samples, time has {time.size}",
             where="argument speed",
             why="Each sample of the signal has its own speed",
+            remedy="Give one speed for all, or one for each sample",
         )
     return np.asarray(CubicSpline(time, values).antiderivative()(time))
 

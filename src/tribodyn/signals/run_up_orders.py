@@ -347,6 +347,14 @@ class RunUpResonance:
     prominence: float
     mains: float
 
+    def __repr__(self) -> str:
+        """One line, in the units of engineers."""
+        mode = f"near mode {self.mode} of {self.mode_frequency:.6g} Hz"
+        return (
+            f"RunUpResonance(order {self.order:g} peaks at {30.0 / np.pi * self.speed:.6g} rpm, "
+            f"{self.frequency:.6g} Hz, {mode if self.mode >= 0 else 'near no mode'})"
+        )
+
 
 def resonances(
     run: RunUp,

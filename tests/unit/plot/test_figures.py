@@ -223,9 +223,8 @@ def test_figures_without_meaning_say_why(drawable: Any) -> None:
     assert len(FIGURES["spectrum"](plain).data) == 1
     with pytest.raises(InputError) as refused:
         FIGURES["film"](plain)
-    assert str(refused.value) == (
-        'No film model was chosen, so no oil film was computed. Choose film.model = "newton".'
-    )
+    lack = 'No film model was chosen, so no oil film was computed. Choose film.model = "newton".'
+    assert lack in str(refused.value)
 
 
 def test_no_friction_is_told_instead_of_drawn(drawable: Any) -> None:

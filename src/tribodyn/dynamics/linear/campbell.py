@@ -45,6 +45,13 @@ class Resonance:
     contact_share: float
     damping_ratio: float
 
+    def __repr__(self) -> str:
+        """One line, in the units of engineers."""
+        return (
+            f"Resonance(order {self.order} meets mode {self.mode} of {self.frequency:.6g} Hz at "
+            f"{30.0 / np.pi * self.speed:.6g} rpm)"
+        )
+
 
 @record
 class Campbell(Record):

@@ -171,7 +171,11 @@ def simulate_ensemble(
     marcher = prepare(method, setting, **options)
     state = read_start(marcher.compiled.system, start, lanes)
     compiled = marcher.compiled
-    linear = np.zeros((0, 2 * size)) if outputs is None else np.asarray(outputs, float)
+    linear = np.zeros((0, 2 * size)) if outputs is None else np.array(outputs, float, ndmin=2)
+    if linear.shape[1:] != (2 * size,):
+        why = f"Each output is a row of {2 * size} factors of position and velocity"
+        what = f"outputs have the shape {linear.shape}"
+        raise InputError(what, "argument outputs", why, f"Give the shape (m, {2 * size})")
     statistics = Statistics.of(compiled, linear, lanes, harmonics)
     progress.start("Mesh cycles", cycles)
     early = cycles - averaged

@@ -88,6 +88,10 @@ def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales
                 remedy="Give at least one solution of solve_line_contact",
             )
         )
+    if not all(hasattr(solution, "lubricant") for solution in solutions):
+        why = "Solutions of line contacts have pressure, film and lubricant"
+        remedy = "Give what solve_line_contact returns"
+        raise InputError("not every entry is a contact", "argument solutions", why, remedy)
     bare = [solution.lubricant is None for solution in solutions]
     if any(bare) and not all(bare) and not dimensionless:
         raise InputError(
