@@ -15,6 +15,8 @@ from tribodyn.plot.film.path import film, film_pressure, film_stiffness, frictio
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid_blank import hypoid_blank
+from tribodyn.plot.gear.hypoid_contact import hypoid_contact
+from tribodyn.plot.gear.hypoid_flanks import ease_off, hypoid_pair
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
@@ -35,7 +37,12 @@ from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
-from tribodyn.plot.signals.recorded import order_spectrum, recording, tracked_orders
+from tribodyn.plot.signals.recorded import (
+    comparison,
+    order_spectrum,
+    recording,
+    tracked_orders,
+)
 from tribodyn.plot.signals.run_up import run_up, run_up_map
 
 __all__ = [
@@ -48,9 +55,11 @@ __all__ = [
     "bifurcation",
     "campbell",
     "compare_line_contacts",
+    "comparison",
     "comprehensive_stiffness",
     "continuation",
     "drawing",
+    "ease_off",
     "film",
     "film_along_path",
     "film_over_operation",
@@ -70,6 +79,8 @@ __all__ = [
     "gear_pair",
     "harris_map",
     "hypoid_blank",
+    "hypoid_contact",
+    "hypoid_pair",
     "line_contact",
     "load_sharing",
     "loaded_contact",
