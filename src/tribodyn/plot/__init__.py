@@ -15,6 +15,7 @@ from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid_blank import hypoid_blank
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
+from tribodyn.plot.mesh.coupling import coupling
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
 from tribodyn.plot.mesh.table import (
@@ -48,6 +49,7 @@ __all__ = [
     "compare_line_contacts",
     "comprehensive_stiffness",
     "continuation",
+    "coupling",
     "drawing",
     "film",
     "film_along_path",
