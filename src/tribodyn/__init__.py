@@ -7,7 +7,8 @@
 
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
-``analysis``, ``measurement``, ``study``, ``cases``, ``plot`` and ``report``.
+``analysis``, ``measurement``, ``uncertainty``,
+``study``, ``cases``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -88,7 +89,7 @@ _HOMES = {
 _ROOMS = (
     "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
     "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report", "stiffness",
-    "study", "units",
+    "study", "uncertainty", "units",
 )  # fmt: skip
 
 

@@ -15,8 +15,9 @@ from tribodyn.errors import require_positive
 from tribodyn.friction import pitch_point
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact, mesh_cycle, pairs_in_contact
-from tribodyn.mesh.film.film_columns import FILM_COLUMNS, as_columns
+from tribodyn.mesh.film.film_columns import as_columns, friction_columns
 from tribodyn.mesh.loads import (
     Loads,
     quasi_static_loads,
@@ -80,10 +81,6 @@ def build(
         solved together is always fitted.
     progress : Progress
         Told how many oil films are solved.
-
-    Returns
-    -------
-    MeshTable
 
     Raises
     ------
@@ -196,9 +193,10 @@ class LoadedMesh:
             **_motion_columns(motion, self.cycle.sliding_direction),
             "load_per_width": loads.load_per_width,
             "hertz_pressure": np.where(loads.load_per_width > 0.0, contact.hertz_pressure, 0.0),
-            "friction_coefficient": loads.film_at.friction(contact, motion, settings),
             **as_columns(self._reported, roughness),
         }
+        told = loads.film_at.friction(contact, motion, settings)
+        columns |= friction_columns(told, columns.get("film_ratio"))
         return MeshTable(
             grid=self.cycle.grid,
             path=self.cycle.path,
@@ -264,7 +262,7 @@ def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
 
 def _spread(known: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
     """Put the values of the touching pairs in their places, with zeros elsewhere."""
-    columns: dict[str, Any] = dict.fromkeys(FILM_COLUMNS)
+    columns: dict[str, Any] = dict.fromkeys((*FILM_COLUMNS, *MIXED_COLUMNS))
     for name, values in known.items():
         columns[name] = np.zeros(in_contact.shape)
         columns[name][in_contact] = values

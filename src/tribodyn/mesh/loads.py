@@ -101,6 +101,7 @@ def tribological_contact(
         oil_density=pairs.lubricant.density,
         film_thickness=smallest_film(films),
         pitch=pitch,
+        central_film=films.central_film,
     )
 
 

@@ -9,7 +9,8 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
-from tribodyn.plot.film.operation import film_over_operation
+from tribodyn.plot.film.lubrication import lubrication
+from tribodyn.plot.film.operation import film_over_operation, lubrication_map
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
@@ -73,6 +74,8 @@ __all__ = [
     "load_sharing",
     "loaded_contact",
     "loaded_sharing",
+    "lubrication",
+    "lubrication_map",
     "lyapunov",
     "mesh_deformation",
     "mesh_force",

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from registries import as_before
 
 import tribodyn as td
+from registries import as_before
 from tribodyn.contact import effective_modulus, hertz_line
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS, benedict_kelly

@@ -126,10 +126,6 @@ def solve_line_contacts(
     progress : Progress
         Told about every contact.
 
-    Returns
-    -------
-    LineContactBatch
-
     Raises
     ------
     InputError

@@ -19,7 +19,7 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.errors import quiet, warn
-from tribodyn.friction import LAWS, TribologicalContact
+from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.mesh.cycle import (
     MOST,
     MeshCycle,
@@ -47,6 +47,9 @@ from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Index, Mask
+
+#: Coefficients, with their parts where the law has them.
+Friction = Array | FrictionParts
 
 #: Distance from an event that tells its two sides apart [mesh cycles].
 _BESIDE = 1e-9
@@ -77,8 +80,8 @@ class FilmAt(Protocol):
 
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
-    ) -> Array:
-        """Friction coefficient of every pair in contact by the law of some settings."""
+    ) -> Friction:
+        """Friction of every pair in contact by the law of some settings, in parts if it has any."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,9 +109,9 @@ class FormulaFilm:
 
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
-    ) -> Array:
+    ) -> Friction:
         """Ask the friction law."""
-        return LAWS[settings.friction_law](contact, **settings.friction_options)
+        return LAWS[settings.friction_law].told(contact, settings.friction_options)
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,11 +228,11 @@ class SolvedPath:
 
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
-    ) -> Array:
+    ) -> Friction:
         """Friction of every pair; a law that shears the film knows it at solved places first."""
         if LAWS[settings.friction_law].needs_film:
             return film_friction(self, motion, settings)
-        return LAWS[settings.friction_law](contact, **settings.friction_options)
+        return LAWS[settings.friction_law].told(contact, settings.friction_options)
 
 
 def film_of(
@@ -271,7 +274,7 @@ def film_of(
     )
 
 
-def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact) -> Array:
+def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact) -> Friction:
     """Friction of the film: asked at every solved place, for a range of sliding speeds.
 
     A contact between two places takes its own sliding speed, so that the steep reversal at the
@@ -279,19 +282,32 @@ def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact
     pressure is.
     """
     path, places = solved.path, solved.places
-    friction = np.zeros(path.zone.size)
+    columns: list[Array] = [np.zeros(path.zone.size) for _ in range(3)]
+    shared = False
     for zone in range(len(path.places.counts)):
         here = path.zone == zone
         sliding = np.abs(motion.sliding_speed[here])
         speeds = _speeds(sliding)
-        values = _asked(solved, settings, np.flatnonzero(places.zone == zone), speeds)
+        told = _asked(solved, settings, np.flatnonzero(places.zone == zone), speeds)
         over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
         curve = path.memory.curves.get((zone, PRESSURE), False)
-        along = joined_over_age(
-            path.places, places, values, path.pairs.age[here], zone, curve=curve
+        shared = isinstance(told, FrictionParts)
+        parts = (
+            (told.film, told.asperities, told.film_load_share)
+            if isinstance(told, FrictionParts)
+            else (told,)
         )
-        friction[here] = np.einsum("ks,ks->k", along, over_speed)
-    return np.maximum(friction, 0.0)
+        for column, values in zip(columns, parts, strict=False):
+            along = joined_over_age(
+                path.places,
+                places,
+                values.reshape(-1, speeds.size),
+                path.pairs.age[here],
+                zone,
+                curve=curve,
+            )
+            column[here] = np.maximum(np.einsum("ks,ks->k", along, over_speed), 0.0)
+    return FrictionParts(*columns) if shared else columns[0]
 
 
 def _speeds(sliding: Array) -> Array:
@@ -302,8 +318,8 @@ def _speeds(sliding: Array) -> Array:
     return np.asarray(_SLOW * np.sinh(inner))
 
 
-def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array) -> Array:
-    """Friction coefficient (places, speeds) of some of the solved places."""
+def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array) -> Friction:
+    """Friction of some of the solved places, each with all speeds in turn."""
     places = solved.places
     index, speed = np.repeat(chosen, speeds.size), np.tile(speeds, chosen.size)
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
@@ -321,5 +337,4 @@ def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Ar
         composite_roughness=settings.composite_roughness,
         film=FilmState.from_solutions(list(places.solution), index),
     )
-    found = LAWS[settings.friction_law](contact, **settings.friction_options)
-    return np.asarray(found).reshape(chosen.size, speeds.size)
+    return LAWS[settings.friction_law].told(contact, settings.friction_options)

@@ -45,10 +45,6 @@ def run(
         Takes the case and its mesh in every pass of ``solver.coupling``, and returns the case with
         what follows from them, such as oil at another temperature.
 
-    Returns
-    -------
-    Result
-
     Raises
     ------
     InputError

@@ -51,7 +51,7 @@ def mesh_of(
 ) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle.
 
-    A rehearsal has few places and no film: only what is refused matters.
+    A rehearsal has few places and a film by formula: only what is refused matters.
     """
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
@@ -66,9 +66,14 @@ def mesh_of(
         )
     settings = contact_settings(case)
     if rehearsal:
-        settings = replace(settings, film_model="none", film_options={})
-        if LAWS[case.friction.law].needs_film:
-            settings = replace(settings, friction_law="none", friction_options={})
+        film = "none" if settings.film_model == "none" else "dowson-higginson"
+        settings = replace(settings, film_model=film, film_options={})
+        law = LAWS[case.friction.law]
+        if law.needs_film:
+            other = LAWS[law.rehearsal]
+            options = settings.friction_options.items()
+            known = {name: value for name, value in options if name in other.options}
+            settings = replace(settings, friction_law=other.name, friction_options=known)
     return mesh_table(
         case.gear_pair,
         settings,
