@@ -177,7 +177,7 @@ def test_friction_that_follows_the_load_is_the_same_motion() -> None:
         followed = _run(**law, dynamics__friction_load="dynamic").summary()
         found = _run(**law, solver__coupling="dynamic", solver__coupling_tolerance=1e-9).summary()
         plain = _run(**law).summary()
-    assert followed["friction_fit_error"] < 1e-10
+    assert followed["friction_fit_error"] < 1e-5
     for name in ("mean_friction_power", "rms_friction_force", "rms_mesh_force"):
         assert abs(followed[name] / plain[name] - 1.0) > 1e-4
         assert found[name] - plain[name] == pytest.approx(followed[name] - plain[name], rel=2e-3)
