@@ -9,7 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.study.case.provenance import provenance
-from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.assembly import geometry
 
 _ROUGHNESS = ("0.325 um", "0.53 um", "0.991 um")
 
