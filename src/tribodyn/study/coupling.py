@@ -18,10 +18,9 @@ from tribodyn.mesh.gears import COORDINATES
 from tribodyn.progress import Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.case.derive import mesh_law_of
-from tribodyn.study.pipeline.assembly import whole_system
-from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.motion import motion_of
-from tribodyn.study.pipeline.record import mesh_force, one_sided_phase
+from tribodyn.study.pipeline.series import mesh_force, one_sided_phase
 from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
 from tribodyn.types import Array
 

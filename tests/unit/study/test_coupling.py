@@ -17,8 +17,7 @@ from tribodyn.progress import SILENT
 from tribodyn.study import coupling as module
 from tribodyn.study import run
 from tribodyn.study.case.reference import start_toml
-from tribodyn.study.pipeline.assembly import whole_system
-from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.motion import motion_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
