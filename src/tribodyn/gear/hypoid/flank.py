@@ -306,8 +306,8 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
 
 def _warn(flanks: HypoidFlanks) -> None:
     rest = (
-        f"of the active {flanks.side} flank; give the pinion more teeth, a larger spiral angle or a "
-        "smaller working depth"
+        f"of the active {flanks.side} flank; give the pinion more teeth, a larger spiral angle or "
+        "a smaller working depth"
     )
     undercut, cutting = flanks.undercut_share, flanks.interference_share
     if undercut > 0.0:
