@@ -280,11 +280,17 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
     curvature = touch.curvature
     parameters = flanks.wheel.parameters(places)
     wheel, (position, normal) = flanks.wheel.at(parameters), flanks.pinion_at(parameters)
-    if not np.all(np.isfinite(position)):
+    if not np.all(np.isfinite(parameters)):
         radius = flanks.blank.cutter_radius * 1e3
         what, where = f"cutter_radius = {radius:.6g} mm", Argument("blank.cutter_radius")
-        why = "Part of the wheel's flank is out of the cutter's reach or never touches a pinion"
+        why = "Part of the wheel's flank is out of the cutter's reach"
         raise InputError(what, where, why, "Choose a larger cutter or a smaller face width")
+    lost = float(np.mean(~np.isfinite(touch.contact.rotation)))
+    if lost > 0.0:
+        what, where = f"{lost:.1%} of the wheel's flank never touches a pinion", Argument("blank")
+        why = "Its normals pass the pinion's axis at every rotation"
+        remedy = "Give a smaller face width, offset or depth, or a smaller spiral angle"
+        raise InputError(what, where, why, remedy)
     return {
         "wheel_position": wheel.position,
         "wheel_normal": wheel.normal,
@@ -299,14 +305,14 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
 
 
 def _warn(flanks: HypoidFlanks) -> None:
-    for code, share, told in (
-        ("hypoid-undercut", flanks.undercut_share, "the pinion is undercut"),
-        ("hypoid-interference", flanks.interference_share, "the flanks cut into each other"),
-    ):
-        if share > 0.0:
-            warn(
-                code,
-                f"{told} on {share:.1%} of the active {flanks.side} flank; give the pinion more "
-                "teeth, a larger spiral angle or a smaller working depth",
-                stacklevel=3,
-            )
+    rest = (
+        f"of the active {flanks.side} flank; give the pinion more teeth, a larger spiral angle or "
+        "a smaller working depth"
+    )
+    undercut, cutting = flanks.undercut_share, flanks.interference_share
+    if undercut > 0.0:
+        told = f"the pinion is undercut on {undercut:.1%} {rest}"
+        warn("hypoid-undercut", told, stacklevel=3)
+    if cutting > 0.0:
+        told = f"the flanks cut into each other on {cutting:.1%} {rest}"
+        warn("hypoid-interference", told, stacklevel=3)
