@@ -51,7 +51,7 @@ def quasi_static_loads(
     else:
         shared = teeth.shared_load()
         film_at = solve(teeth.load_per_width * shared.share, ALL)
-    load = teeth.load_per_width * shared.share[cycle.in_contact]
+    load = (teeth.load_per_width * shared.share)[cycle.in_contact]
     return Loads(shared, load, np.maximum(load, film.least_load), film_at)
 
 
@@ -196,11 +196,10 @@ def _settle_together(
     enough: float,
 ) -> SharedLoad:
     """The same for pairs solved together; a share that swings to and fro is slowed down."""
-    least = teeth.least_share * teeth.load_per_width
     before, step = share, np.zeros(share.shape)
     slope = np.ones(share.shape)
     for _ in range(_STEPS):
-        load = np.maximum(teeth.load_per_width * share, least)
+        load = np.maximum(teeth.load_per_width * share, teeth.least_load)
         shared = teeth.shared_load(_film_stiffness(teeth.in_contact, load, film_at))
         earlier, step = step, shared.share - share
         if np.abs(step).max() < max(enough, _SETTLED_TOGETHER):
