@@ -166,12 +166,11 @@ def mesh_table(
         "friction_coefficient": loads.film_at.friction(contact, motion),
         **as_columns(reported, roughness),
     }
-    in_series = films.film_stiffness if settings.film_in_series else None
     return MeshTable(
         grid=cycle.grid,
         path=cycle.path,
         in_contact=cycle.in_contact,
-        **shared_load_columns(teeth, loads.shared, in_series, force_law=force_law),
+        **shared_load_columns(teeth, loads.shared, loads.springs, force_law=force_law),
         gear_pair=pair,
         pinion_speed=float(pinion_speed),
         pinion_torque=float(pinion_torque),

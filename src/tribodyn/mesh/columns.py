@@ -85,7 +85,7 @@ class MeshColumns(Record):
     stiffness_model, friction_law, film_model : str
         Which models made the table.
     film_stiffness_kind : str
-        Film stiffness asked for: ``"tangent"`` and ``"secant"`` are in series with the teeth,
+        Film stiffness asked for: all but ``"none"`` and ``"seed"`` are in series with the teeth,
         ``"none"`` and ``"seed"`` are not.
     mesh_order : int
         Mesh cycles in one turn of the pinion; by default its number of teeth.
