@@ -20,6 +20,7 @@ SCRIPTS = (
     "film_speed",
     "film_batch",
     "friction_speed",
+    "friction_experiment",
     "fe2d_speed",
     "stiffness_speed",
     "cold_start",

@@ -7,7 +7,8 @@
 
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
-``analysis``, ``study``, ``cases``, ``plot`` and ``report``.
+``analysis``, ``measurement``, ``uncertainty``,
+``study``, ``cases``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
         campbell,
         comprehensive_stiffness,
         film_over_operation,
+        friction_experiment,
         harris_map,
         loaded_contact,
         natural_modes,
@@ -48,6 +50,7 @@ __all__ = [
     "cases",
     "comprehensive_stiffness",
     "film_over_operation",
+    "friction_experiment",
     "harris_map",
     "load_case",
     "load_result",
@@ -70,6 +73,7 @@ _HOMES = {
     "campbell": "study",
     "comprehensive_stiffness": "study",
     "film_over_operation": "study",
+    "friction_experiment": "study",
     "harris_map": "study",
     "load_case": "cases",
     "load_result": "cases",
@@ -84,8 +88,8 @@ _HOMES = {
 
 _ROOMS = (
     "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
-    "lubricant", "mesh", "nomenclature", "plot", "progress", "report", "stiffness", "study",
-    "units",
+    "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report", "stiffness",
+    "study", "uncertainty", "units",
 )  # fmt: skip
 
 

@@ -19,54 +19,15 @@ _texts: dict[Any, str] = {}
 
 
 def source_digest(folder: str | Path, names: Sequence[str]) -> str:
-    """Hash of the source files of a kernel and of everything that it calls.
-
-    Numba looks at the file of the cached function alone, and would load a stale one after a
-    change in a file that it calls. As a closure variable the hash is part of the cache key.
-
-    Parameters
-    ----------
-    folder : str or Path
-        Directory of the sources.
-    names : sequence of str
-        Modules in it, without suffix.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> len(source_digest(Path(__file__).parent, ["compiled"]))
-    64
-    """
+    """Hash of the source files of a kernel and of everything that it calls."""
+    # Numba looks at the file of the cached function alone, and would load a stale one after a
+    # change in a file that it calls. As a closure variable the hash is part of the cache key.
     content = [(Path(folder) / f"{name}.py").read_bytes() for name in names]
     return hashlib.sha256(b"".join(content)).hexdigest()
 
 
 def announced(kernel: Kernel, what: str, time: str) -> Kernel:
-    """Say so whenever a kernel is compiled, which is once on a machine: else it looks like a hang.
-
-    Parameters
-    ----------
-    kernel : Numba function
-        Kept on disk.
-    what : str
-        What it does, for example ``"the film solver"``.
-    time : str
-        How long compiling it takes.
-
-    Returns
-    -------
-    Numba function
-        The same.
-
-    Examples
-    --------
-    >>> announced(len, "the film solver", "one to two minutes") is len
-    True
-    """
+    """Say so whenever a kernel is compiled, once on a machine: else it looks like a hang."""
     _texts[kernel] = f"compiling {what}, once on this machine, about {time}"
     _listen()
     return kernel
@@ -100,17 +61,7 @@ _tellers: list[Callable[[str], None]] = [_to_terminal]
 
 @contextmanager
 def telling(teller: Callable[[str], None]) -> Iterator[None]:
-    """Let a function tell what is compiled inside the block.
-
-    Parameters
-    ----------
-    teller : callable
-        Takes one line.
-
-    Yields
-    ------
-    None
-    """
+    """Let a function tell what is compiled inside the block."""
     _tellers.append(teller)
     try:
         yield

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
+from inspect import cleandoc, signature
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -159,6 +160,15 @@ class Drawing:
         return self.draw(self.subject(result), **options)
 
 
+def figure_text(text: str, argument: str, kinds: Iterable[str] = ()) -> str:
+    """Docstring of a figure function: what it draws, taken from where it registers."""
+    if "\nParameters\n" in text:
+        return text
+    what = " or ".join(kinds) or "object"
+    returns = "Returns\n-------\nplotly.graph_objects.Figure"
+    return f"{text}\n\nParameters\n----------\n{argument} : {what}\n\n{returns}\n"
+
+
 FIGURES: Registry[Callable[..., Any]] = Registry("figure", "tribodyn.plot")
 
 
@@ -203,7 +213,10 @@ def drawing(
     kinds = (of,) if isinstance(of, str) else tuple(of)
 
     def keep(draw: Callable[..., Any]) -> Drawing:
+        argument = next(iter(signature(draw).parameters))
         figure = Drawing(name, draw, heading, caption, missing, kinds, made_by)
+        text = figure_text(cleandoc(draw.__doc__ or ""), argument, kinds)
+        object.__setattr__(figure, "__doc__", text)
         FIGURES.register(name)(figure)
         return figure
 

@@ -27,15 +27,7 @@ _WORDS = {
 
 
 class Members:
-    """Members of a study by name, in a hidden folder beside its place until it is discarded.
-
-    Parameters
-    ----------
-    target : path, optional
-        Where the study is to be saved; nothing is kept without.
-    anew : bool
-        Whether members of another study there give way.
-    """
+    """Members of a study by name, in a hidden folder beside its place until it is discarded."""
 
     def __init__(self, target: Path | None = None, anew: bool = False) -> None:
         self.target, self.anew = target, anew

@@ -100,12 +100,18 @@ film_thickness | h | m | um | oil film thickness
 central_film | h_c | m | um | oil film thickness in the centre of the contact
 minimum_film | h_min | m | um | least oil film thickness
 film_ratio | Lambda | | | minimum film over composite roughness
+film_load_share | f_Lambda | | | part of the load of a tooth pair that its oil film carries; the asperities carry the rest
+lubrication_regime | | | | 0 boundary, 1 mixed, 2 full film, by the film ratio
 film_pressure | p_max | Pa | GPa | greatest pressure in the oil film
 film_stiffness | K_o | N/m | N/um | stiffness of the oil film of one tooth pair along the line of action
 composite_roughness | S | m | um | root of the sum of squares of the two rms roughnesses | "0.5 um"
 roughness_rms | S_q | m | um | rms roughness of one flank | "0.4 um"
+rms_slope | Delta_q | | | root mean square slope of a profile of one flank | 0.1
+summit_density | eta | 1/m^2 | 1/mm^2 | summits of one flank per area | "10000 1/mm^2"
+summit_radius | beta | m | um | mean radius of the summits of one flank
 roughness_ra | Ra | m | um | arithmetic mean roughness of one flank; Rq = 1.25 Ra is taken, as of ground flanks | "0.4 um"
 friction_coefficient | mu | | | friction force over normal force | 0.05
+asperity_friction_coefficient | mu_a | | | part of the friction coefficient that the asperities cause
 gear_loss_factor | H_V | | | mean sliding work over transmitted work at unit friction
 tooth_stiffness | k_t | N/m | N/um | stiffness of the teeth of one pair without their oil film
 pair_stiffness | k_i | N/m | N/um | stiffness of one tooth pair along the line of action | "2e8 N/m"

@@ -26,7 +26,13 @@ if TYPE_CHECKING:
 __all__ = ["LARGEST", "file_kind", "plain_number", "read_bytes", "read_dataset", "write_dataset"]
 
 #: Size of the largest file that is read: text, tables as text, netCDF [bytes].
-LARGEST = {"case": 10**6, "profile map": 4 * 10**6, "table": 10**7, "netcdf": 2**30}
+LARGEST = {
+    "case": 10**6,
+    "profile map": 4 * 10**6,
+    "table": 10**7,
+    "netcdf": 2**30,
+    "recording": 2**31,
+}
 #: Attribute in which netCDF tells who wrote a file, and the checksum in it.
 _ORIGIN, _ON_FILE = "_NCProperties", re.compile(rb"tribodyn=([0-9a-f]{64})")
 

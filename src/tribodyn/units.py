@@ -103,6 +103,7 @@ _USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "N*s/m": {"N*s/mm": (1e3, 1)},
     "Pa": {"kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1), "N/mm^2": (1e6, 1), "bar": (1e5, 1)},
     "Pa*s": {"mPa*s": (1, 1e3)},
+    "1/m^2": {"1/mm^2": (1e6, 1)},
     "1/Pa": {"1/MPa": (1, 1e6), "1/GPa": (1, 1e9), "GPa^-1": (1, 1e9), "Pa^-1": (1, 1)},
 }
 _ZERO_CELSIUS = 273.15

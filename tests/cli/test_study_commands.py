@@ -48,6 +48,7 @@ def test_harris_is_told_over_the_torque(tmp_path: Path, capsys: pytest.CaptureFi
     assert found["peak_to_peak_transmission_error"][0] < found["peak_to_peak_transmission_error"][1]
 
 
+@pytest.mark.slow
 def test_the_better_case_of_a_relief_is_better(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -92,6 +93,7 @@ def test_wrong_words_are_told(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_two_results_are_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case = td.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
     places = [str(tmp_path / name) for name in ("a", "b")]

@@ -50,9 +50,9 @@ BibTeX. Docstrings name the source of every formula with its equation or table.
 #: Packages whose names are for users.
 _PACKAGES = (
     "tribodyn", "tribodyn.gear", "tribodyn.contact", "tribodyn.lubricant", "tribodyn.ehl",
-    "tribodyn.friction", "tribodyn.stiffness", "tribodyn.mesh", "tribodyn.dynamics",
-    "tribodyn.analysis", "tribodyn.plot", "tribodyn.report",
-    "tribodyn.errors", "tribodyn.units", "tribodyn.progress",
+    "tribodyn.friction", "tribodyn.losses", "tribodyn.stiffness", "tribodyn.mesh",
+    "tribodyn.dynamics", "tribodyn.analysis", "tribodyn.measurement", "tribodyn.uncertainty",
+    "tribodyn.plot", "tribodyn.report", "tribodyn.errors", "tribodyn.units", "tribodyn.progress",
 )  # fmt: skip
 
 

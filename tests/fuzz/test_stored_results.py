@@ -27,6 +27,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> Any:
         return td.load_result(place)
 
 
+@pytest.mark.slow
 def test_damaged_results(
     draws: Draws, result: Any, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

@@ -109,6 +109,7 @@ def _same(one: object, other: object) -> bool:
     )
 
 
+@pytest.mark.slow
 def test_damaged_bytes_of_a_mesh_table(
     draws: Draws, table: MeshTable, stored: Path, tmp_path: Path
 ) -> None:
@@ -120,6 +121,7 @@ def test_damaged_bytes_of_a_mesh_table(
         _read(read_table_file, path)
 
 
+@pytest.mark.slow
 def test_damaged_variables_of_a_mesh_table(
     draws: Draws, table: MeshTable, stored: Path, tmp_path: Path
 ) -> None:

@@ -176,9 +176,7 @@ def test_too_few_places_leave_films_out_and_are_told(monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(refinement, "MOST_ADDED", 40)
     with pytest.warns(ModelWarning, match=r"film-positions.*at \d+ of \d+ contacts.*film") as told:
-        mesh = table(
-            pair(tip_relief=10e-6), film_options={"stiffness": "none", "positions": 8}
-        )
+        mesh = table(pair(tip_relief=10e-6), film_options={"stiffness": "none", "positions": 8})
     assert sum("film-positions" in str(one.message) for one in told) == 1
     left_out = np.isnan(mesh.film_stiffness) & (mesh.load_share > 1e-3)
     assert left_out.any()
@@ -210,9 +208,10 @@ def test_the_approach_is_smooth_whatever_the_positions(positions: int) -> None:
     assert np.ptp(error) == pytest.approx(np.ptp(relieved_analytic()), rel=1e-3)
     assert np.ptp(error) == pytest.approx(np.ptp(rigid), rel=0.05)
     assert np.abs(np.diff(error)).max() < 1.2 * np.abs(np.diff(rigid)).max()
-    assert np.abs(np.diff(mesh.load_share, axis=0)).max() < (
-        1.2 * np.abs(np.diff(dry.load_share, axis=0)).max()
-    )
+    # at A and E a tip corner takes over what the pair on the path carried
+    inside = np.diff(mesh.phase) > 0.0
+    steps = [np.abs(np.diff(each.load_share, axis=0)[inside]).max() for each in (mesh, dry)]
+    assert steps[0] < 1.2 * steps[1]
 
 
 @cache

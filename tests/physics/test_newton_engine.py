@@ -104,6 +104,7 @@ def test_linear_solver_equals_the_dense_matrix(contact, imposed, ratio):
         assert grid.dx * x[:k].sum() == pytest.approx(rhs[k], abs=1e-9 * carried)
 
 
+@pytest.mark.slow
 def test_coarse_grid_saves_products(contact):
     fine = solve_line_contact_moes(200, 10, nodes=4097, domain="auto", inlet="flooded")._grid
     n, k = fine.n, fine.free

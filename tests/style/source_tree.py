@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from tribodyn.drawing import figure_text
 from tribodyn.ehl.formulas.dimensionless_groups import full_text
 
 __all__ = [
@@ -71,6 +72,8 @@ class Function:
     def docstring(self) -> str:
         """Cleaned docstring as a user reads it, empty if there is none."""
         text = ast.get_docstring(self.node) or ""
+        if any(re.match(r"(\w+_)?drawing\(", decorator) for decorator in self.decorators):
+            return figure_text(text, self.node.args.args[0].arg)
         return full_text(text) if self.shared and text else text
 
     @property

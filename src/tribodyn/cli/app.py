@@ -40,6 +40,11 @@ COMMANDS = (
     ("relief", "tribodyn.cli.study_commands:relief", "Find the best tip relief of a case."),
     ("run-up", "tribodyn.cli.study_commands:run_up", "March a case while its speed rises."),
     (
+        "experiment",
+        "tribodyn.cli.experiment_command:experiment",
+        "Judge published claims on one gear pair: friction.",
+    ),
+    (
         "compare",
         "tribodyn.cli.compare_command:compare",
         "Show what differs between two results.",

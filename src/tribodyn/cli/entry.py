@@ -86,6 +86,7 @@ _EXAMPLES = {
     "harris": "fzg-roughness",
     "relief": "fzg-roughness",
     "run-up": 'fzg-roughness "400..3500 rpm"',
+    "experiment": "friction",
     "compare": "first second",
     "new": "my.toml",
     "explain": "epsilon_alpha",

@@ -14,46 +14,22 @@ if TYPE_CHECKING:
 
 
 def say(text: str) -> None:
-    """Write a line of data to stdout.
-
-    Parameters
-    ----------
-    text : str
-        One or more lines.
-    """
+    """Write a line of data to stdout."""
     sys.stdout.write(text + "\n")
 
 
 def say_json(data: Any) -> None:
-    """Write one JSON value to stdout.
-
-    Parameters
-    ----------
-    data : object
-        Mapping or list without NaN.
-    """
+    """Write one JSON value to stdout."""
     say(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def tell(text: str) -> None:
-    """Write a line to stderr.
-
-    Parameters
-    ----------
-    text : str
-        One or more lines.
-    """
+    """Write a line to stderr."""
     sys.stderr.write(text + "\n")
 
 
 def show_problems(problems: Sequence[Problem]) -> None:
-    """Write problems to stderr, one paragraph each.
-
-    Parameters
-    ----------
-    problems : sequence of Problem
-        What is wrong.
-    """
+    """Write problems to stderr, one paragraph each."""
     for problem in problems:
         tell(f"error: {problem}")
     if len(problems) > 1:
@@ -61,41 +37,19 @@ def show_problems(problems: Sequence[Problem]) -> None:
 
 
 def show_resumed(members: Members) -> None:
-    """Say on stderr how much of a study an earlier process has finished.
-
-    Parameters
-    ----------
-    members : Members
-        What was kept of it.
-    """
+    """Say on stderr how much of a study an earlier process has finished."""
     if len(members):
         tell(f"{len(members)} finished parts of this study were kept and are not computed again.")
 
 
 def show_warnings(warnings: Iterable[tuple[str, str]]) -> None:
-    """Write model warnings to stderr.
-
-    Parameters
-    ----------
-    warnings : iterable of (str, str)
-        Code and message.
-    """
+    """Write model warnings to stderr."""
     for code, message in warnings:
         tell(f"warning [{code}]: {message}")
 
 
 def figures(values: Mapping[str, float]) -> str:
-    """Lay out summary figures by topic: name, value, meaning.
-
-    Parameters
-    ----------
-    values : mapping of str to float
-        Names and SI values.
-
-    Returns
-    -------
-    str
-    """
+    """Lay out summary figures by topic: name, value, meaning."""
     from tribodyn.study.pipeline.summary import SUMMARY, by_topic
 
     rows = {n: [n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in values.items()}
@@ -105,25 +59,7 @@ def figures(values: Mapping[str, float]) -> str:
 
 
 def table(rows: Sequence[Sequence[str]], *, indent: str = "  ") -> str:
-    """Lay out rows in left-aligned columns.
-
-    Parameters
-    ----------
-    rows : sequence of sequence of str
-        Rows of equal length.
-    indent : str
-        Put before each row.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> print(table([["a", "1 mm"], ["long", "2 mm"]]))
-      a     1 mm
-      long  2 mm
-    """
+    """Lay out rows in left-aligned columns."""
     widths = [max((len(row[i]) for row in rows), default=0) for i in range(len(rows[0]))]
     lines = ("  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) for row in rows)
     return "\n".join((indent + line).rstrip() for line in lines)

@@ -28,29 +28,7 @@ def check_place(target: Path, force: bool) -> None:
 
 
 def read_changes(settings: Sequence[str]) -> dict[str, Any]:
-    """Read ``KEY=VALUE`` words as in a case file, where quotes may be left out.
-
-    No value, as in ``friction.variant=``, goes back to the default.
-
-    Parameters
-    ----------
-    settings : sequence of str
-        For example ``"operation.torque=120 N*m"``.
-
-    Returns
-    -------
-    dict of str to object
-
-    Raises
-    ------
-    InputError
-        If a word has no key, or a key is set twice.
-
-    Examples
-    --------
-    >>> read_changes(["operation.torque=120 N*m", "gears.pinion.teeth=17"])
-    {'operation.torque': '120 N*m', 'gears.pinion.teeth': 17}
-    """
+    """Read ``KEY=VALUE`` words as in a case file, where quotes may be left out."""
     from tribodyn.study.case.values import written
 
     changes: dict[str, Any] = {}
@@ -71,17 +49,7 @@ def read_changes(settings: Sequence[str]) -> dict[str, Any]:
 
 
 def read_value(text: str) -> Any:
-    """Read a TOML value; what is none is text.
-
-    Parameters
-    ----------
-    text : str
-        As in a case file, where quotes may be left out.
-
-    Returns
-    -------
-    object
-    """
+    """Read a TOML value; what is none is text."""
     try:
         value = tomllib.loads(f"value = {text}\n")
     except tomllib.TOMLDecodeError:
@@ -90,24 +58,7 @@ def read_value(text: str) -> Any:
 
 
 def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
-    """Load a case and change values.
-
-    Parameters
-    ----------
-    name_or_path : str
-        As for :func:`tribodyn.load_case`.
-    settings : sequence of str
-        As for :func:`read_changes`.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    InputError
-        If the case or a change is faulty.
-    """
+    """Load a case and change values."""
     from tribodyn.cases.load import load_case
 
     case = load_case(name_or_path)
@@ -122,30 +73,7 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
 
 def read_ranges(words: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
-    """Read what varies: a range with its number of points, or a list of values.
-
-    Parameters
-    ----------
-    words : sequence of str
-        One word for each key.
-    lists : bool
-        Whether a list of values is allowed.
-
-    Returns
-    -------
-    dict of str to object
-        Dotted key to ``(first, last, points)`` or to a list; numbers with a unit are text.
-
-    Raises
-    ------
-    InputError
-        If a word follows neither form, or a key comes twice.
-
-    Examples
-    --------
-    >>> read_ranges(["operation.speed=400..3500 rpm:60", "operation.torque=50,150 N*m"])
-    {'operation.speed': ('400 rpm', '3500 rpm', 60), 'operation.torque': ['50 N*m', '150 N*m']}
-    """
+    """Read what varies: a range with its number of points, or a list of values."""
     found: dict[str, Any] = {}
     problems = []
     grammar = GRAMMAR if lists else RANGE
@@ -167,27 +95,7 @@ def read_ranges(words: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
 
 
 def read_ends(text: str) -> tuple[Any, Any]:
-    """Read the two ends of a range without points.
-
-    Parameters
-    ----------
-    text : str
-        For example ``"400..3500 rpm"``.
-
-    Returns
-    -------
-    tuple of str
-
-    Raises
-    ------
-    InputError
-        If it is no range.
-
-    Examples
-    --------
-    >>> read_ends("400..3500 rpm")
-    ('400 rpm', '3500 rpm')
-    """
+    """Read the two ends of a range without points."""
     try:
         first, last, _ = _range(f"{text}:2")
     except _UnreadError as fault:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -54,21 +54,33 @@ def sweep(
     int
         Exit code.
     """
-    from tribodyn.cli.bar import progress_bar
-    from tribodyn.members import Members
-
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
     ready = changed_case(case, set_ or [])
     names = _asked(show)
+
+    def compute(**kept: Any) -> Sweep:
+        from tribodyn.study.studies.sweep import sweep as over_keys
+
+        return over_keys(ready, ranges, partial=True, by="sweep", **kept)
+
+    found = kept_study(target, force, compute)
+    _show(found, found.shown(names), json)
+    failed = sum(bool(point.failed) for point in found.points)
+    if failed:
+        tell(f"{failed} of {len(found.points)} values failed; the column failed tells why.")
+    return ended(found, target)
+
+
+def kept_study(target: Path, force: bool, compute: Callable[..., Sweep]) -> Sweep:
+    """Compute a study whose parts are kept as they are finished, and save what is done."""
+    from tribodyn.cli.bar import progress_bar
+    from tribodyn.members import Members
+
     check_place(target, force)
     with Members(target, force) as members:
         with progress_bar() as progress:
-            from tribodyn.study.studies.sweep import sweep as compute
-
-            found = compute(
-                ready, ranges, partial=True, by="sweep", progress=progress, members=members
-            )
+            found = compute(progress=progress, members=members)
         show_resumed(members)
         if not found.complete:
             tell(
@@ -81,14 +93,15 @@ def sweep(
             found.save(target, force=force)
             progress.finish()
         members.close_after(found.complete)
-    _show(found, found.shown(names), json)
-    failed = sum(bool(point.failed) for point in found.points)
-    if failed:
-        tell(f"{failed} of {len(found.points)} values failed; the column failed tells why.")
+    return found
+
+
+def ended(found: Sweep, target: Path) -> int:
+    """Tell where the report is; exit code of the study."""
     tell(f"Report: {target / 'report.html'}")
     if not found.complete:
         return _INTERRUPTED
-    return 1 if failed == len(found.points) else 0
+    return 1 if all(point.failed for point in found.points) else 0
 
 
 def _asked(show: str) -> list[str]:

@@ -8,12 +8,14 @@
 | ``transient`` | pressure and film while load, radius and speed change |
 | ``stiffness`` | stiffness and damping of the film |
 | ``traction`` | shear of the oil, and its temperature |
-| ``load_share`` | how much of the load the film carries between rough surfaces |
+| ``load_share`` | how much of the load the film carries between rough surfaces, and the regime |
+| ``asperities`` | summits of rough flanks from their roughness, and their contact |
 | ``roughness`` | measured heights of a surface |
 """
 
 from __future__ import annotations
 
+from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
 from tribodyn.ehl.formulas.moes import moes_central, moes_dimensionless_central
 from tribodyn.ehl.formulas.power_laws import (
@@ -22,7 +24,7 @@ from tribodyn.ehl.formulas.power_laws import (
     pan_hamrock_central,
     pan_hamrock_minimum,
 )
-from tribodyn.ehl.load_share import film_load_share
+from tribodyn.ehl.load_share import balanced_load_share, film_load_share, lubrication_regime
 from tribodyn.ehl.models import FILM_MODELS, FilmModel
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
@@ -42,6 +44,7 @@ from tribodyn.ehl.transient.transient import TransientLineContact, solve_transie
 __all__ = [
     "FILM_MODELS",
     "SHEAR_MODELS",
+    "Asperities",
     "FilmModel",
     "FilmState",
     "Groups",
@@ -50,6 +53,8 @@ __all__ = [
     "RoughnessProfile",
     "Traction",
     "TransientLineContact",
+    "asperity_integral",
+    "balanced_load_share",
     "blok_flash_temperature",
     "dowson_1968_minimum",
     "dowson_toyoda_central",
@@ -57,6 +62,7 @@ __all__ = [
     "film_traction",
     "inlet_heating_factor",
     "line_contact_groups",
+    "lubrication_regime",
     "moes_central",
     "moes_dimensionless_central",
     "newtonian_shear_stress",

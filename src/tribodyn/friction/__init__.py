@@ -6,7 +6,8 @@
 | `constant` | no friction, or the same everywhere |
 | `benedict_kelly`, `drozdov`, `misharin`, `odonoghue_cameron` | friction of discs, by formula |
 | `xu`, `ehl` | friction of an oil film, by regression or from the solved film |
-| `mixed_ehl`, `matsumoto` | film and asperities share the load |
+| `mixed_ehl`, `matsumoto` | film and asperities share the load, by a fit |
+| `mixed` | film and asperities share the load, by the gap at which both carry it |
 | `exponential` | sliding and roughness, with numbers to be fitted |
 | `mesh_means` | one mean value for a whole mesh: Schlenk, ISO, Niemann, measured points |
 | `validity` | the warning of quantities out of the range of a law |
@@ -14,7 +15,7 @@
 
 from __future__ import annotations
 
-from tribodyn.friction.base import LAWS, FrictionLaw, TribologicalContact
+from tribodyn.friction.base import LAWS, FrictionLaw, FrictionParts, TribologicalContact
 from tribodyn.friction.benedict_kelly import benedict_kelly
 from tribodyn.friction.constant import constant, none
 from tribodyn.friction.drozdov import drozdov
@@ -28,6 +29,7 @@ from tribodyn.friction.mesh_means.niemann import niemann
 from tribodyn.friction.mesh_means.pitch_point import PitchPoint, pitch_point
 from tribodyn.friction.mesh_means.schlenk import schlenk
 from tribodyn.friction.misharin import misharin
+from tribodyn.friction.mixed import mixed, mixed_solved
 from tribodyn.friction.mixed_ehl import mixed_ehl
 from tribodyn.friction.odonoghue_cameron import odonoghue_cameron
 from tribodyn.friction.xu import xu_2007
@@ -35,6 +37,7 @@ from tribodyn.friction.xu import xu_2007
 __all__ = [
     "LAWS",
     "FrictionLaw",
+    "FrictionParts",
     "PitchPoint",
     "TribologicalContact",
     "benedict_kelly",
@@ -48,7 +51,9 @@ __all__ = [
     "matsumoto",
     "measured",
     "misharin",
+    "mixed",
     "mixed_ehl",
+    "mixed_solved",
     "niemann",
     "none",
     "odonoghue_cameron",

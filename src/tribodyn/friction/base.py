@@ -24,6 +24,7 @@ _POSITIVE = (
     ("entrainment_speed", "m/s"),
     ("equivalent_radius", "m"),
 )
+_FILMS = ("film_thickness", "central_film")
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,8 @@ class TribologicalContact:
         Smallest thickness known of the oil film of each contact.
     pitch : PitchPoint, optional
         The mesh at its pitch point, for laws of one mean value.
+    central_film : array, optional [m]
+        Film in the centre of each contact, where it is known.
 
     Raises
     ------
@@ -87,11 +90,13 @@ class TribologicalContact:
     oil_density: float | None = None
     film_thickness: Array | None = field(default=None, repr=False)
     pitch: PitchPoint | None = field(default=None, repr=False)
+    central_film: Array | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         """Refuse contacts without load, mixed shapes and contradicting speeds."""
         names = [name for name, _ in _POSITIVE] + ["sliding_speed", "slide_to_roll_ratio"]
-        names += ["film_thickness"] if self.film_thickness is not None else []
+        films = [name for name in _FILMS if getattr(self, name) is not None]
+        names += films
         shapes = {name: np.shape(getattr(self, name)) for name in names}
         if len(set(shapes.values())) > 1:
             listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
@@ -111,8 +116,8 @@ class TribologicalContact:
         require_between("composite_roughness", self.composite_roughness, 0.0, np.inf, "m")
         if self.oil_density is not None:
             require_positive("oil_density", self.oil_density, "kg/m^3")
-        if self.film_thickness is not None:
-            require_between("film_thickness", self.film_thickness, 0.0, np.inf, "m")
+        for name in films:
+            require_between(name, getattr(self, name), 0.0, np.inf, "m")
         self._require_consistent_sliding()
         if self.film is not None and self.film.size != self.size:
             raise InputError(
@@ -198,6 +203,28 @@ _REMEDIES = {
 
 
 @dataclass(frozen=True)
+class FrictionParts:
+    """Friction coefficients of contacts whose load a film and asperities share.
+
+    Parameters
+    ----------
+    film, asperities : array
+        Parts of the coefficient: friction force of each over the whole normal force.
+    film_load_share : array
+        Part of the load on the film.
+    """
+
+    film: Array
+    asperities: Array
+    film_load_share: Array
+
+    @property
+    def coefficient(self) -> Array:
+        """Friction force over normal force."""
+        return np.asarray(self.film + self.asperities)
+
+
+@dataclass(frozen=True)
 class FrictionLaw(Model):
     """A friction law: called with contacts and options, gives friction coefficients.
 
@@ -208,7 +235,7 @@ class FrictionLaw(Model):
     source : str
         Paper behind the law.
     function : callable
-        ``function(contact, **options)``.
+        ``function(contact, **options)``; gives the coefficients, or :class:`FrictionParts`.
     options : mapping of str to Option or default
         Options that the law knows; afterwards their defaults, ``None`` where the user must give a
         value. What else is known of them stands in ``declared``.
@@ -229,7 +256,7 @@ class FrictionLaw(Model):
 
     name: str
     source: str
-    function: Callable[..., Array] = field(repr=False)
+    function: Callable[..., Array | FrictionParts] = field(repr=False)
     options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     needs_film: bool = False
     needs_oil: bool = True
@@ -255,6 +282,28 @@ class FrictionLaw(Model):
         ------
         InputError
             If an option is unknown or missing, or the law cannot be applied.
+        """
+        found = self.told(contact, options)
+        return found.coefficient if isinstance(found, FrictionParts) else found
+
+    def told(
+        self, contact: TribologicalContact, options: Mapping[str, Any]
+    ) -> Array | FrictionParts:
+        """All that the law tells: the coefficients, with their parts where it has them.
+
+        Parameters
+        ----------
+        contact, options
+            As for a call of the law.
+
+        Returns
+        -------
+        array or FrictionParts
+
+        Raises
+        ------
+        InputError
+            As a call of the law.
         """
         return self.function(contact, **self.complete(options))
 

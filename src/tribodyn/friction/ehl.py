@@ -151,7 +151,7 @@ def _warn_of_solid(coefficient: Array, shear_model: str) -> None:
         )
 
 
-_OPTIONS = {
+SHEAR_OPTIONS = {
     "shear_model": choice(
         "ree-eyring",
         SHEAR_MODELS.names,
@@ -171,7 +171,7 @@ _OPTIONS = {
 LAWS.define(
     "ehl",
     source="Johnson and Tevaarwerk, Proc. R. Soc. A 356 (1977); Conry, Wang and Cusano (1987)",
-    options=_OPTIONS,
+    options=SHEAR_OPTIONS,
     needs_film=True,
     meaning="friction of the solved oil film: its shear stress summed over the contact",
     papers=("johnson-tevaarwerk", "conry-wang-cusano"),

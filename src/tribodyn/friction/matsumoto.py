@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
-from tribodyn.friction.base import LAWS, TribologicalContact
+from tribodyn.friction.base import LAWS, FrictionParts, TribologicalContact
 from tribodyn.friction.mixed_ehl import BOUNDARY, FILM, friction_of_film
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.model import number
@@ -62,6 +62,17 @@ def matsumoto(
     >>> round(float(matsumoto(0.5e-6, 5e-6, 0.03, 0.12)), 4)  # D = 10: half and half
     0.075
     """
+    return _parts(
+        film_thickness, maximum_heights, film_friction_coefficient, boundary_friction_coefficient
+    ).coefficient[()]
+
+
+def _parts(
+    film_thickness: ArrayLike,
+    maximum_heights: ArrayLike,
+    film_friction_coefficient: ArrayLike,
+    boundary_friction_coefficient: ArrayLike,
+) -> FrictionParts:
     require_positive("film_thickness", film_thickness, "m")
     require_between("maximum_heights", maximum_heights, 0.0, np.inf, "m")
     require_between("film_friction_coefficient", film_friction_coefficient, 0.0, 1.0)
@@ -75,7 +86,7 @@ def matsumoto(
     share = 0.5 * np.log10(np.clip(ratio, 1.0, 100.0))
     film = np.asarray(film_friction_coefficient, dtype=float)
     boundary = np.asarray(boundary_friction_coefficient, dtype=float)
-    return np.asarray(film * (1.0 - share) + boundary * share)[()]
+    return FrictionParts(film * (1.0 - share), boundary * share, 1.0 - share)
 
 
 @LAWS.define(
@@ -105,10 +116,10 @@ def _law(
     boundary_friction_coefficient: float,
     film_friction_coefficient: float | None,
     maximum_heights: float | None,
-) -> Array:
+) -> FrictionParts:
     film = friction_of_film(contact, 0.0, film_friction_coefficient)
     heights = maximum_heights
     if heights is None:
         heights = _HEIGHTS_OF_COMPOSITE * contact.composite_roughness
     thickness = contact.known("film_thickness")
-    return matsumoto(thickness, heights, film, boundary_friction_coefficient)
+    return _parts(thickness, heights, film, boundary_friction_coefficient)

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl import film_load_share
 from tribodyn.errors import require_between
-from tribodyn.friction.base import LAWS, TribologicalContact
+from tribodyn.friction.base import LAWS, FrictionParts, TribologicalContact
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.friction.xu import xu_2007
 from tribodyn.model import number
@@ -57,14 +57,19 @@ def mixed_ehl(
     >>> float(mixed_ehl(0.0, 0.05)), float(mixed_ehl(np.inf, 0.05))
     (0.15, 0.05)
     """
-    require_between("ehl_friction_coefficient", ehl_friction_coefficient, 0.0, 1.0)
-    require_between("boundary_friction_coefficient", boundary_friction_coefficient, 0.0, 1.0)
-    boundary = np.asarray(boundary_friction_coefficient, dtype=float)
-    limits = Range("boundary_friction_coefficient", boundary, 0.1, 0.15)
+    return shared_friction(
+        film_load_share(film_ratio), ehl_friction_coefficient, boundary_friction_coefficient
+    ).coefficient[()]
+
+
+def shared_friction(share: Array, film: ArrayLike, boundary: ArrayLike) -> FrictionParts:
+    """Friction of a film that has this share of the load, and of asperities that have the rest."""
+    require_between("ehl_friction_coefficient", film, 0.0, 1.0)
+    require_between("boundary_friction_coefficient", boundary, 0.0, 1.0)
+    limits = Range("boundary_friction_coefficient", np.asarray(boundary), 0.1, 0.15)
     warn_outside("mixed-ehl", (limits,), "Measure it, or take 0.1 to 0.15.")
-    share = film_load_share(film_ratio)
-    film = np.asarray(ehl_friction_coefficient, dtype=float)
-    return np.asarray(film * share**1.2 + boundary * (1.0 - share))[()]
+    # The friction coefficient of a film rises with the power 0.2 of the load that it carries.
+    return FrictionParts(np.asarray(film) * share**1.2, np.asarray(boundary) * (1.0 - share), share)
 
 
 #: Option of the laws that add boundary friction.
@@ -101,9 +106,10 @@ def _law(
     *,
     boundary_friction_coefficient: float,
     ehl_friction_coefficient: float | None,
-) -> Array:
+) -> FrictionParts:
     film = friction_of_film(contact, contact.composite_roughness, ehl_friction_coefficient)
-    return mixed_ehl(contact.film_ratio, film, boundary_friction_coefficient)
+    share = np.asarray(film_load_share(contact.film_ratio))
+    return shared_friction(share, film, boundary_friction_coefficient)
 
 
 def friction_of_film(contact: TribologicalContact, roughness: float, given: float | None) -> Array:

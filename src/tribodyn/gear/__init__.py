@@ -12,6 +12,7 @@
 | `pair_factory` | a pair from the figures of a drawing |
 | `modification` | modifications and deviations of the flanks of a gear, also as a map |
 | `flank_gap` | the gap that modified flanks, pitch deviations and run-out leave |
+| `hypoid` | hypoid and spiral bevel pairs: blank, flanks, contact |
 """
 
 from tribodyn.gear.flank_gap import (
@@ -23,6 +24,7 @@ from tribodyn.gear.flank_gap import (
     run_out_gap,
     tooth_positions,
 )
+from tribodyn.gear.hypoid import HypoidBlank, hypoid_blank
 from tribodyn.gear.mass_properties import MassProperties, Material, mass_properties, section_moments
 from tribodyn.gear.mesh_geometry import (
     FlankRange,
@@ -44,6 +46,7 @@ __all__ = [
     "BasicRack",
     "FlankModification",
     "FlankRange",
+    "HypoidBlank",
     "MassProperties",
     "Material",
     "MeshGeometry",
@@ -57,6 +60,7 @@ __all__ = [
     "gear_outline",
     "half_tooth",
     "hunting_period",
+    "hypoid_blank",
     "lead_gap",
     "mass_properties",
     "operating_pressure_angle",

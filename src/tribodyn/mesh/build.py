@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from tribodyn.contact import Kinematics, path_of_contact
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import require_positive
 from tribodyn.friction import pitch_point
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.cycle import mesh_cycle, pairs_in_contact
-from tribodyn.mesh.film.film_columns import FILM_COLUMNS, as_columns
+from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS
+from tribodyn.mesh.cycle import MeshCycle, PairsInContact, mesh_cycle, pairs_in_contact
+from tribodyn.mesh.film.film_columns import as_columns, friction_columns
 from tribodyn.mesh.loads import (
+    Loads,
     quasi_static_loads,
     reported_films,
     tribological_contact,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.sharing import ToothContact, shared_load_columns, teeth_of
+from tribodyn.mesh.sharing import Teeth, ToothContact, shared_load_columns, teeth_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
@@ -144,6 +149,86 @@ def mesh_table(
     progress: Progress = SILENT,
 ) -> MeshTable:
     """Compute the tooth contact with these settings at one speed and torque, as :func:`build`."""
+    operation = (pinion_speed, pinion_torque)
+    loaded = loaded_mesh(
+        pair, settings, operation, steps=steps, force_law=force_law, progress=progress
+    )
+    return loaded.table(settings)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMesh:
+    """A mesh under its quasi-static load, with its films, before anything rubs."""
+
+    pair: SpurPair
+    settings: ToothContact
+    cycle: MeshCycle
+    pairs: PairsInContact
+    motion: Kinematics  #: of the pairs in contact
+    teeth: Teeth
+    loads: Loads
+    pinion_speed: float
+    pinion_torque: float
+    force_law: bool  #: fit the force law of pairs that are springs of their own too
+
+    @cached_property
+    def films(self) -> Films:
+        """Films of the pairs in contact."""
+        return self.loads.film_at(self.loads.tribological)
+
+    @cached_property
+    def _reported(self) -> Films:
+        least = self.teeth.least_share * self.teeth.load_per_width
+        return reported_films(self.films, self.loads, least)
+
+    @cached_property
+    def _load_columns(self) -> dict[str, Any]:
+        loads, fitted = self.loads, self.force_law
+        return shared_load_columns(self.teeth, loads.shared, loads.springs, force_law=fitted)
+
+    def table(self, settings: ToothContact) -> MeshTable:
+        """Mesh table with the friction law and the roughness of some settings."""
+        loads, motion, roughness = self.loads, self.motion, settings.composite_roughness
+        pitch = pitch_point(self.pair, self.pinion_speed, self.pinion_torque)
+        contact = tribological_contact(
+            motion, self.pairs, loads.tribological, roughness, pitch, self.films
+        )
+        columns: dict[str, Array] = {
+            **_motion_columns(motion, self.cycle.sliding_direction),
+            "load_per_width": loads.load_per_width,
+            "hertz_pressure": np.where(loads.load_per_width > 0.0, contact.hertz_pressure, 0.0),
+            **as_columns(self._reported, roughness),
+        }
+        told = loads.film_at.friction(contact, motion, settings)
+        columns |= friction_columns(told, columns.get("film_ratio"))
+        return MeshTable(
+            grid=self.cycle.grid,
+            path=self.cycle.path,
+            in_contact=self.cycle.in_contact,
+            **self._load_columns,
+            gear_pair=self.pair,
+            pinion_speed=float(self.pinion_speed),
+            pinion_torque=float(self.pinion_torque),
+            composite_roughness=roughness,
+            stiffness_model=settings.stiffness_model,
+            friction_law=settings.friction_law,
+            film_model=settings.film_model,
+            film_stiffness_kind=settings.film["stiffness"],
+            **_spread(columns, self.cycle.in_contact),
+        )
+
+
+def loaded_mesh(
+    pair: SpurPair,
+    settings: ToothContact,
+    operation: tuple[float, float],
+    *,
+    steps: int | None = None,
+    force_law: bool = False,
+    progress: Progress = SILENT,
+) -> LoadedMesh:
+    """Share the load at a speed and a torque of the pinion among the pairs; find their films."""
+    pinion_speed, pinion_torque = operation
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
     cycle = mesh_cycle(path_of_contact(pair), steps or _steps(pair, settings.stiffness_model))
@@ -154,33 +239,7 @@ def mesh_table(
     pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
     loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)
     warn_of_rigid_films(loads.film_at)
-    roughness = settings.composite_roughness
-    films = loads.film_at(loads.tribological)
-    pitch = pitch_point(pair, pinion_speed, pinion_torque)
-    contact = tribological_contact(motion, pairs, loads.tribological, roughness, pitch, films)
-    reported = reported_films(films, loads, teeth.least_share * teeth.load_per_width)
-    columns: dict[str, Array] = {
-        **_motion_columns(motion, cycle.sliding_direction),
-        "load_per_width": loads.load_per_width,
-        "hertz_pressure": np.where(loads.load_per_width > 0.0, contact.hertz_pressure, 0.0),
-        "friction_coefficient": loads.film_at.friction(contact, motion),
-        **as_columns(reported, roughness),
-    }
-    return MeshTable(
-        grid=cycle.grid,
-        path=cycle.path,
-        in_contact=cycle.in_contact,
-        **shared_load_columns(teeth, loads.shared, loads.springs, force_law=force_law),
-        gear_pair=pair,
-        pinion_speed=float(pinion_speed),
-        pinion_torque=float(pinion_torque),
-        composite_roughness=roughness,
-        stiffness_model=settings.stiffness_model,
-        friction_law=settings.friction_law,
-        film_model=settings.film_model,
-        film_stiffness_kind=settings.film["stiffness"],
-        **_spread(columns, cycle.in_contact),
-    )
+    return LoadedMesh(pair, settings, cycle, pairs, motion, teeth, loads, *operation, force_law)
 
 
 def _steps(pair: SpurPair, model: str) -> int:
@@ -202,7 +261,7 @@ def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
 
 def _spread(known: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
     """Put the values of the touching pairs in their places, with zeros elsewhere."""
-    columns: dict[str, Any] = dict.fromkeys(FILM_COLUMNS)
+    columns: dict[str, Any] = dict.fromkeys((*FILM_COLUMNS, *MIXED_COLUMNS))
     for name, values in known.items():
         columns[name] = np.zeros(in_contact.shape)
         columns[name][in_contact] = values

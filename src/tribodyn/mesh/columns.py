@@ -8,10 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
+from tribodyn.ehl import lubrication_regime
 from tribodyn.mesh.gears import COORDINATES, GearData, Gears, NoGears
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
+
+#: Columns that a film model may fill, and those that follow from the film and the friction law.
+FILM_COLUMNS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
+MIXED_COLUMNS = ("film_load_share", "asperity_friction_coefficient")
 
 
 @record
@@ -100,6 +105,11 @@ class MeshColumns(Record):
     unloaded_transmission_error : array (n,) [m] or None
         Transmission error without load that is no part of the force law, taken off the
         compression.
+    film_load_share : array (n, pairs) or None
+        Part of the load of the pair on its film: as the friction law has it, or that of
+        :func:`tribodyn.ehl.film_load_share` at the film ratio.
+    asperity_friction_coefficient : array (n, pairs) or None
+        Part of the friction coefficient that the asperities cause, where the friction law tells.
     """
 
     grid: PhaseGrid
@@ -142,6 +152,8 @@ class MeshColumns(Record):
     direction: Array = field(default_factory=lambda: np.zeros(0))
     friction_direction: Array | None = quantity("knot", "pair", "coordinate", default=None)
     unloaded_transmission_error: Array | None = quantity("knot", default=None)
+    film_load_share: Array | None = quantity("knot", "pair", default=None)
+    asperity_friction_coefficient: Array | None = quantity("knot", "pair", default=None)
 
     def __post_init__(self) -> None:
         if self.gears is not None:
@@ -213,6 +225,13 @@ class MeshColumns(Record):
         """Secant stiffness of all pairs together, tip corners included (n,) [N/m]."""
         known = self.stiffness.sum(axis=1)
         return np.asarray(known + known * self.corner_share.sum(axis=1) / self.load_share.sum(1))
+
+    @property
+    def lubrication_regime(self) -> Array | None:
+        """Regime of each pair: 0 boundary, 1 mixed, 2 full film; NaN where there is no film."""
+        if self.film_ratio is None:
+            return None
+        return np.where(self.in_contact, lubrication_regime(self.film_ratio), np.nan)
 
     @property
     def friction_sum(self) -> Array:

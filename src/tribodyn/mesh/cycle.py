@@ -207,23 +207,7 @@ def lobatto_points(count: int) -> Array:
 
 
 def lobatto_polynomial(knots: Array, at: Array) -> Array:
-    """Weights of the values at Gauss-Lobatto points in the polynomial through them.
-
-    Parameters
-    ----------
-    knots : array (count,)
-        Points of :func:`lobatto_points`, shifted and scaled.
-    at : array (m,)
-        Where the polynomial is evaluated.
-
-    Returns
-    -------
-    array (m, count)
-
-    Notes
-    -----
-    Source: barycentric formula, Berrut and Trefethen (2004).
-    """
+    """Weights of values at Lobatto points; barycentric formula, Berrut and Trefethen (2004)."""
     weight = (-1.0) ** np.arange(knots.size)
     weight[[0, -1]] *= 0.5
     distance = at[:, None] - knots

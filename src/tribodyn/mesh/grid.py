@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
@@ -58,6 +58,12 @@ class PhaseGrid:
         middles = 0.5 * (np.array(self.event_phases) + ends)
         return np.repeat(middles, np.array(self.intervals) + 1)
 
+    @cached_property
+    def _layout(self) -> tuple[Array, Index, Array, Index]:
+        """Begin, intervals, width and first knot of each segment."""
+        starts, counts = np.array(self.event_phases), np.array(self.intervals)
+        return starts, counts, np.diff(starts, append=1.0), np.cumsum(counts + 1) - counts - 1
+
     def mean(self, values: Array) -> Array:
         """Mean over the cycle by Simpson's rule in each segment.
 
@@ -100,27 +106,14 @@ class PhaseFunction:
     values: Array
 
     def __call__(self, phase: Array | float) -> Array:
-        """Interpolate with the cubic through four knots of one segment.
-
-        Parameters
-        ----------
-        phase : float or array
-            Mesh phase, taken modulo one. Exactly on an event the value after it is returned,
-            below it the value before it.
-
-        Returns
-        -------
-        array
-            Shape of ``phase`` followed by the further shape of the values.
-        """
-        grid, folded = self.grid, np.mod(np.asarray(phase, dtype=float), 1.0)
-        starts = np.array((*grid.event_phases, 1.0))
-        segment = np.searchsorted(starts[:-1], folded, side="right") - 1
-        count = np.array(grid.intervals)[segment]
-        width = (starts[1:] - starts[:-1])[segment]
-        position = (folded - starts[segment]) / width * count
-        left = np.clip(position.astype(int) - 1, 0, count - 3)
-        first = np.array([part.start for part in grid.segments])[segment] + left
+        """Interpolate with the cubic through four knots; on an event the value after it."""
+        folded = np.mod(np.asarray(phase, dtype=float), 1.0)
+        starts, counts, widths, knots = self.grid._layout
+        segment = np.searchsorted(starts, folded, side="right") - 1
+        count = counts[segment]
+        position = (folded - starts[segment]) / widths[segment] * count
+        left = np.minimum(np.maximum(position.astype(int) - 1, 0), count - 3)
+        first = knots[segment] + left
         u = position - left
         weights = (
             (1.0 - u) * (2.0 - u) * (3.0 - u) / 6.0,
@@ -228,18 +221,7 @@ class MonotonePhaseFunction:
         ]
 
     def __call__(self, phase: Array | float) -> Array:
-        """Interpolate.
-
-        Parameters
-        ----------
-        phase : float or array
-            Mesh phase, taken modulo one. Exactly on an event the value after it is returned.
-
-        Returns
-        -------
-        array
-            Shape of ``phase`` followed by the further shape of the values.
-        """
+        """Interpolate; exactly on an event the value after it is returned."""
         folded = np.mod(np.asarray(phase, dtype=float), 1.0)
         segment = np.searchsorted(np.array(self.grid.event_phases), folded, side="right") - 1
         found = np.empty(folded.shape + self.values.shape[1:])

@@ -104,6 +104,7 @@ def tribological_contact(
         oil_density=pairs.lubricant.density,
         film_thickness=smallest_film(films),
         pitch=pitch,
+        central_film=films.central_film,
     )
 
 
@@ -221,9 +222,7 @@ def _settle_together(
     before, step = share, np.zeros(share.shape)
     slope = np.ones(share.shape)
     for _ in range(_STEPS):
-        shared = teeth.shared_load(
-            _springs(teeth, np.maximum(share, teeth.least_share), film_at)
-        )
+        shared = teeth.shared_load(_springs(teeth, np.maximum(share, teeth.least_share), film_at))
         earlier, step = step, shared.share - share
         if np.abs(step).max() < max(enough, _SETTLED_TOGETHER):
             return shared

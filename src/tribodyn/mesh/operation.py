@@ -342,8 +342,8 @@ def comprehensive_stiffness(
         Options of the film model; ``kind`` replaces its ``stiffness``.
     kind : str
         ``"approach"``, ``"tangent"`` or ``"secant"``: the film of each pair in series with its
-        teeth, at the load that it then carries. ``"seed"``: as "Prediction of Vibration Characteristics in Spur Gear
-        Drives Considering Elastohydrodynamic Lubrication" prints it.
+        teeth, at the load that it then carries. ``"seed"``: as "Prediction of Vibration
+        Characteristics in Spur Gear Drives Considering Elastohydrodynamic Lubrication" prints it.
     pinion_speed : float or array (s,) [rad/s]
         Speeds of the pinion in the running sense.
     pinion_torque : float or array (t,) [N*m]

@@ -14,7 +14,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import whole
-from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS, MeshColumns
 from tribodyn.mesh.gears import COORDINATES, NoGears, read_pair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.nomenclature import QUANTITIES
@@ -30,7 +30,7 @@ FORMAT, FORMAT_WITHOUT_GEARS = "tribodyn mesh table 3", "tribodyn mesh table 4"
 #: Tables of independent pairs, as they were written before; the first without a film in series.
 _EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
 #: Films that are not known everywhere, and all that a table of another program has to know.
-_FILMS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
+FILMS = (*FILM_COLUMNS, *MIXED_COLUMNS)
 _OF_THE_FORCE = (
     "stiffness", "tooth_stiffness", "corner_share", "static_transmission_error", "ramp_deflection",
     "mesh_stiffness_tangent", "ramp_stiffness", "load_share", "normal_force", "sliding_direction",
@@ -106,7 +106,7 @@ def _check(values: Mapping[str, Any]) -> None:
         elif not isinstance(value, np.ndarray) or not value.size:
             raise ValueError(f"{name} is missing")
         else:
-            lacks = name in _FILMS or (foreign and name not in _OF_THE_FORCE)
+            lacks = name in FILMS or (foreign and name not in _OF_THE_FORCE)
             _check_column(name, value, labels.dims, sizes, lacks)
 
 

@@ -27,6 +27,7 @@ class MeshTable(MeshColumns):
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
         "mesh_stiffness": Labels(("knot",)),
+        "lubrication_regime": Labels(("knot", "pair")),
         "friction_sum": Labels(("knot",)),
         "friction_moment_pinion": Labels(("knot",)),
         "friction_moment_wheel": Labels(("knot",)),
@@ -42,6 +43,12 @@ class MeshTable(MeshColumns):
     def mean_friction_coefficient(self) -> float:
         """Mean over the cycle of the friction coefficient, weighted with the load share."""
         return float(self.grid.mean(self.by_share(self.friction_coefficient)))
+
+    @property
+    def mean_asperity_friction_coefficient(self) -> float | None:
+        """Part of the mean friction coefficient from asperities; None where no law tells it."""
+        part = self.asperity_friction_coefficient
+        return None if part is None else float(self.grid.mean(self.by_share(part)))
 
     @property
     def mean_friction_power(self) -> float:
@@ -232,6 +239,9 @@ class MeshTable(MeshColumns):
     plot_friction = drawn("friction", "Draw the friction of a tooth pair over the path of contact.")
     plot_film = drawn(
         "film", "Draw the oil film of a tooth pair and its ratio to the roughness over the path."
+    )
+    plot_lubrication = drawn(
+        "lubrication", "Draw lubrication regime, load share of the film and parts of the friction."
     )
     plot_film_stiffness = drawn(
         "film_stiffness", "Draw the stiffness of the oil film and of the teeth over the path."

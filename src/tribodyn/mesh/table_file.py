@@ -20,6 +20,7 @@ from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.storage import (
     DIRECTIONS,
     FACTS,
+    FILMS,
     OF_CONTACTS,
     OF_RAMPS,
     OF_THE_MESH,
@@ -31,8 +32,7 @@ from tribodyn.stored import file_kind, plain_number, read_bytes, read_dataset
 from tribodyn.types import Array
 
 #: Columns that only tell of the contact and may hold NaN.
-_FILMS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
-_TOLD = (*_FILMS, "hertz_pressure", "path")
+_TOLD = (*FILMS, "hertz_pressure", "path")
 _SPEEDS = ("sliding_speed", "entrainment_speed")
 _FRICTION = ("sliding_direction", "pinion_curvature_radius", "wheel_curvature_radius")
 _HEADER = re.compile(r"([a-z_]+?)(?:_([1-9][0-9]{0,2}))?\s*(?:\[([^\]]*)\])?")
@@ -145,7 +145,7 @@ class TableFile:
         for name in ("friction_coefficient", *_FRICTION):
             columns.setdefault(name, np.zeros(shape))
         for name in names.intersection(OF_CONTACTS):
-            columns.setdefault(name, np.full(shape, np.nan) if name not in _FILMS else None)  # type: ignore[arg-type]
+            columns.setdefault(name, np.full(shape, np.nan) if name not in FILMS else None)  # type: ignore[arg-type]
         columns.setdefault("friction_direction", None)  # type: ignore[arg-type]
         columns.setdefault("unloaded_transmission_error", None)  # type: ignore[arg-type]
         most = self.facts.get("maximum_single_pair_stiffness", float(columns["stiffness"].max()))

@@ -54,8 +54,7 @@ class TangentTables:
         free = [contact.damping_in_gap for contact in system.contacts]
         self.in_gap = np.array(free, dtype=bool)
         c = self.coordinates
-        inverse = np.linalg.inv(c.lower)
-        place, speed = inverse.T @ c.elastic / c.rate, inverse.T @ c.moving
+        place, speed = c.inverse.T @ c.elastic / c.rate, c.inverse.T @ c.moving
         self.size = place.shape[1] + speed.shape[1]
         still = np.zeros((*nodes.stiffness.shape, speed.shape[1]))
         self._rigid = np.zeros((self.size, self.size))

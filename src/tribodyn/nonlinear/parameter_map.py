@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.dynamics.equations.program import compile_system
-from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+from tribodyn.dynamics.equations.step_limit import LIMIT, rate_on_grid
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, require_positive
@@ -215,9 +214,7 @@ def _judged(
 def _rates(systems: list[System], factors: dict[str, Array]) -> Array:
     """Fastest motions [rad/s]; a stiffness factor above one can raise it by its root at most."""
     rates = {id(system): system for system in systems}
-    fastest = {
-        key: largest_rate(system, compile_system(system, _LOOK)[1]) for key, system in rates.items()
-    }
+    fastest = {key: rate_on_grid(system, _LOOK) for key, system in rates.items()}
     rate = np.array([fastest[id(system)] for system in systems])
     for name, power in (("stiffness_scale", 0.5), ("damping_scale", 1.0)):
         if name in factors:

@@ -9,10 +9,12 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
-from tribodyn.plot.film.operation import film_over_operation
+from tribodyn.plot.film.lubrication import lubrication
+from tribodyn.plot.film.operation import film_over_operation, lubrication_map
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
+from tribodyn.plot.gear.hypoid_blank import hypoid_blank
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
@@ -24,6 +26,7 @@ from tribodyn.plot.mesh.table import (
     static_transmission_error,
 )
 from tribodyn.plot.motion.courses import acceleration, bearing_force, mesh_force, transmission_error
+from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
 from tribodyn.plot.motion.sweeps import speed_sweep, sweep
@@ -31,6 +34,7 @@ from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
+from tribodyn.plot.signals.recorded import order_spectrum, recording, tracked_orders
 from tribodyn.plot.signals.run_up import run_up, run_up_map
 
 __all__ = [
@@ -58,22 +62,30 @@ __all__ = [
     "force_law",
     "forced_response",
     "friction",
+    "friction_claims",
+    "friction_effect",
+    "friction_harmonics",
     "gear_pair",
     "harris_map",
+    "hypoid_blank",
     "line_contact",
     "load_sharing",
     "loaded_contact",
     "loaded_sharing",
+    "lubrication",
+    "lubrication_map",
     "lyapunov",
     "mesh_deformation",
     "mesh_force",
     "mesh_stiffness",
     "mode_shapes",
     "order_map",
+    "order_spectrum",
     "parameter_map",
     "path_of_contact",
     "phase_portrait",
     "poincare",
+    "recording",
     "run_up",
     "run_up_map",
     "spectrogram",
@@ -83,6 +95,7 @@ __all__ = [
     "static_transmission_error",
     "sweep",
     "tip_relief_map",
+    "tracked_orders",
     "transmission_error",
     "waterfall",
 ]

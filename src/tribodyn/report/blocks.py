@@ -19,6 +19,7 @@ SECTIONS = (
     "static_transmission_error",
     "friction",
     "film",
+    "lubrication",
     "film_pressure",
     "film_stiffness",
     "mesh_force",

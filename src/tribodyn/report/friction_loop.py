@@ -20,25 +20,7 @@ class Compared:
 
 
 def compared_friction(summary: Mapping[str, float]) -> list[Compared]:
-    """Put the comparison with nominal friction into words.
-
-    Parameters
-    ----------
-    summary : mapping
-        Names and SI values.
-
-    Returns
-    -------
-    list of Compared
-        Empty where friction keeps to the nominal load.
-
-    Examples
-    --------
-    >>> (row,) = compared_friction({"peak_mesh_force": 2020.0,
-    ...     "peak_mesh_force_nominal_friction": 2000.0})
-    >>> row.own.shown, row.nominal.shown, row.change
-    ('2020', '2000', '+1.000 %')
-    """
+    """Put the comparison with nominal friction into words."""
     found = []
     for name, nominal in summary.items():
         own = name.removesuffix(_ENDING)

@@ -192,6 +192,44 @@ def write_study_report(
     return _write(Path(path), case, page)
 
 
+@report_of("FrictionExperiment")
+def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
+    """Write the claims and figures of a friction experiment to a file.
+
+    Parameters
+    ----------
+    found : FrictionExperiment
+        What :func:`tribodyn.friction_experiment` returns.
+    path : path
+        File to write; an existing one is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    figures = (plot.friction_effect, plot.friction_claims, plot.friction_harmonics)
+    blocks = [
+        drawn_block(each.name, each.heading, each(found), each.caption_of(found))
+        for each in figures
+        if not each.missing(found)
+    ]
+    failed = dict.fromkeys(point.failed for point in found.points if point.failed)
+    page = _Page(
+        kind="friction experiment", lead=found.lead, varied=["gears.driver", "friction.law",
+        "gears.composite_roughness"], blocks=blocks,
+        cards=[(claim.case, claim.verdict) for claim in found.claims], notice_heading="Take care",
+        notices=[*failed], head=found.CLAIM_HEAD, rows=list(found.claim_rows()),
+        more="The figures of every steady state are in sweep.csv and sweep.nc.",
+    )  # fmt: skip
+    return _write(Path(path), found.case, page)
+
+
 def _headed(words: str, unit: str) -> str:
     text = words.replace("_", " ")
     return f"{text[:1].upper()}{text[1:]} [{unit}]" if unit else f"{text[:1].upper()}{text[1:]}"

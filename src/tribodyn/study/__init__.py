@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.studies.bifurcation import bifurcation
+    from tribodyn.study.studies.friction_experiment import friction_experiment
     from tribodyn.study.studies.modes import campbell, natural_modes
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.study.studies.speed_sweep import speed_sweep
@@ -34,6 +35,7 @@ __all__ = [
     "campbell",
     "comprehensive_stiffness",
     "film_over_operation",
+    "friction_experiment",
     "harris_map",
     "loaded_contact",
     "natural_modes",
@@ -52,6 +54,7 @@ _HOMES = {
     "campbell": "studies.modes",
     "comprehensive_stiffness": "studies.static",
     "film_over_operation": "studies.static",
+    "friction_experiment": "studies.friction_experiment",
     "harris_map": "studies.static",
     "loaded_contact": "pipeline.loaded_teeth",
     "natural_modes": "studies.modes",

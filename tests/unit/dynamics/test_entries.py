@@ -60,6 +60,15 @@ def test_every_entry_is_looked_at(name):
         _orbit(frictions=[LoadFriction([1.0], jumping, 1.0)])
 
 
+def test_a_finer_step_is_looked_at_again():
+    """A pulse between the nodes of the first grid is found by one that is fine enough."""
+    pulse = Contact([1.0], lambda phase: 9.0 + ((phase > 0.5019) & (phase < 0.5023)))
+    system = System([[1.0]], [[1.0]], [[0.0]], [1.0], [pulse])
+    assert steady_state(system, 1.0, steps=64).converged
+    with pytest.raises(InputError, match=r"jumps by 1 at the mesh phase 0.5019"):
+        steady_state(system, 1.0, steps=4096)
+
+
 def test_functions_that_are_none_of_the_phase():
     generator, calls = np.random.default_rng(1), []
 

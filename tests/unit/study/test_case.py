@@ -218,7 +218,7 @@ def test_a_line_of_a_written_case_is_toml_when_its_comment_sign_goes(case: Any) 
     for line in lines:
         assert tomllib.loads(line.removeprefix("# "))
     told = {line.split()[1]: line for line in lines}
-    assert told["inlet_heating"].endswith("belongs to law = ehl")
+    assert told["inlet_heating"].endswith("belongs to law = ehl, mixed-solved")
     assert told["nodes"].endswith("belongs to model = newton, multigrid")
 
 

@@ -92,7 +92,12 @@ def test_a_film_below_the_roughness_is_told() -> None:
     steel = np.full((2, 1), 1e9)
     touching = np.ones((2, 1), dtype=bool)
     mesh: Any = SimpleNamespace(
-        hertz_pressure=steel, film_ratio=None, in_contact=touching, gears=None
+        hertz_pressure=steel,
+        film_ratio=None,
+        in_contact=touching,
+        gears=None,
+        film_load_share=None,
+        asperity_friction_coefficient=None,
     )
     assert mesh_cautions(mesh) == ()
     mesh.film_ratio = np.array([[1.2], [1.01]])
@@ -101,6 +106,13 @@ def test_a_film_below_the_roughness_is_told() -> None:
     (told,) = mesh_cautions(mesh)
     assert told.code == "mixed-lubrication"
     assert "falls to 0.43" in told.message
+    # 1.21 0.43^0.64/(1 + 0.37 0.43^1.26) is 0.625.
+    assert "up to 37% of the load" in told.message
+    assert 'friction.law = "mixed"' in told.message
+    mesh.film_load_share, mesh.asperity_friction_coefficient = np.array([[1.0], [0.8]]), touching
+    (told,) = mesh_cautions(mesh)
+    assert "up to 20% of the load" in told.message
+    assert "friction" not in told.message
 
 
 def test_zeros_without_contact_are_no_thin_film() -> None:

@@ -88,9 +88,9 @@ def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
             raise KeyboardInterrupt
         return computed(changed)
 
-    def told(case, axes, values):
-        found = point(case, axes, values)
-        place = axes[0].values.index(values[0])
+    def told(compute, values):
+        found = point(compute, values)
+        place = round((values[0] * 30.0 / np.pi - 1000.0) / 125.0)
         if place < 2:
             # The point counts as finished a moment after this.
             threading.Timer(0.2, ready[place].set).start()

@@ -69,7 +69,7 @@ def step_share(
 ) -> float:
     """Error of a step over the tolerance of the motion."""
     system, nodes = compiled.system, compiled.nodes
-    inverse = np.linalg.inv(np.asarray(system.mass))
+    inverse = system.inverse_mass
     longest = 0.0
     pairs = (
         (stiffness_scale * nodes.stiffness, system.stiffness),

@@ -111,7 +111,7 @@ def _noise(system: System, nodes: Nodes, program: Program) -> Array:
     """Rounding of each column: of numerical derivatives in phase, and of sums that cancel."""
     rows = program.rows.reshape(*nodes.phase.shape, -1)
     noise = np.zeros(rows.shape[-1])
-    inverse = np.linalg.inv(np.asarray(system.mass))
+    inverse = system.inverse_mass
     size = np.abs(inverse)
     pushes = (nodes.force_direction, nodes.direction, nodes.force_direction - nodes.direction)
     load = np.einsum("ik,rsk->rsi", inverse, nodes.force)

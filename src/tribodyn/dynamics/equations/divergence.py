@@ -8,8 +8,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.nodes import Nodes, sampled
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError
@@ -287,8 +286,7 @@ def adaptive_failure(
     kind = "position" if worst < n else "velocity"
     if not np.isfinite(state[worst]) or size[worst] > 1e9:
         steps = max(_SAMPLE, 2 * len(system_events(system)))
-        _, nodes, _ = compile_system(system, steps)
-        cause, remedy = probable_cause(system, nodes, 0.0, factors)
+        cause, remedy = probable_cause(system, sampled(system, steps)[1], 0.0, factors)
         return ComputationError(
             f"the motion grew beyond all bounds: the {kind} of {name} is {state[worst]:.3g}",
             where=where,

@@ -14,9 +14,10 @@ from tribodyn.types import Array
 #: A constant, or a vectorized function of the mesh phase in [0, 1).
 Entry = float | ArrayLike | Callable[[Array], Any]
 
-#: Steps looked at for a jump by each of two signs; how often they are halved, and how often before
-#: a bend has to stay; part of a bend that stays at a jump; least jump over the size of the entry.
-_SUSPECTS, _CUTS, _FREE, _KEPT, _JUMP = 8, 16, 4, 0.8, 1e-7
+#: Steps looked at for a jump by each of two signs; parts into which they are cut, how often, and
+#: how often before a bend has to stay; part of a bend that stays at a jump; least jump over the
+#: size of the entry.
+_SUSPECTS, _PARTS, _CUTS, _FREE, _KEPT, _JUMP = 8, 16, 4, 1, 0.4, 1e-7
 #: Difference of two calls with the same phases, over the size of the entry, that is rounding.
 _ROUNDING = 1e-9
 
@@ -86,7 +87,7 @@ def refuse_chance(where: str, entry: Any, phases: Array, values: Array) -> None:
 def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
     """Refuse a function that jumps between events; ``nodes`` (s, 3), ``values`` (s, 3, size).
 
-    The bend over a jump stays when the step is cut, that of a kink halves, others fall faster.
+    The bend over a jump stays when the step is cut, that of a kink falls with it, others faster.
     """
     size = np.abs(values).max(axis=(0, 1)) + 1e-300
     bend = (values[:, 0] - 2.0 * values[:, 1] + values[:, 2]) / size
@@ -98,7 +99,7 @@ def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
     for cut in range(_CUTS):
         if not low.size:
             return
-        at = low[:, None] + (high - low)[:, None] * np.arange(5) / 4.0
+        at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 2 * _PARTS + 1)
         flat = entry_values(where, entry, at.reshape(-1), size.size)
         parts = (flat / size).reshape(*at.shape, -1)
         bends = np.abs(parts[:, :-2] - 2.0 * parts[:, 1:-1] + parts[:, 2:]).max(axis=2)

@@ -103,8 +103,8 @@ def _shares(lengths: Array, steps: int) -> Index:
 class RowEvaluator:
     """Evaluates entries on the three nodes of every step, one-sidedly at events."""
 
-    def __init__(self, grid: Grid) -> None:
-        self.grid = grid
+    def __init__(self, grid: Grid, *, checks: bool = True) -> None:
+        self.grid, self.checks = grid, checks
         nodes = np.stack((grid.left, grid.left + 0.5 * grid.width, grid.left + grid.width), axis=1)
         self._low = grid.segment_left[:, None] + _SIDE
         self._high = grid.segment_right[:, None] - _SIDE
@@ -114,7 +114,7 @@ class RowEvaluator:
         """Values on the nodes, of an entry that jumps at events only."""
         flat = entry_values(where, entry, self.nodes.reshape(-1), size)
         values = flat.reshape(*self.nodes.shape, size)
-        if varies(entry):
+        if self.checks and varies(entry):
             refuse_chance(where, entry, self.nodes.reshape(-1), flat)
             refuse_jumps(where, entry, self.nodes, values)
         return values

@@ -100,7 +100,7 @@ def forces(
         drag = friction_force(system, rows.friction_coefficients, contact)
         rub = rub + np.einsum("...fi,...f->...i", rows.friction_direction, drag)
     total = total - scales.friction * rub
-    return Forces(d, contact, side, total @ np.linalg.inv(np.asarray(system.mass)).T)
+    return Forces(d, contact, side, total @ system.inverse_mass.T)
 
 
 def quadratic_weights(tau: Any) -> tuple[Any, Any, Any]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
+from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, system_events
 from tribodyn.dynamics.equations.load_friction import friction_coefficients, friction_directions
 from tribodyn.dynamics.equations.system import System, no_direction
 from tribodyn.errors import InputError
@@ -39,8 +39,9 @@ class Nodes(NamedTuple):
 
 
 def evaluate_nodes(system: System, grid: Grid) -> Nodes:
-    """Evaluate every entry on a grid."""
-    rows = RowEvaluator(grid)
+    """Evaluate every entry on a grid; what was checked on one half as fine is not checked again."""
+    widest = float(grid.width.max())
+    rows = RowEvaluator(grid, checks=widest < 0.49 * system._checked)
     size = system.size
     contacts = tuple(system.contacts)
 
@@ -86,7 +87,15 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         friction_coefficients=friction_coefficients(system, rows),
     )
     refuse_falling_force(nodes.phase, nodes.stiffness, nodes.gap, nodes.direction, nodes.error)
+    if grid.width.sum() > 0.99:
+        object.__setattr__(system, "_checked", min(widest, system._checked))
     return nodes
+
+
+def sampled(system: System, steps: int) -> tuple[Grid, Nodes]:
+    """The grid of a system with as many steps, and its rows."""
+    grid = build_grid(system_events(system), steps)
+    return grid, evaluate_nodes(system, grid)
 
 
 def refuse_falling_force(

@@ -110,11 +110,11 @@ class _Terms:
         self.kept.append(given)
         return given
 
-    def term(self, values: Array | float, slot: int) -> int:
+    def term(self, values: Array, slot: int) -> int:
         """Append a term unless it is zero throughout; returns how many were appended."""
-        if not self.keeps(np.any(values)):
+        if not self.keeps(values.any()):
             return 0
-        self.factor(np.asarray(values))
+        self.factor(values)
         self.slots.append(slot)
         return 1
 
@@ -156,7 +156,7 @@ def _coordinate_terms(
     system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
 ) -> tuple[list[int], Mask]:
     """Number of terms of every coordinate, and whether its load varies."""
-    inverse = np.linalg.inv(np.asarray(system.mass))
+    inverse = system.inverse_mass
     along = nodes.direction if split else nodes.force_direction
     rub = nodes.friction_direction
     if split:
@@ -203,7 +203,7 @@ def build_program(
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)
     reads = np.concatenate([relative + moving * buffer * 2 * size for buffer in range(3)])
-    load = np.linalg.inv(np.asarray(system.mass)) @ nodes.force[0, 0]
+    load = system.inverse_mass @ nodes.force[0, 0]
     return Program(
         code=np.array([size, contacts, len(factors), relative.size, *lists, *own], dtype=np.int64),
         reads=reads,
@@ -217,6 +217,5 @@ def build_program(
 
 def lane_load(program: Program, system: System, extra: Any, factor: Any = 1.0) -> Array:
     """Constant acceleration of each lane: the constant part of the load plus an extra force."""
-    inverse = np.linalg.inv(np.asarray(system.mass))
     own = np.multiply.outer(np.asarray(factor, dtype=float), program.constant_load)
-    return np.asarray(own + np.asarray(extra, dtype=float) @ inverse.T)
+    return np.asarray(own + np.asarray(extra, dtype=float) @ system.inverse_mass.T)

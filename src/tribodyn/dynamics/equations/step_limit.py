@@ -15,8 +15,7 @@ from tribodyn.checks import require_number
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.nodes import Nodes, sampled
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import (
     InputError,
@@ -56,7 +55,7 @@ def _rates(system: System, nodes: Nodes, rows: Index, stages: Index, factors: Ar
     outer = np.einsum("...mji,mjk->...mjik", along + rub * (push - along), along)
     stiffness = np.einsum("mj,...mjik->...mik", nodes.stiffness[rows, stages], outer)
     damping = np.einsum("mj,...mjik->...mik", nodes.damping[rows, stages], outer)
-    inverse = np.linalg.inv(np.asarray(system.mass))
+    inverse = system.inverse_mass
     elastic = inverse @ (spring * stiffness + np.asarray(system.stiffness))
     viscous = inverse @ (damper * damping + np.asarray(system.damping))
     return np.asarray(np.abs(state_roots(elastic, viscous)).max(axis=(-2, -1)))
@@ -108,8 +107,17 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
     """
     require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    _, nodes, _ = compile_system(system, _FEWEST)
-    needed = largest_rate(system, nodes) / (_ACCURATE * mesh_frequency)
+    return accurate_steps(rate_on_grid(system), mesh_frequency)
+
+
+def rate_on_grid(system: System, steps: int = _FEWEST) -> float:
+    """Largest modulus of an eigenvalue, looked up on a grid of as many steps."""
+    return largest_rate(system, sampled(system, steps)[1])
+
+
+def accurate_steps(rate: float, mesh_frequency: float) -> int:
+    """Steps per mesh cycle that follow a motion accurately."""
+    needed = rate / (_ACCURATE * mesh_frequency)
     return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), _FEWEST), _MOST))
 
 

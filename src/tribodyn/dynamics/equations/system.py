@@ -219,7 +219,8 @@ class System:
     names: Sequence[str] = ()
     balance: ArrayLike | None = None
     frictions: Sequence[LoadFriction] = ()
-    _checked: bool = field(default=False, init=False, repr=False, compare=False)
+    #: Widest step over a mesh cycle when the entries were looked at for jumps and chance.
+    _checked: float = field(default=np.inf, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         matrices = {name: _matrix(name, getattr(self, name)) for name in _MATRICES}
@@ -265,6 +266,11 @@ class System:
     def size(self) -> int:
         """Number of coordinates."""
         return int(np.asarray(self.mass).shape[0])
+
+    @cached_property
+    def inverse_mass(self) -> Array:
+        """Inverse of the mass matrix, (n, n) [1/kg or 1/(kg*m^2)]."""
+        return np.linalg.inv(np.asarray(self.mass))
 
     def __repr__(self) -> str:
         """One line."""

@@ -18,8 +18,7 @@ from tribodyn.dynamics.equations.load_friction import (
     friction_tangent,
     push_with_friction,
 )
-from tribodyn.dynamics.equations.nodes import Nodes, force_laws, lowest_of_each_law
-from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.dynamics.equations.nodes import Nodes, force_laws, lowest_of_each_law, sampled
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_between
 from tribodyn.types import Array, Index, Mask
@@ -81,7 +80,7 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
 def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
     """Rows of the system with weights of sum 1: over the whole cycle, or at one phase."""
     if phase == "mean":
-        nodes = compile_system(system, max(_STEPS, 4 * len(system_events(system))))[1]
+        _, nodes = sampled(system, max(_STEPS, 4 * len(system_events(system))))
         return nodes, nodes.weight
     if isinstance(phase, str):
         raise InputError(
@@ -91,7 +90,7 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
     require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")
     contacts = tuple(replace(contact, events=(*contact.events, at)) for contact in system.contacts)
     marked = replace(system, contacts=contacts)
-    grid, nodes, _ = compile_system(marked, 4 * len(system_events(marked)))
+    grid, nodes = sampled(marked, 4 * len(system_events(marked)))
     row = int(np.argmin(np.abs(grid.left - at)))
     single = Nodes(*(part[row : row + 1, :1] for part in nodes))
     return single, np.ones((1, 1))

@@ -1,4 +1,4 @@
-"""Anderson acceleration of a fixed-point iteration."""
+"""Anderson acceleration of a fixed-point iteration: type II of Fang and Saad (2009), (24)."""
 
 from __future__ import annotations
 
@@ -17,40 +17,7 @@ def anderson(
     limit: int,
     depth: int = 8,
 ) -> tuple[Array, Array, int]:
-    """Iterate ``y = function(y)`` to a fixed point.
-
-    Parameters
-    ----------
-    function : callable
-        Maps (m,) to (m,).
-    start : (m,) array
-        First guess.
-    tolerance : float
-        Stop when ``|function(y) - y| <= tolerance * |y|``.
-    limit : int
-        Evaluations at most.
-    depth : int
-        Earlier iterates that are combined.
-
-    Returns
-    -------
-    tuple of (m,) array, (m,) array and int
-        Last point, its residual ``function(y) - y``, evaluations used. The best point seen is
-        returned if the tolerance is not met.
-
-    Notes
-    -----
-    Type II of Fang and Saad (2009), equation (24): the next point is the combination of the last
-    images whose combined residual is least. A step that multiplies the residual tenfold clears
-    the memory.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> point, _, count = anderson(np.cos, np.array([0.5]), tolerance=1e-12, limit=50)
-    >>> round(float(point[0]), 10), count < 12
-    (0.7390851332, True)
-    """
+    """Iterate ``y = function(y)`` to a fixed point: the best one, its residual, evaluations."""
     y = start.copy()
     points: list[Array] = []
     residuals: list[Array] = []

@@ -9,6 +9,7 @@ the free motion and the rest do not exchange momentum.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -31,6 +32,11 @@ class OrbitCoordinates:
     free: Array  #: free motions: neither position nor velocity matters
     rate: float  #: weight of positions against velocities [rad/s]
 
+    @cached_property
+    def inverse(self) -> Array:
+        """Inverse of ``lower``."""
+        return np.asarray(np.linalg.inv(self.lower))
+
     def reduce(self, state: Array) -> Array:
         """State (..., 2 n) to reduced vector (..., e + v)."""
         size = self.lower.shape[0]
@@ -39,11 +45,10 @@ class OrbitCoordinates:
 
     def expand(self, reduced: Array) -> Array:
         """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest."""
-        inverse = np.linalg.inv(self.lower)
         count = self.elastic.shape[1]
         q = reduced[..., :count] @ self.elastic.T / self.rate
         v = reduced[..., count:] @ self.moving.T
-        return np.concatenate((q @ inverse, v @ inverse), axis=-1)
+        return np.concatenate((q @ self.inverse, v @ self.inverse), axis=-1)
 
     def free_velocity(self, state: Array) -> Array:
         """Velocity of the free motions, (..., r), in the mass metric."""

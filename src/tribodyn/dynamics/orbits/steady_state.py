@@ -173,7 +173,7 @@ def _finish(
             f"{np.abs(orbit.multipliers[0]):.6g}, limit 1. {_advice(mapping, apart)}",
             stacklevel=3,
         )
-    states, extra = mapping.record(orbit.point)
+    states, extra = mapping.without_drift(orbit.states.copy()), mapping.split(orbit.point)[1][0]
     cost = step_error(mapping, orbit, frequency) if converged else float("nan")
     if cost > STEP_LIMIT:
         warn("step-size", _told_step(mapping, cost), stacklevel=3)

@@ -66,7 +66,7 @@ class CycleMarcher:
         self.frequency, self.outputs, self.inertia = frequency, outputs, inertia
         self.size, self.contacts = system.size, len(system.contacts)
         self.coordinates: OrbitCoordinates = orbit_coordinates(first, lowest)
-        self.inverse = np.linalg.inv(np.asarray(system.mass))
+        self.inverse = system.inverse_mass
         lower, free = self.coordinates.lower, self.coordinates.free
         #: Free velocities of a velocity, and the velocity of one of them.
         self.down, self.up = lower @ free, free.T @ np.linalg.inv(lower)

@@ -15,9 +15,9 @@ import numpy as np
 
 from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.grid import Grid, system_events
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import Program, build_program, compile_on, compile_system
-from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes
+from tribodyn.dynamics.equations.program import Program, build_program
+from tribodyn.dynamics.equations.step_limit import LIMIT, rate_on_grid
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import (
     InputError,
@@ -108,9 +108,8 @@ class Tables:
         events = sorted({event for system in systems for event in system_events(system)})
         near = [i for i in range(1, len(events)) if events[i] - events[i - 1] < 1e-9]
         self.events = tuple(event for i, event in enumerate(events) if i not in near)
-        nodes = [compile_system(system, max(64, 2 * len(self.events)))[1] for system in systems]
-        pairs = zip(systems, nodes, strict=True)
-        self.rate = max(largest_rate(system, node) for system, node in pairs)
+        least = max(64, 2 * len(self.events))
+        self.rate = max(rate_on_grid(system, least) for system in systems)
         self._made: dict[int, Table] = {}
         self._refuse(lowest)
 
@@ -154,7 +153,7 @@ class Tables:
 
     def _make(self, steps: int) -> Table:
         grid = sampled_grid(self.events, steps, self.samples)
-        nodes = [compile_on(system, grid)[0] for system in self.systems]
+        nodes = [evaluate_nodes(system, grid) for system in self.systems]
         pairs = list(zip(self.systems, nodes, strict=True))
         programs = tuple(build_program(system, grid, node) for system, node in pairs)
         if len(programs) > 1:

@@ -133,7 +133,7 @@ def _reason(solution: SolvedContact) -> str:
     if solution.inlet == "flooded":
         return (
             f"With M = {solution.moes_load:.3g} the contact turns from rigid to elastic: there the "
-            "film hardly depends on the load. Take kind = \"approach\", which has no pole there"
+            'film hardly depends on the load. Take kind = "approach", which has no pole there'
         )
     return (
         f"The inlet at X = {solution._grid.X[0]:.3g} starves it: take the flooded inlet or an "

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.contact import effective_modulus
-from tribodyn.ehl import FILM_MODELS
+from tribodyn.ehl import FILM_MODELS, film_load_share
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import Problem, TribodynError, require_between
-from tribodyn.friction import TribologicalContact
+from tribodyn.friction import FrictionParts, TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.columns import FILM_COLUMNS
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.types import Array
@@ -25,10 +26,6 @@ if TYPE_CHECKING:
     from tribodyn.ehl import RoughnessProfile, TransientLineContact
     from tribodyn.gear import Material
     from tribodyn.lubricant import Lubricant
-
-
-#: Columns that a film model may fill.
-FILM_COLUMNS = ("central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness")
 
 
 def film_columns(
@@ -101,6 +98,22 @@ def as_columns(films: Films, composite_roughness: float) -> dict[str, Array]:
     if thickness is not None and composite_roughness > 0.0:
         known["film_ratio"] = thickness / composite_roughness
     return {name: values for name, values in known.items() if values is not None}
+
+
+def friction_columns(told: Array | FrictionParts, film_ratio: Array | None) -> dict[str, Array]:
+    """Friction with the parts that the law tells, or with the load share by the film ratio."""
+    if isinstance(told, FrictionParts):
+        return {
+            "friction_coefficient": told.coefficient,
+            "asperity_friction_coefficient": told.asperities,
+            "film_load_share": told.film_load_share,
+        }
+    columns = {"friction_coefficient": told}
+    if film_ratio is not None:
+        known = np.isfinite(film_ratio)
+        share = film_load_share(np.where(known, film_ratio, 0.0))
+        columns["film_load_share"] = np.where(known, share, np.nan)
+    return columns
 
 
 def smallest_film(films: Films) -> Array | None:

@@ -60,7 +60,7 @@ class Places(NamedTuple):
     @property
     def yielding_ones(self) -> Places:
         """Those from which the stiffness of the film is taken."""
-        return Places(*(values[..., self.yielding] for values in self))
+        return Places(**{n: getattr(self, n)[..., self.yielding] for n in self._fields})
 
     def joined(self, others: Places) -> Places:
         """Both together."""

@@ -19,7 +19,7 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.errors import quiet, warn
-from tribodyn.friction import LAWS, TribologicalContact
+from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.mesh.cycle import (
     MOST,
     MeshCycle,
@@ -47,6 +47,9 @@ from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Index, Mask
+
+#: Coefficients, with their parts where the law has them.
+Friction = Array | FrictionParts
 
 #: Distance from an event that tells its two sides apart [mesh cycles].
 _BESIDE = 1e-9
@@ -79,8 +82,10 @@ class FilmAt(Protocol):
     def warn_of_doubt(self) -> None:
         """Say where quantities are in doubt."""
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
-        """Friction coefficient of every pair in contact."""
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Friction:
+        """Friction of every pair in contact by the law of some settings, in parts if it has any."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,10 +112,11 @@ class FormulaFilm:
     def warn_of_doubt(self) -> None:
         """Say nothing: a formula is what it is."""
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Friction:
         """Ask the friction law."""
-        law, options = self.settings.friction_law, self.settings.friction_options
-        return LAWS[law](contact, **options)
+        return LAWS[settings.friction_law].told(contact, settings.friction_options)
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +211,7 @@ class SolvedPath:
 
     @cached_property
     def _distance(self) -> tuple[Array, Array]:
-        """Distance under the loads that were solved, and the power of the load by which it falls."""
+        """Distance under the solved loads, and the power of the load by which it falls."""
         path, zones, places = self.path, self.path.zone, self.places.yielding_ones
         factors = np.empty(zones.size)
         for zone in range(len(path.places.counts)):
@@ -253,12 +259,13 @@ class SolvedPath:
             stacklevel=6,
         )
 
-    def friction(self, contact: TribologicalContact, motion: Kinematics) -> Array:
+    def friction(
+        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+    ) -> Friction:
         """Friction of every pair; a law that shears the film knows it at solved places first."""
-        settings = self.path.settings
         if LAWS[settings.friction_law].needs_film:
-            return film_friction(self, motion)
-        return LAWS[settings.friction_law](contact, **settings.friction_options)
+            return film_friction(self, motion, settings)
+        return LAWS[settings.friction_law].told(contact, settings.friction_options)
 
 
 def film_of(
@@ -301,7 +308,7 @@ def film_of(
     )
 
 
-def film_friction(solved: SolvedPath, motion: Kinematics) -> Array:
+def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact) -> Friction:
     """Friction of the film: asked at every solved place, for a range of sliding speeds.
 
     A contact between two places takes its own sliding speed, so that the steep reversal at the
@@ -309,19 +316,32 @@ def film_friction(solved: SolvedPath, motion: Kinematics) -> Array:
     pressure is.
     """
     path, places = solved.path, solved.places
-    friction = np.zeros(path.zone.size)
+    columns: list[Array] = [np.zeros(path.zone.size) for _ in range(3)]
+    shared = False
     for zone in range(len(path.places.counts)):
         here = path.zone == zone
         sliding = np.abs(motion.sliding_speed[here])
         speeds = _speeds(sliding)
-        values = _asked(solved, np.flatnonzero(places.zone == zone), speeds)
+        told = _asked(solved, settings, np.flatnonzero(places.zone == zone), speeds)
         over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
         curve = path.memory.curves.get((zone, PRESSURE), False)
-        along = joined_over_age(
-            path.places, places, values, path.pairs.age[here], zone, curve=curve
+        shared = isinstance(told, FrictionParts)
+        parts = (
+            (told.film, told.asperities, told.film_load_share)
+            if isinstance(told, FrictionParts)
+            else (told,)
         )
-        friction[here] = np.einsum("ks,ks->k", along, over_speed)
-    return np.maximum(friction, 0.0)
+        for column, values in zip(columns, parts, strict=False):
+            along = joined_over_age(
+                path.places,
+                places,
+                values.reshape(-1, speeds.size),
+                path.pairs.age[here],
+                zone,
+                curve=curve,
+            )
+            column[here] = np.maximum(np.einsum("ks,ks->k", along, over_speed), 0.0)
+    return FrictionParts(*columns) if shared else columns[0]
 
 
 def _speeds(sliding: Array) -> Array:
@@ -332,9 +352,9 @@ def _speeds(sliding: Array) -> Array:
     return np.asarray(_SLOW * np.sinh(inner))
 
 
-def _asked(solved: SolvedPath, chosen: Index, speeds: Array) -> Array:
-    """Friction coefficient (places, speeds) of some of the solved places."""
-    settings, places = solved.path.settings, solved.places
+def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array) -> Friction:
+    """Friction of some of the solved places, each with all speeds in turn."""
+    places = solved.places
     index, speed = np.repeat(chosen, speeds.size), np.tile(speeds, chosen.size)
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
     entrainment = places.entrainment_speed[index]
@@ -351,5 +371,4 @@ def _asked(solved: SolvedPath, chosen: Index, speeds: Array) -> Array:
         composite_roughness=settings.composite_roughness,
         film=FilmState.from_solutions(list(places.solution), index),
     )
-    found = LAWS[settings.friction_law](contact, **settings.friction_options)
-    return np.asarray(found).reshape(chosen.size, speeds.size)
+    return LAWS[settings.friction_law].told(contact, settings.friction_options)

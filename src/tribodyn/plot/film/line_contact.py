@@ -104,22 +104,7 @@ def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales
 
 
 def dry_pressure(solution: Any, points: int = 101) -> tuple[Array, Array]:
-    """Pressure of Hertz in the dry contact.
-
-    Parameters
-    ----------
-    solution : LineContactSolution
-        A solved contact.
-    points : int
-        Number of points.
-
-    Returns
-    -------
-    tuple of array
-        Position and pressure in the units of the solution, closer together at the ends.
-
-    Source: Hertz (1881), ``p = p_h sqrt(1 - (x/b)^2)``.
-    """
+    """Pressure of Hertz in the dry contact, ``p = p_h sqrt(1 - (x/b)^2)``."""
     angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, points)
     pressure = np.maximum(np.cos(angle), 0.0)
     return solution.half_width * np.sin(angle), solution.hertz_pressure * pressure

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import Need, drawing
+from tribodyn.drawing import Need
 from tribodyn.plot.gear.path import sharing_words
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.plot.mesh.cycle import (
-    TABLE,
     driving_roll_angle,
     pair_life,
     roll_angle_label,
     roll_angle_positions,
+    table_drawing,
 )
 from tribodyn.types import Array
 
@@ -92,25 +92,13 @@ def _path_caption(mesh: MeshTable) -> str:
     )
 
 
-@drawing(
+@table_drawing(
     "path_of_contact",
     heading="Along the path of contact",
     caption=_path_caption,
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
 )
 def path_of_contact(mesh: MeshTable) -> Any:
-    """Draw speeds, radii and slide-to-roll ratio over the roll angle of the driving gear.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw speeds, radii and slide-to-roll ratio over the roll angle of the driving gear."""
     path = Path(mesh)
     fastest = np.max(np.abs(path.life("sliding_speed")))
     ratio = line(path.angle, path.life("slide_to_roll_ratio"), "slide-to-roll", TOTAL)
@@ -145,26 +133,14 @@ def _frictionless(mesh: MeshTable) -> str:
     )
 
 
-@drawing(
+@table_drawing(
     "friction",
     heading="Friction",
     caption=_friction_caption,
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
     missing=_frictionless,
 )
 def friction(mesh: MeshTable) -> Any:
-    """Draw friction coefficient and friction force of a tooth pair over the roll angle.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw friction coefficient and friction force of a tooth pair over the roll angle."""
     path = Path(mesh)
     coefficient, load = path.life("friction_coefficient"), path.life("normal_force")
     unit, force = display_unit("friction_force"), coefficient * load
@@ -197,27 +173,15 @@ def _film_axis(films: list[Array]) -> dict[str, Any]:
     return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else _FROM_ZERO
 
 
-@drawing(
+@table_drawing(
     "film",
     heading="Oil film",
     caption="Thickness of the oil film between the flanks, and its ratio to the composite "
     "roughness. Where the ratio comes near one, the highest asperities touch.",
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
     missing=_has_film,
 )
 def film(mesh: MeshTable) -> Any:
-    """Draw the film thickness of one tooth pair over the roll angle of the driving gear.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle with an oil film.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the film thickness of one tooth pair over the roll angle of the driving gear."""
     path = Path(mesh)
     unit = display_unit("film_thickness")
     known = tuple(row for row in _FILMS if getattr(mesh, row[0]) is not None)
@@ -254,26 +218,14 @@ def _no_pressure(mesh: MeshTable) -> str:
     )
 
 
-@drawing(
+@table_drawing(
     "film_pressure",
     heading="Pressure in the oil film",
     caption=_pressure_caption,
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
     missing=_no_pressure,
 )
 def film_pressure(mesh: MeshTable) -> Any:
-    """Draw the greatest film pressure of one tooth pair over the roll angle.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle with a solved film.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the greatest film pressure of one tooth pair over the roll angle."""
     path = Path(mesh)
     greatest = rounded("film_pressure", float(np.nanmax(path.life("film_pressure"))))
     label, curves = axis_label("film_pressure"), path.curves(_PRESSURES)
@@ -314,26 +266,14 @@ def _no_stiffness(mesh: MeshTable) -> str:
     )
 
 
-@drawing(
+@table_drawing(
     "film_stiffness",
     heading="Stiffness of the oil film",
     caption=_stiffness_caption,
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
     missing=_no_stiffness,
 )
 def film_stiffness(mesh: MeshTable) -> Any:
-    """Draw the stiffness of film, teeth and pair over the roll angle.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle with a film stiffness.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the stiffness of film, teeth and pair over the roll angle."""
     path = Path(mesh)
     label = axis_label("film_stiffness", "Stiffness")
     panels = [Panel(label, path.curves((*_OIL, *_TEETH)), _LOGARITHMIC)]

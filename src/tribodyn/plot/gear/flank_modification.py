@@ -149,18 +149,7 @@ def _run_out(pair: SpurPair) -> Row:
     made_by=RUN,
 )
 def flank_modification(pair: SpurPair) -> Any:
-    """Draw the modifications and deviations of both flanks.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        Both gears in their working position.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-        A panel for each of profile, lead, pitch and run-out that is there.
-    """
+    """Draw the modifications and deviations of both flanks."""
     rows = [
         make(pair)
         for there, make in (

@@ -223,17 +223,7 @@ def _caption(pair: SpurPair) -> str:
     made_by=RUN,
 )
 def gear_pair(pair: SpurPair) -> Any:
-    """Draw both gears in mesh with their circles and the path of contact.
-
-    Parameters
-    ----------
-    pair : SpurPair
-        Both gears in their working position.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw both gears in mesh with their circles and the path of contact."""
     path = path_of_contact(pair)
     traces = [*_gears(pair, 0.5 * (path.B + path.D)), *_circles(pair), *_contact_line(pair, path)]
     enlarged = [{**trace, "xaxis": "x2", "yaxis": "y2", "showlegend": False} for trace in traces]

@@ -6,10 +6,12 @@ Everything here reads the mesh table alone, so that a table draws itself without
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.drawing import drawing
 from tribodyn.plot.gear.path import further_changes
 from tribodyn.plot.look.labels import axis_label
 from tribodyn.types import Array
@@ -22,6 +24,9 @@ CYCLES = 2
 #: How to come by what these figures draw.
 RUN = "Call tribodyn.run(case) and draw what it returns."
 TABLE = "Call tribodyn.run(case), whose result has one, or tribodyn.mesh.build."
+#: Registers a figure of a run, and one of a mesh table.
+run_drawing = partial(drawing, of="Result", made_by=RUN)
+table_drawing = partial(drawing, of=("MeshTable", "Result.mesh"), made_by=TABLE)
 Curve = tuple[Array, Array]
 
 

@@ -208,19 +208,7 @@ def _shares_over_cycles(contact: LoadedContact) -> list[Trace]:
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
 def loaded_contact(contact: LoadedContact) -> Any:
-    """Draw transmission error, stiffness and load sharing of a loaded tooth contact.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns, for one torque or several.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-        Over the roll angle of the driving gear, from where a pair begins to carry to where it
-        ends; over all mesh cycles where the teeth differ.
-    """
+    """Draw transmission error, stiffness and load sharing of a loaded tooth contact."""
     hunting, pair = several_cycles(contact), contact.gear_pair
     stiffness = "Secant stiffness" if hunting else "Mesh stiffness"
     share = "Greatest load share" if hunting else "Load share of a pair"
@@ -295,18 +283,7 @@ def _traces(contact: LoadedContact, life: Life, seen: Mask) -> list[Trace]:
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
 def loaded_sharing(contact: LoadedContact) -> Any:
-    """Draw the force on one tooth pair from where it begins to carry to where it ends.
-
-    Parameters
-    ----------
-    contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns, for one torque or several.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-        One curve for each torque; where the teeth differ the mean of all pairs and a band.
-    """
+    """Draw the force on one tooth pair from where it begins to carry to where it ends."""
     pair, (first, last) = contact.gear_pair, span(contact)
     life = Life.of(contact, contact.normal_force)
     seen = (life.age >= first) & (life.age <= last)

@@ -100,17 +100,7 @@ def _harris_swings(study: HarrisMap) -> Row:
     made_by="Call tribodyn.harris_map(case) and its plot method.",
 )
 def harris_map(study: HarrisMap) -> Any:
-    """Draw the transmission error for each torque, and its swing and harmonics over the torque.
-
-    Parameters
-    ----------
-    study : HarrisMap
-        What :func:`tribodyn.harris_map` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the transmission error for each torque, and its swing and harmonics over the torque."""
     swings = study.peak_to_peak_transmission_error
     least = rounded(_QUANTITY, float(np.min(swings)))
     quietest = torque_names(study.torque)[int(np.argmin(swings))]
@@ -222,17 +212,7 @@ def _relief_caption(study: TipReliefOptimum) -> str:
     made_by="Call tribodyn.optimize_tip_relief(case) and its plot method.",
 )
 def tip_relief_map(study: TipReliefOptimum) -> Any:
-    """Draw the objective over amount and length, and the transmission error before and after.
-
-    Parameters
-    ----------
-    study : TipReliefOptimum
-        What :func:`tribodyn.optimize_tip_relief` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the objective over amount and length, and the transmission error before and after."""
     amount = rounded("tip_relief", study.amount)
     length = rounded("tip_relief_length", study.length)
     before, after = (
@@ -296,19 +276,7 @@ def _series_caption(study: ComprehensiveStiffness) -> str:
     made_by="Call tribodyn.comprehensive_stiffness(case) and its plot method.",
 )
 def comprehensive_stiffness(study: ComprehensiveStiffness) -> Any:
-    """Draw the stiffness of film, teeth and both in series over the roll angle.
-
-    Parameters
-    ----------
-    study : ComprehensiveStiffness
-        What :func:`tribodyn.comprehensive_stiffness` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-        A curve for each torque and speed: colours for torques and dashes for speeds, or colours
-        for the speeds of a single torque.
-    """
+    """Draw the stiffness of film, teeth and both in series over the roll angle."""
     pair, looks = study.gear_pair, _looks(study)
     with_film = float(np.mean(study.mean_mesh_stiffness))
     teeth = float(np.mean(study.mean_tooth_stiffness))

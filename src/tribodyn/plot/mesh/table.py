@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
 from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, Row, event_lines, stack, stack_rows
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, line
 from tribodyn.plot.mesh.cycle import (
     CYCLES,
-    TABLE,
     between,
     closed,
     closed_life,
@@ -23,6 +21,7 @@ from tribodyn.plot.mesh.cycle import (
     pair_life,
     pair_lives,
     positions,
+    table_drawing,
 )
 from tribodyn.types import Array
 
@@ -42,27 +41,15 @@ _COLORS = (TOTAL, *PAIR_COLORS)
 _POINTS, _BEYOND = 241, 1.3
 
 
-@drawing(
+@table_drawing(
     "mesh_stiffness",
     heading="Mesh stiffness",
     caption="The stiffness jumps whenever a tooth pair enters or leaves the contact. These jumps "
     "excite the vibration: the higher they are, the louder the gears. The coloured curves are "
     "the single tooth pairs that add up to the total.",
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
 )
 def mesh_stiffness(mesh: MeshTable) -> Any:
-    """Draw the stiffness of the tooth pairs and their sum.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the stiffness of the tooth pairs and their sum."""
     unit = display_unit("mesh_stiffness")
     phase, total = cycles(mesh.phase, displayed("mesh_stiffness", mesh.mesh_stiffness))
     traces = [line(phase, total, "all pairs", TOTAL, unit=unit)]
@@ -91,26 +78,14 @@ def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array,
     return sorted(found, key=lambda each: each[0] != _PAIR)
 
 
-@drawing(
+@table_drawing(
     "static_stiffness",
     heading="Stiffness over the roll angle",
     caption="The secant is the load over the whole deflection, the tangent what counts for small "
     "vibration about the load. The part of each tooth pair is its share of the secant.",
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
 )
 def static_stiffness(mesh: MeshTable) -> Any:
-    """Draw secant and tangent stiffness of the mesh and the part of each tooth pair.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw secant and tangent stiffness of the mesh and the part of each tooth pair."""
     pair, unit = mesh.gear_pair, display_unit("mesh_stiffness")
     ends = (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
 
@@ -168,25 +143,13 @@ def _caption(mesh: MeshTable) -> str:
     return words
 
 
-@drawing(
+@table_drawing(
     "load_sharing",
     heading="Load sharing",
     caption=_caption,
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
 )
 def load_sharing(mesh: MeshTable) -> Any:
-    """Draw the load on one tooth pair over the roll angle of the driving gear.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the load on one tooth pair over the roll angle of the driving gear."""
     pair = mesh.gear_pair
     age, share = closed(*whole_life(mesh))
     x = displayed("roll_angle", roll_angle_of(pair, age))
@@ -246,27 +209,15 @@ def _bars(mesh: MeshTable) -> Row:
     )
 
 
-@drawing(
+@table_drawing(
     "static_transmission_error",
     heading="Static transmission error",
     caption="How far the gears approach along the line of action when they turn very slowly under "
     "load. What varies is the excitation of the vibration; the bars show how much of it falls on "
     "each harmonic of the mesh frequency.",
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
 )
 def static_transmission_error(mesh: MeshTable) -> Any:
-    """Draw the static transmission error over two mesh cycles, and its mesh harmonics.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the static transmission error over two mesh cycles, and its mesh harmonics."""
     mean = float(mesh.grid.mean(mesh.static_transmission_error))
     swing = float(np.ptp(mesh.static_transmission_error))
     return stack_rows(
@@ -291,27 +242,15 @@ def _phases(mesh: MeshTable) -> list[tuple[str, float]]:
     return found
 
 
-@drawing(
+@table_drawing(
     "force_law",
     heading="Force law of the mesh",
     caption="Force over the approach of the gears at places of the mesh cycle. The curve bends "
     "upwards where the flanks flatten and where a further pair comes to bear; the marks are the "
     "working load. To the left of a curve's foot the flanks are apart.",
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
 )
 def force_law(mesh: MeshTable) -> Any:
-    """Draw the force on the mesh over its deflection for several mesh phases.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the force on the mesh over its deflection for several mesh phases."""
     law, load = mesh.force_law, mesh.total_normal_force
     chosen = _phases(mesh)
     working = np.array([float(law.deflection(phase, load)) for _, phase in chosen])

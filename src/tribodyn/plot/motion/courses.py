@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
 from tribodyn.plot.look.labels import axis_label, axis_words, display_unit, displayed, rounded
 from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, line
-from tribodyn.plot.mesh.cycle import RUN, cycles
+from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.study.pipeline import record
 
@@ -73,19 +72,9 @@ def _force_caption(result: Result) -> str:
     return " ".join(filter(None, sentences))
 
 
-@drawing("mesh_force", heading="Mesh force", caption=_force_caption, of="Result", made_by=RUN)
+@run_drawing("mesh_force", heading="Mesh force", caption=_force_caption)
 def mesh_force(result: Result) -> Any:
-    """Draw the dynamic and the static mesh force.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the dynamic and the static mesh force."""
     motion, unit = Motion(result), display_unit("mesh_force")
     force = motion.mesh_force
     static = np.full_like(force, result.mesh.total_normal_force)
@@ -123,25 +112,13 @@ def _error_caption(result: Result) -> str:
     return " ".join(sentences)
 
 
-@drawing(
+@run_drawing(
     "transmission_error",
     heading="Transmission error",
     caption=_error_caption,
-    of="Result",
-    made_by=RUN,
 )
 def transmission_error(result: Result) -> Any:
-    """Draw the dynamic transmission error and, for a steady state, the quasi-static one.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the dynamic transmission error and, for a steady state, the quasi-static one."""
     motion, unit = Motion(result), display_unit("dynamic_transmission_error")
     moving = motion.transmission_error
     traces = [
@@ -174,26 +151,14 @@ def _shake_caption(result: Result) -> str:
     ).rstrip()
 
 
-@drawing(
+@run_drawing(
     "acceleration",
     heading="Accelerations",
     caption=_shake_caption,
     missing=no_translation,
-    of="Result",
-    made_by=RUN,
 )
 def acceleration(result: Result) -> Any:
-    """Draw the accelerations of the gear centres.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the accelerations of the gear centres."""
     motion = Motion(result)
     strongest = np.max(np.abs(motion.measured(motion.of_gear("acceleration", "pinion", "y"))))
     return stack(
@@ -213,26 +178,14 @@ def _bearing_caption(result: Result) -> str:
     ).rstrip()
 
 
-@drawing(
+@run_drawing(
     "bearing_force",
     heading="Bearing forces",
     caption=_bearing_caption,
     missing=no_translation,
-    of="Result",
-    made_by=RUN,
 )
 def bearing_force(result: Result) -> Any:
-    """Draw the forces of both gears on their bearings.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the forces of both gears on their bearings."""
     motion = Motion(result)
     swing = np.ptp(motion.measured(motion.of_gear("bearing_force", "pinion", "y")))
     return stack(

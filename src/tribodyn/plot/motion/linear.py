@@ -61,17 +61,7 @@ def _strained(modes: NaturalModes) -> dict[str, Any]:
     made_by="Call tribodyn.dynamics.natural_modes and its plot method.",
 )
 def mode_shapes(modes: NaturalModes) -> Any:
-    """Draw the energy shares of all elastic modes.
-
-    Parameters
-    ----------
-    modes : NaturalModes
-        What :func:`tribodyn.dynamics.natural_modes` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the energy shares of all elastic modes."""
     first, unit = modes.rigid, display_unit("frequency")
     hertz = displayed("frequency", modes.frequency[first:])
     # Two modes can have one frequency: the number keeps their bars apart.
@@ -173,17 +163,7 @@ def _met(diagram: Campbell) -> list[Trace]:
     made_by="Call tribodyn.dynamics.campbell and its plot method.",
 )
 def campbell(diagram: Campbell) -> Any:
-    """Draw natural frequencies and mesh harmonics over speed.
-
-    Parameters
-    ----------
-    diagram : Campbell
-        What :func:`tribodyn.dynamics.campbell` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw natural frequencies and mesh harmonics over speed."""
     speed = displayed("speed", diagram.speed)
     modes = float(np.max(displayed("frequency", diagram.frequency), initial=0.0))
     lines = float(np.max(displayed("frequency", max(diagram.orders) * diagram.mesh_frequency)))
@@ -210,17 +190,7 @@ def campbell(diagram: Campbell) -> Any:
     made_by="Call tribodyn.dynamics.forced_response and its plot method.",
 )
 def forced_response(response: ForcedResponse) -> Any:
-    """Draw amplitudes of mesh force, deflection and transmission error over frequency.
-
-    Parameters
-    ----------
-    response : ForcedResponse
-        What :func:`tribodyn.dynamics.forced_response` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw amplitudes of mesh force, deflection and transmission error over frequency."""
     x = displayed("frequency", response.frequency)
     force = np.abs(response.mesh_force)
     contact = response.contact[0]

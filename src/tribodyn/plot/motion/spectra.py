@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.analysis import Spectrum, amplitude_spectrum
-from tribodyn.drawing import drawing
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import TOTAL, button_row
-from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.plot.mesh.cycle import run_drawing
 from tribodyn.plot.motion.courses import DIRECTIONS, GEARS, words_of
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.types import Array
@@ -149,28 +148,16 @@ def _decades(panel: Panel) -> list[float]:
     return [exponent - _DECADES, exponent + 0.3]
 
 
-@drawing(
+@run_drawing(
     "spectrum",
     heading="Spectra",
     caption="How strong each mesh harmonic is. Harmonic 1 is the mesh frequency, the teeth that "
     "pass in a second. Dotted lines are natural frequencies: a bar near one is amplified by it. "
     "The buttons switch to a logarithmic scale, on which small harmonics show.",
     missing=_no_harmonics,
-    of="Result",
-    made_by=RUN,
 )
 def spectrum(result: Result) -> Any:
-    """Draw the mesh harmonics of the transmission error and of the accelerations.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns; its response is a steady state.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the mesh harmonics of the transmission error and of the accelerations."""
     error = Motion(result).transmission_error
     panels = [
         _panel(
@@ -193,28 +180,16 @@ def _no_bearing_harmonics(result: Result) -> str:
     return no_translation(result) or _no_harmonics(result)
 
 
-@drawing(
+@run_drawing(
     "bearing_spectrum",
     heading="Spectra of the bearing forces",
     caption="What the bearings pass on to the housing, by mesh harmonic. A harmonic that meets a "
     "natural frequency of the housing is the one that is heard. Dotted lines are natural "
     "frequencies of the gears on their supports.",
     missing=_no_bearing_harmonics,
-    of="Result",
-    made_by=RUN,
 )
 def bearing_spectrum(result: Result) -> Any:
-    """Draw the mesh harmonics of the bearing forces.
-
-    Parameters
-    ----------
-    result : Result
-        What :func:`tribodyn.run` returns; its response is a steady state.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the mesh harmonics of the bearing forces."""
     panels = _gear_panels(result, "bearing_force")
     return stack(
         f"Mesh harmonic {_strongest(panels[0])} is the strongest on the pinion's bearing",

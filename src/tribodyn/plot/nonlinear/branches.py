@@ -151,17 +151,7 @@ def _bifurcation_title(diagram: Bifurcation, parameter: Any, label: str) -> str:
     'rpm", "3500 rpm")) and its plot method.',
 )
 def bifurcation(diagram: Bifurcation) -> Any:
-    """Draw the section, the rms and, if it is there, the largest exponent over the parameter.
-
-    Parameters
-    ----------
-    diagram : Bifurcation
-        What :func:`tribodyn.bifurcation` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the section, the rms and, if it is there, the largest exponent over the parameter."""
     factor, unit = _scale(diagram)
     parameter, label = _bifurcation_parameter(diagram)
     rms = _curves(diagram, parameter, factor * diagram.rms, unit)
@@ -243,17 +233,7 @@ def _branch_title(branch: Branch) -> str:
     made_by="Call tribodyn.dynamics.continuation(...) and its plot method.",
 )
 def continuation(branch: Branch) -> Any:
-    """Draw rms and largest multiplier of a branch over its parameter.
-
-    Parameters
-    ----------
-    branch : Branch
-        What :func:`tribodyn.dynamics.continuation` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw rms and largest multiplier of a branch over its parameter."""
     x = _branch_parameter(branch, branch.parameter)
     rms, special, unit = _signal(branch)
     largest = np.abs(branch.floquet_multipliers[:, 0])

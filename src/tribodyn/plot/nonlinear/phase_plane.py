@@ -42,17 +42,7 @@ _KEPT = 1500
     made_by="Call tribodyn.analysis.phase_portrait(response) and its plot method.",
 )
 def phase_portrait(portrait: PhasePortrait) -> Any:
-    """Draw the curve and its points at the mesh phase 0.
-
-    Parameters
-    ----------
-    portrait : PhasePortrait
-        What :func:`tribodyn.analysis.phase_portrait` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the curve and its points at the mesh phase 0."""
     unit = unit_of(portrait.name)
     x_factor, x_unit = scaled(portrait.position, unit)
     y_factor, y_unit = scaled(portrait.velocity, f"{unit}/s")
@@ -208,17 +198,7 @@ def _exponent_title(spectrum: LyapunovExponents) -> str:
     made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
 )
 def lyapunov(spectrum: LyapunovExponents) -> Any:
-    """Draw the running means of the largest exponents.
-
-    Parameters
-    ----------
-    spectrum : LyapunovExponents
-        What :func:`tribodyn.analysis.lyapunov_exponents` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the running means of the largest exponents."""
     cycles = len(spectrum.growth)
     count = np.arange(1, cycles + 1)
     kept = np.unique(np.linspace(0, cycles - 1, min(cycles, _KEPT)).astype(int))

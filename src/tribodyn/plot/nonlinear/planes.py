@@ -83,17 +83,7 @@ def _component(plane: Basins, number: int, name: str) -> Any:
     made_by="Call tribodyn.analysis.basins(...) and its plot method.",
 )
 def basins(plane: Basins) -> Any:
-    """Draw the plane of starts.
-
-    Parameters
-    ----------
-    plane : Basins
-        What :func:`tribodyn.analysis.basins` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the plane of starts."""
     one, two = plane.coordinates
     x, x_label = parameter_axis(one, plane.first, plane.units[0])
     y, y_label = parameter_axis(two, plane.second, plane.units[1])
@@ -209,17 +199,7 @@ def _map_title(survey: ParameterMap) -> str:
     made_by="Call tribodyn.analysis.parameter_map(...) and its plot method.",
 )
 def parameter_map(survey: ParameterMap) -> Any:
-    """Draw period, rms and contact loss.
-
-    Parameters
-    ----------
-    survey : ParameterMap
-        What :func:`tribodyn.analysis.parameter_map` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw period, rms and contact loss."""
     x, x_label = parameter_axis(survey.names[0], survey.first, survey.units[0])
     y, y_label = parameter_axis(survey.names[1], survey.second, survey.units[1])
     factor, unit = scaled(survey.rms, unit_of(survey.signal))

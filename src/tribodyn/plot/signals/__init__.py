@@ -1,9 +1,10 @@
 """Recorded signals and run-ups.
 
-==========  ===============================================================
-module      what it draws
-==========  ===============================================================
-``maps``    spectrogram, order map, spectra one behind the other
-``run_up``  level and mesh orders over the speed, amplitudes over frequency
-==========  ===============================================================
+============  ===============================================================
+module        what it draws
+============  ===============================================================
+``maps``      spectrogram, order map, spectra one behind the other
+``recorded``  channels of a recording, its orders, orders through time
+``run_up``    level and mesh orders over the speed, amplitudes over frequency
+============  ===============================================================
 """

@@ -91,17 +91,7 @@ def amplitude_heatmap(
     made_by="Call tribodyn.analysis.spectrogram on a signal and its plot method.",
 )
 def spectrogram(result: Spectrogram) -> Any:
-    """Draw amplitudes over time and frequency, and the rms over time.
-
-    Parameters
-    ----------
-    result : Spectrogram
-        What :func:`tribodyn.analysis.spectrogram` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw amplitudes over time and frequency, and the rms over time."""
     number, block = result.strongest()
     frequency, moment = float(result.frequency[number]), float(result.time[block])
     panels = [
@@ -171,17 +161,7 @@ def _axis(result: OrderMap) -> tuple[Array, str, str]:
     made_by="Call tribodyn.analysis.order_map on the record of a run-up and its plot method.",
 )
 def order_map(result: OrderMap) -> Any:
-    """Draw amplitudes over orders and speed, and cuts at the strongest orders.
-
-    Parameters
-    ----------
-    result : OrderMap
-        What :func:`tribodyn.analysis.order_map` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw amplitudes over orders and speed, and cuts at the strongest orders."""
     place, label, unit = _axis(result)
     orders = strongest_orders(result)
     surface = amplitude_heatmap(
@@ -223,17 +203,7 @@ def order_map(result: OrderMap) -> Any:
     made_by="Call tribodyn.analysis.order_map or spectrogram on a signal and draw what it returns.",
 )
 def waterfall(result: OrderMap | Spectrogram) -> Any:
-    """Draw the spectra of an order map or a spectrogram one behind the other.
-
-    Parameters
-    ----------
-    result : OrderMap or Spectrogram
-        What :func:`tribodyn.analysis.order_map` or :func:`tribodyn.analysis.spectrogram` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the spectra of an order map or a spectrogram one behind the other."""
     by_order = isinstance(result, OrderMap)
     place = result.order if isinstance(result, OrderMap) else result.frequency
     words = "Order" if by_order else axis_label("frequency")

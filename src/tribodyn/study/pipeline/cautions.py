@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.ehl import film_load_share
 from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
 from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
@@ -33,6 +34,8 @@ _STEEL = 3e9
 _RELIEVED = 3.0
 #: Friction coefficient above which friction is the first suspect where a motion runs away.
 _RUBS = 0.3
+#: What to do about asperities that the friction law does not count.
+_COUNT = 'Set friction.law = "mixed", which counts the asperities. '
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
 #: Ratio of a given mass or inertia to that of the solid, or the inverse, that is told: of a value
@@ -207,12 +210,15 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
         return
     least = float(np.nanmin(mesh.film_ratio[mesh.in_contact]))
     if least < 1.0:
+        shares = mesh.film_load_share
+        share = film_load_share(least) if shares is None else np.nanmin(shares[mesh.in_contact])
+        counted = mesh.asperity_friction_coefficient is not None
         yield ModelWarning(
             "mixed-lubrication",
-            f"the film ratio falls to {least:.3g}: below 1 asperities touch and carry a part of "
-            "the load, while the film model gives the whole of it to the oil. Film and film "
-            "stiffness are those of smooth flanks; take a thicker oil, smoother flanks or more "
-            "speed",
+            f"the film ratio falls to {least:.3g}: below 1 asperities touch; they carry up to "
+            f"{1.0 - share:.0%} of the load. Film and film stiffness are those of smooth flanks "
+            f"under the whole of it{'' if counted else ', and so is the friction'}. "
+            f"{'' if counted else _COUNT}A thicker oil, smoother flanks or more speed part them",
         )
 
 

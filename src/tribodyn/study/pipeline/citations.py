@@ -89,25 +89,7 @@ def _origin(case: Case) -> dict[str, Any]:
 
 
 def sources_of(section: str, name: str) -> list[str]:
-    """Name the papers behind one choice.
-
-    Parameters
-    ----------
-    section : str
-        Table of the case file.
-    name : str
-        Model, law or method.
-
-    Returns
-    -------
-    list of str
-        One line for each paper.
-
-    Examples
-    --------
-    >>> len(sources_of("friction", "xu-2007"))
-    1
-    """
+    """Name the papers behind one choice."""
     kind = section_at((section,))
     model = kind.model_named(name) if kind else None
     keys = model.papers if model else _METHODS.get(name, ())

@@ -178,22 +178,19 @@ def _warn_of_tension(case: Case, response: Response) -> None:
 _STEPS = "steps_per_mesh_cycle"
 #: Margin of the least speed that is recommended.
 _MARGIN = 1.05
-#: Steps at which the fastest motion is looked up.
-_COARSE = 1024
 
 
 def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
     """Steps per mesh cycle that were asked for, else those that follow the fastest motion."""
-    from tribodyn.dynamics import recommended_steps
-    from tribodyn.dynamics.equations.program import compile_system
-    from tribodyn.dynamics.equations.step_limit import LIMIT, largest_rate
+    from tribodyn.dynamics.equations.step_limit import LIMIT, accurate_steps, rate_on_grid
 
     spec = Solver.spec(_STEPS)
     most = spec.high if spec else float("inf")
-    needed = largest_rate(system, compile_system(system, _COARSE)[1]) / (LIMIT * mesh_frequency)
+    rate = rate_on_grid(system)
+    needed = rate / (LIMIT * mesh_frequency)
     if needed > most:
         raise InputError(_too_slow(case, needed, most))
-    return case.solver.steps_per_mesh_cycle or recommended_steps(system, mesh_frequency)
+    return case.solver.steps_per_mesh_cycle or accurate_steps(rate, mesh_frequency)
 
 
 def _too_slow(case: Case, needed: float, most: float) -> Problem:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tribodyn.errors import collected
@@ -22,6 +23,7 @@ from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
 
 if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
 
@@ -76,11 +78,16 @@ def rehearse(case: Case) -> None:
         compile_for(system, mesh.mesh_frequency, steps)
 
 
-def computed(case: Case, progress: Progress = SILENT) -> Result:
-    """Compute a case; what the models said is kept in the result alone."""
+def computed(
+    case: Case, progress: Progress = SILENT, known: Callable[[], MeshTable] | None = None
+) -> Result:
+    """Compute a case; what the models said is kept in the result alone.
+
+    ``known`` gives its mesh table where a study has loads and films at hand.
+    """
     with placed(case), collected() as found:
         progress.start("Tooth contact")
-        mesh = mesh_of(case, progress)
+        mesh = mesh_of(case, progress) if known is None else known()
         friction = load_friction_of(case, mesh)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)

@@ -164,6 +164,7 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
         "mean_mesh_stiffness_tangent": mesh.mean_mesh_stiffness_tangent,
         "maximum_single_pair_stiffness": mesh.maximum_single_pair_stiffness,
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
+        "mean_asperity_friction_coefficient": mesh.mean_asperity_friction_coefficient,
         **_pressure(mesh),
     }
 
@@ -204,6 +205,7 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
         "central_film": mesh.central_film,
         "minimum_film_over_path": mesh.minimum_film,
         "minimum_film_ratio": mesh.film_ratio,
+        "minimum_film_load_share": mesh.film_load_share,
     }
     figures: dict[str, Any] = {
         name: np.nanmin(column[mesh.in_contact])

@@ -12,6 +12,7 @@ from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_l
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.mesh.sharing import ToothContact
     from tribodyn.study.case.case import Case
 
 
@@ -34,6 +35,17 @@ def model_settings(case: Case) -> dict[str, Any]:
     }
 
 
+def contact_settings(case: Case) -> ToothContact:
+    """Settings of the tooth contact of a case."""
+    from tribodyn.mesh.sharing import ToothContact
+
+    return ToothContact(
+        friction_law=case.friction.law,
+        friction_options=chosen_options(case, "friction"),
+        **model_settings(case),
+    )
+
+
 def mesh_of(
     case: Case, progress: Progress = SILENT, *, load: float = 1.0, rehearsal: bool = False
 ) -> MeshTable:
@@ -43,7 +55,6 @@ def mesh_of(
     """
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
-    from tribodyn.mesh.sharing import ToothContact
 
     if case.mesh_table is not None:
         return case.mesh_table.table(
@@ -53,11 +64,7 @@ def mesh_of(
             pinion_torque=case.pinion_torque,
             friction_coefficient=friction_of_table(case),
         )
-    settings = ToothContact(
-        friction_law=case.friction.law,
-        friction_options=chosen_options(case, "friction"),
-        **model_settings(case),
-    )
+    settings = contact_settings(case)
     if rehearsal:
         settings = replace(settings, film_model="none", film_options={})
         if LAWS[case.friction.law].needs_film:

@@ -82,4 +82,5 @@ def _contacts(case: Case) -> TribologicalContact:
         oil_density=oil.density,
         film_thickness=film.minimum_film,
         pitch=point,
+        central_film=film.central_film,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.pipeline.result import Result
 
 
 def sweep(
@@ -77,10 +78,26 @@ def sweep(
     True
     """
     axes = read_axes(case, _asked(over, between, points), by=by)
+    study = identity("sweep", case, [(axis.key, axis.values) for axis in axes])
+
+    def compute(*values: Any) -> Result:
+        changes = {axis.key: value for axis, value in zip(axes, values, strict=True)}
+        return computed(case.replace(changes))
+
+    return Sweep(case, axes, points_of(axes, compute, study, partial, progress, members))
+
+
+def points_of(
+    axes: tuple[Axis, ...],
+    compute: Callable[..., Result],
+    study: Mapping[str, Any],
+    partial: bool,
+    progress: Progress,
+    members: Members | None,
+) -> tuple[SweepPoint, ...]:
+    """Compute every place of a grid, several at a time; what is kept of the study is there."""
     grid = list(product(*(axis.values for axis in axes)))
-    kept = (Members() if members is None else members).begin(
-        identity("sweep", case, [(axis.key, axis.values) for axis in axes])
-    )
+    kept = (Members() if members is None else members).begin(study)
     done = {
         index: SweepPoint(grid[index], figures, failed, tuple(warned))
         for index in range(len(grid) if len(kept) else 0)
@@ -89,7 +106,7 @@ def sweep(
     }
 
     def point(index: int) -> SweepPoint:
-        found = _point(case, axes, grid[index])
+        found = _point(compute, grid[index])
         kept.keep(str(index), (dict(found.figures), found.failed, found.warned))
         return found
 
@@ -100,7 +117,7 @@ def sweep(
         if not (partial and 0 in done):
             raise
     progress.finish()
-    return Sweep(case, axes, tuple(finished(done)))
+    return tuple(finished(done))
 
 
 def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[str, Any]:
@@ -115,12 +132,11 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
     return over
 
 
-def _point(case: Case, axes: tuple[Axis, ...], values: tuple[Any, ...]) -> SweepPoint:
+def _point(compute: Callable[..., Result], values: tuple[Any, ...]) -> SweepPoint:
     """Run the case at one place; what fails is told, and the sweep goes on."""
-    changes = {axis.key: value for axis, value in zip(axes, values, strict=True)}
     try:
         with quiet():  # what the models say is kept in the result
-            result = computed(case.replace(changes))
+            result = compute(*values)
             figures = result.summary()
     except (InputError, ComputationError) as error:
         first = error.problems[0]

@@ -1,0 +1,40 @@
+"""How long do 200 steady states under all friction laws take, with shared films and each by itself?
+
+The rival runs every state as a case of its own, one after the other; a sample of them is timed and
+counted up.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from race import arguments
+from tribodyn import friction_experiment, load_case, run
+from tribodyn.errors import quiet
+from tribodyn.study.studies.friction_experiment import ROUGHNESSES
+
+#: Changes of the sample: laws that differ in what they need.
+SAMPLE = ("none", "benedict-kelly", "xu-2007", "mixed-ehl", "ehl")
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Print seconds of the experiment and of its states one by one."""
+    quick = arguments(__doc__, words).quick
+    case = load_case("fzg-roughness").replace({"film.model": "newton"})
+    heights = ROUGHNESSES[1:3] if quick else ROUGHNESSES
+    with quiet():
+        run(case.replace({"friction.law": "ehl"}))  # what is compiled once
+        start = time.perf_counter()
+        found = friction_experiment(case, roughness=heights)
+        spent = time.perf_counter() - start
+        start = time.perf_counter()
+        for law in SAMPLE:
+            run(case.replace({"friction.law": law})).summary()
+        alone = (time.perf_counter() - start) / len(SAMPLE) * len(found.points)
+    print(f"{len(found.points)} steady states with shared films   {spent:6.1f} s")
+    print(f"each by itself, from {len(SAMPLE)} of them           {alone:6.1f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,104 @@
+"""``tribodyn experiment``: controlled experiments on one gear pair."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.settings import changed_case
+from tribodyn.cli.sweep_command import ended, kept_study
+from tribodyn.errors import InputError
+
+if TYPE_CHECKING:
+    from tribodyn.study.studies.friction_experiment import FrictionExperiment
+
+_EXPERIMENTS = ("friction",)
+
+
+def experiment(
+    kind: str,
+    case: str = "fzg-roughness",
+    /,
+    *,
+    roughness: str = "",
+    laws: str = "",
+    out: Path | None = None,
+    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Compare friction laws and roughnesses on one pair, and judge five published claims.
+
+    Parameters
+    ----------
+    kind : str
+        What is studied: friction.
+    case : str
+        Built-in case or path of a case file.
+    roughness : str
+        Composite roughnesses such as "0.325,0.53,0.991 um".
+    laws : str
+        Friction laws such as "constant,xu-2007"; "none" is always among them.
+    out : Path
+        Directory to write; by default that of the case with "-friction".
+    set_ : list of str
+        Values to change, for example "operation.torque=120 N*m".
+    force : bool
+        Replace an earlier result in that directory.
+    json : bool
+        Write claims and all figures in SI as one JSON object to stdout.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    if kind not in _EXPERIMENTS:
+        remedy = f"Write: tribodyn experiment {_EXPERIMENTS[0]}"
+        raise InputError(f'there is no experiment "{kind}"', "", "", remedy)
+    target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
+    ready, options = changed_case(case, set_ or []), _options(roughness, laws)
+
+    def compute(**kept: Any) -> FrictionExperiment:
+        from tribodyn.study.studies.friction_experiment import friction_experiment
+
+        return friction_experiment(ready, **options, partial=True, **kept)
+
+    found: Any = kept_study(target, force, compute)
+    claims = [dict(zip(_keys(found), row, strict=True)) for row in found.claim_rows()]
+    if json:
+        say_json({"complete": found.complete, "claims": claims, "rows": list(found.rows())})
+    else:
+        names = ("claim", "verdict", "holds_where")
+        rows = [["Claim", "Verdict", "Holds where"], *([c[n] for n in names] for c in claims)]
+        say(f"{found.case.title}\n{found.lead}\n\n{table(rows)}")
+        for claim in claims:
+            say(f"\n{claim['claim']} ({claim['source_of']})\n  printed:  {claim['printed']}\n"
+                f"  computed: {claim['computed']}\n  {claim['why']}.")  # fmt: skip
+    for failed in dict.fromkeys(point.failed for point in found.points if point.failed):
+        tell(f"failed: {failed}")
+    return ended(found, target)
+
+
+def _keys(found: FrictionExperiment) -> list[str]:
+    return [name.lower().replace(" ", "_") for name in found.CLAIM_HEAD]
+
+
+def _options(roughness: str, laws: str) -> dict[str, Any]:
+    """Words of the command line as arguments; what is left out stays at its default."""
+    from tribodyn.cli.settings import read_ranges
+
+    options: dict[str, Any] = {}
+    if roughness:
+        given = read_ranges([f"roughness={roughness}"])["roughness"]
+        if isinstance(given, tuple) or not all(isinstance(value, str) for value in given):
+            remedy = 'Write --roughness "0.325,0.53,0.991 um"'
+            what = f'cannot read "{roughness}"'
+            raise InputError(what, "--roughness", "It is a list of lengths with a unit", remedy)
+        options["roughness"] = given
+    if laws:
+        options["laws"] = [name.strip() for name in laws.split(",")]
+    return options

@@ -1,0 +1,28 @@
+"""Measured signals: recordings of test rigs, the angle of the shaft, orders.
+
+| module | what it answers |
+|---|---|
+| ``recording`` | what a file of a test rig holds; ``readers`` know the formats |
+| ``tacho`` | how far the shaft has turned at each sample |
+| ``orders`` | how strong each order is, over a whole record and over the speed |
+| ``vold_kalman`` | how single orders change with time |
+| ``synthetic`` | a run-up whose orders are known |
+"""
+
+from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
+from tribodyn.measurement.recording import Recording, read
+from tribodyn.measurement.synthetic import synthetic_run_up
+from tribodyn.measurement.tacho import shaft_angle
+from tribodyn.measurement.vold_kalman import TrackedOrders, track_orders
+
+__all__ = [
+    "OrderSpectrum",
+    "Recording",
+    "TrackedOrders",
+    "order_map",
+    "order_spectrum",
+    "read",
+    "shaft_angle",
+    "synthetic_run_up",
+    "track_orders",
+]

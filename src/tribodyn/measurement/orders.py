@@ -1,0 +1,298 @@
+"""Amplitudes over orders: Fourier integrals over the angle of the shaft, without resampling.
+
+Samples that are evenly spaced in time are unevenly spaced in angle. The integral over the angle
+is a sum over the samples, each with the angle that the shaft turns during it; a sum over uneven
+places for all orders at once is a non-uniform Fourier transform. Nothing is interpolated or
+filtered, a shaft that stands adds nothing, and no order is folded onto another as long as the
+record was sampled twice as fast as the highest order at the highest speed.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
+from tribodyn.measurement.spread import HALF, SHAPE, spread
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.signals.order_map import OrderMap
+from tribodyn.signals.recorded_signal import checked_signal
+from tribodyn.types import Array, ComplexArray
+
+#: Cosine sums over the block: G. Heinzel, A. Ruediger, R. Schilling, Spectrum and spectral density
+#: estimation by the discrete Fourier transform, 2002, appendix D.
+WINDOWS = {
+    "boxcar": (1.0,),
+    "hann": (1.0, -1.0),
+    "flattop": (1.0, -1.9383379, 1.3045202, -0.4028270, 0.0350665),  # HFT95
+}
+#: Points of the even grid for each of the two sums of a line and its mirror image.
+_OVER = 2.0
+
+
+@record
+class OrderSpectrum(Record):
+    """Amplitudes over the orders of a shaft.
+
+    Parameters
+    ----------
+    orders : (k,) array
+        Cycles per revolution [-].
+    amplitudes : (k,) array
+        Peak amplitude, in the unit of the signal; at order zero the mean over the angle.
+    phases : (k,) array
+        Phase of the cosine at angle zero [rad].
+    revolutions : float
+        Revolutions over which the amplitudes are means [-].
+    window : str
+        Window over the angle.
+    unit : str
+        Unit of the signal.
+    """
+
+    ARRAY = "amplitude"
+
+    orders: Array = quantity("order", unit="1", axis=True, name="order")
+    amplitudes: Array = quantity("order", unit="@unit", name="amplitude")
+    phases: Array = quantity("order", unit="rad", name="phase")
+    revolutions: float = fact()
+    window: str = fact()
+    unit: str = ""
+
+    def __repr__(self) -> str:
+        """One line."""
+        top = 1 + int(np.argmax(self.amplitudes[1:]))
+        size = f"{self.amplitudes[top]:.4g} {self.unit}".rstrip()
+        return (
+            f"OrderSpectrum(to order {self.orders[-1]:g} over {self.revolutions:g} "
+            f"revolutions, largest {size} at order {self.orders[top]:.5g})"
+        )
+
+    def amplitude(self, order: float) -> float:
+        """Amplitude of the line next to an order.
+
+        Parameters
+        ----------
+        order : float
+            Cycles per revolution [-].
+
+        Returns
+        -------
+        float
+            In the unit of the signal.
+
+        Raises
+        ------
+        InputError
+            If the spectrum does not reach that order.
+        """
+        require_between("order", order, 0.0, float(self.orders[-1]))
+        return float(self.amplitudes[int(np.argmin(np.abs(self.orders - order)))])
+
+
+def order_spectrum(
+    signal: Any, angle: Any, max_order: float, *, window: str = "flattop", unit: str = ""
+) -> OrderSpectrum:
+    """Amplitudes of a signal over the orders of a shaft, of the whole record.
+
+    Parameters
+    ----------
+    signal : (n,) array
+        Evenly spaced samples over time, in any unit.
+    angle : (n,) array
+        Angle of the shaft at each sample [rad], never falling; as :func:`shaft_angle` gives it.
+    max_order : float
+        Highest order, in cycles per revolution [-].
+    window : {"flattop", "hann", "boxcar"}
+        Window over the angle: ``"flattop"`` gives every amplitude within 0.01 %, ``"hann"`` parts
+        close orders better.
+    unit : str
+        Unit of the signal, for display.
+
+    Returns
+    -------
+    OrderSpectrum
+        ``orders`` and peak ``amplitudes``, two lines for each order that the record can part.
+
+    Raises
+    ------
+    InputError
+        If the record is not finite, the angle falls, the shaft turns less than four times, or the
+        record was sampled less than twice in a period of the highest order.
+
+    Notes
+    -----
+    The whole revolutions of the record are used, so that whole orders fall on lines. Speed
+    may rise, fall and rest. Amplitude in an order is the mean over the angle; where it changes
+    with the speed, look at :func:`order_map`.
+
+    Examples
+    --------
+    >>> time = np.arange(40000) / 10000.0
+    >>> angle = 2 * np.pi * 5.0 * time**2
+    >>> found = order_spectrum(2.0 * np.cos(7 * angle), angle, 20)
+    >>> round(found.amplitude(7), 4)
+    2.0
+    """
+    values, turned = _checked(signal, angle, max_order)
+    revolutions = np.floor((turned[-1] - turned[0]) / (2.0 * np.pi) + 1e-9)
+    if revolutions < 4.0:
+        raise _too_short(turned, 4.0)
+    require_one_of("window", window, WINDOWS)
+    lines = _lines(values, turned, float(turned[0]), revolutions, max_order, window)
+    orders = np.arange(lines.size) / (2.0 * revolutions)
+    return OrderSpectrum(orders, np.abs(lines), np.angle(lines), float(revolutions), window, unit)
+
+
+def order_map(
+    signal: Any,
+    angle: Any,
+    max_order: float,
+    sample_rate: float,
+    *,
+    revolutions: float = 8.0,
+    overlap: float = 0.75,
+    window: str = "hann",
+    unit: str = "",
+) -> OrderMap:
+    """Amplitudes of a signal over the orders of a shaft and its speed.
+
+    Parameters
+    ----------
+    signal, angle, max_order
+        As of :func:`order_spectrum`.
+    sample_rate : float
+        Samples per second [Hz].
+    revolutions : float
+        Revolutions in a block: orders are parted down to about two over it [-].
+    overlap : float
+        Part of a block that it shares with the next [-].
+    window : {"hann", "flattop", "boxcar"}
+        Window over the angle.
+    unit : str
+        Unit of the signal, for display.
+
+    Returns
+    -------
+    tribodyn.analysis.OrderMap
+        Draws itself, and cuts along an order.
+
+    Raises
+    ------
+    InputError
+        As :func:`order_spectrum`, and if the record is shorter than a block.
+    """
+    values, turned = _checked(signal, angle, max_order)
+    require_positive("sample_rate", sample_rate, "Hz")
+    require_between("revolutions", revolutions, 2.0, 1e6)
+    require_between("overlap", overlap, 0.0, 0.95)
+    require_one_of("window", window, WINDOWS)
+    length = 2.0 * np.pi * revolutions
+    if turned[-1] - turned[0] < length:
+        raise _too_short(turned, revolutions)
+    starts = np.arange(turned[0], turned[-1] - length * (1.0 - 1e-12), (1.0 - overlap) * length)
+    bounds = np.searchsorted(turned, np.stack((starts, starts + length)))
+    columns, speeds, times = [], [], []
+    for start, first, last in zip(starts, *bounds, strict=True):
+        block = slice(max(first - 1, 0), last + 1)
+        lines = _lines(values[block], turned[block], start, revolutions, max_order, window)
+        columns.append(np.abs(lines[::2]))
+        ends = (start, start + length)
+        begin, end = np.interp(ends, turned[block], np.arange(turned[block].size))
+        speeds.append(length * sample_rate / (end - begin))
+        times.append((block.start + 0.5 * (begin + end)) / sample_rate)
+    orders = np.arange(columns[0].size) / revolutions
+    found = np.array(columns).T
+    return OrderMap(
+        orders, np.array(speeds), np.array(times), found, float(revolutions), window, unit
+    )
+
+
+def _checked(signal: Any, angle: Any, max_order: float) -> tuple[Array, Array]:
+    """Samples and angles that belong together, fine enough for the order."""
+    values = checked_signal(signal, 16)
+    turned = checked_signal(angle, 16, "angle")
+    require_positive("max_order", max_order)
+    where = Argument("angle")
+    if turned.size != values.size:
+        raise InputError(
+            f"angle has {turned.size} samples, the signal has {values.size}",
+            where=where,
+            why="Each sample of the signal has its own angle",
+        )
+    steps = np.diff(turned)
+    if steps.min() < 0.0:
+        at = int(np.argmin(steps))
+        raise InputError(
+            f"angle falls from {turned[at]:.6g} to {turned[at + 1]:.6g} rad at sample {at + 1}",
+            where=where,
+            why="It counts on, without going back to zero after a revolution",
+            remedy="Unwrap it (numpy.unwrap), or take its negative if the shaft turns backwards",
+        )
+    if max_order * steps.max() > np.pi:
+        per = 2.0 * np.pi / steps.max()
+        raise InputError(
+            f"max_order = {max_order:g}",
+            where=Argument("max_order"),
+            why=f"At the highest speed a revolution has {per:.4g} samples, which tell orders apart "
+            f"up to {0.5 * per:.4g}",
+            remedy="Sample faster, run slower, or ask for less",
+        )
+    return values, turned
+
+
+def _too_short(turned: Array, least: float) -> InputError:
+    made = (turned[-1] - turned[0]) / (2.0 * np.pi)
+    return InputError(
+        f"the shaft turns {made:.4g} times",
+        where=Argument("angle"),
+        why=f"At least {least:g} revolutions are needed",
+        remedy="Record longer, or take shorter blocks",
+    )
+
+
+def _lines(
+    values: Array, turned: Array, start: float, revolutions: float, max_order: float, window: str
+) -> ComplexArray:
+    """Complex amplitudes at multiples of half an order over the revolutions."""
+    length = 2.0 * np.pi * revolutions
+    place = (turned - start) / length  # of the block, 0 to 1
+    inside = np.clip(place, 0.0, 1.0)
+    middles = 0.5 * (inside[1:] + inside[:-1])
+    # Each sample stands for the angle from the middle before it to the middle after it.
+    widths = np.diff(np.concatenate((inside[:1], middles, inside[-1:])))
+    weights = np.zeros_like(inside)
+    for term, share in enumerate(WINDOWS[window]):
+        weights += share * np.cos(2.0 * np.pi * term * inside)
+    count = int(np.floor(2.0 * max_order * revolutions + 1e-9)) + 1
+    sums = _uneven_transform(values * weights * widths, 0.5 * inside, count)
+    lines = 2.0 * sums * np.exp(-1j * np.arange(count) * start / (2.0 * revolutions))
+    lines[0] *= 0.5
+    return np.asarray(lines)
+
+
+def _uneven_transform(strength: Array, place: Array, count: int) -> ComplexArray:
+    """Sums of strength times exp(-2 pi i k place) for k from 0 to count - 1.
+
+    The strengths are spread onto an even grid by a kernel whose transform is divided out after
+    the fast Fourier transform: A. H. Barnett, J. Magland and L. af Klinteberg, SIAM J. Sci.
+    Comput. 41 (2019) C479, equations (1.8) and (3.12).
+    """
+    size, taken = _grid(count)
+    grid = np.zeros(size)
+    spread(strength, place, grid)
+    return np.asarray(np.fft.rfft(grid)[:count] / taken)
+
+
+@lru_cache(maxsize=16)
+def _grid(count: int) -> tuple[int, Array]:
+    """Size of the even grid for so many sums, and the transform of the kernel."""
+    from scipy.fft import next_fast_len
+
+    size = int(next_fast_len(int(2 * _OVER * count) + 4 * HALF, real=True))
+    nodes, shares = np.polynomial.legendre.leggauss(64)
+    kernel = np.exp(SHAPE * (np.sqrt(1.0 - nodes**2) - 1.0))
+    waves = np.cos(2.0 * np.pi / size * np.outer(np.arange(count), HALF * nodes))
+    return size, np.asarray(waves @ (HALF * shares * kernel))

@@ -1,0 +1,146 @@
+"""A run-up with known orders: to try an analysis on before it sees a test rig."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from tribodyn.checks import require_whole
+from tribodyn.errors import Argument, InputError, real_numbers, require_between, require_positive
+from tribodyn.measurement.recording import Recording
+from tribodyn.types import Array
+
+
+def synthetic_run_up(
+    orders: Mapping[float, float],
+    speed: Any = (0.0, 314.159265, 0.0),
+    *,
+    duration: float = 20.0,
+    sample_rate: float = 25600.0,
+    pulses_per_revolution: int = 60,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    mains: float = 0.0,
+    missing: int = 0,
+    double: int = 0,
+    seed: int = 0,
+    unit: str = "m/s^2",
+) -> Recording:
+    """Make the recording of a run-up whose orders are known.
+
+    Parameters
+    ----------
+    orders : mapping of float to float
+        Peak amplitude of each order, in the unit of the signal.
+    speed : (m,) array
+        Speeds of the shaft at even times [rad/s], joined by straight lines.
+    duration : float
+        Length of the recording [s].
+    sample_rate : float
+        Samples per second [Hz].
+    pulses_per_revolution : int
+        Pulses of the tachometer in a revolution.
+    jitter : float
+        Standard deviation of the moment of a pulse over the time between two [-].
+    noise : float
+        Standard deviation of white noise in the signal, in its unit.
+    mains : float
+        Peak amplitude of a line at 50 Hz, in the unit of the signal.
+    missing, double : int
+        Pulses that the tachometer leaves out, and that it gives twice.
+    seed : int
+        Of the random numbers.
+    unit : str
+        Unit of the signal.
+
+    Returns
+    -------
+    Recording
+        Channels ``signal`` and ``tacho`` [V], and ``angle`` [rad], the true angle of the shaft.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of its range, or an order passes half the sampling rate.
+
+    Examples
+    --------
+    >>> synthetic_run_up({29: 2.0}, duration=2.0)
+    Recording(signal [m/s^2], tacho [V], angle [rad], 51200 samples at 25600 Hz, 2 s)
+    """
+    speeds = np.atleast_1d(real_numbers(Argument("speed"), speed))
+    require_between("speed", speeds, 0.0, 1e5, "rad/s")
+    for name, value in (("duration", duration), ("sample_rate", sample_rate)):
+        require_positive(name, value)
+    for name, value in (("jitter", jitter), ("noise", noise), ("mains", mains)):
+        require_between(name, value, 0.0, 1e9)
+    per = require_whole("pulses_per_revolution", pulses_per_revolution)
+    lost, twice = require_whole("missing", missing, 0), require_whole("double", double, 0)
+    size = require_whole("duration times sample_rate", round(duration * sample_rate), 100)
+    time = np.arange(size) / sample_rate
+    angle = _angle(speeds, duration, time)
+    top = max(map(float, orders), default=0.0) * float(speeds.max()) / (2.0 * np.pi)
+    if not top < 0.5 * sample_rate:
+        raise InputError(
+            f"the highest order reaches {top:.6g} Hz", where=Argument("orders"),
+            why=f"Only frequencies below half of {sample_rate:g} Hz can be recorded",
+            remedy="Sample faster, or leave it out",
+        )  # fmt: skip
+    random = np.random.default_rng(require_whole("seed", seed, 0))
+    signal = mains * np.cos(2.0 * np.pi * 50.0 * time) + noise * random.standard_normal(size)
+    for order, amplitude in orders.items():
+        signal += float(amplitude) * np.cos(float(order) * angle)
+    pulses = _pulses(angle, time, per, jitter, lost, twice, random)
+    channels = {"signal": signal, "tacho": pulses, "angle": angle}
+    return Recording(channels, sample_rate, {"signal": unit, "tacho": "V", "angle": "rad"})
+
+
+def _angle(speeds: Array, duration: float, time: Array) -> Array:
+    """Exact angle for speeds on straight lines."""
+    if speeds.size == 1:
+        return np.asarray(speeds[0] * time)
+    knots = np.linspace(0.0, duration, speeds.size)
+    slopes = np.diff(speeds) / np.diff(knots)
+    begun = np.concatenate(([0.0], np.cumsum(0.5 * (speeds[1:] + speeds[:-1]) * np.diff(knots))))
+    piece = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, slopes.size - 1)
+    past = time - knots[piece]
+    return np.asarray(begun[piece] + speeds[piece] * past + 0.5 * slopes[piece] * past**2)
+
+
+def _pulses(
+    angle: Array, time: Array, per: int, jitter: float, missing: int, double: int, random: Any
+) -> Array:
+    """Pulses of 5 V, two fifths of their distance long; a double one is two of a fifth."""
+    each = 2.0 * np.pi / per
+    turned = angle / each
+    moments = np.interp(np.arange(1, int(turned[-1]) + 1), turned, time)
+    if moments.size < 8 + 4 * (missing + double):
+        raise InputError(
+            f"the shaft gives {moments.size} pulses", where=Argument("duration"),
+            why="At least eight are needed, and four more for each that is missing or double",
+            remedy="Turn longer or faster, or take more pulses per revolution",
+        )  # fmt: skip
+    apart = np.diff(moments)
+    gaps = np.minimum(np.append(apart, apart[-1]), np.append(apart[0], apart))
+    moments = moments + jitter * gaps * random.standard_normal(moments.size)
+    keep = np.ones(moments.size, dtype=bool)
+    keep[random.choice(np.arange(3, moments.size - 3, 3), missing, replace=False)] = False
+    moments, gaps = moments[keep], gaps[keep]
+    if not 0.2 * gaps.min() > time[1]:
+        raise InputError(
+            f"pulses follow each other within {gaps.min() / time[1]:.3g} samples",
+            where=Argument("pulses_per_revolution"),
+            why="Each needs at least five",
+            remedy="Sample faster, or take fewer pulses per revolution",
+        )
+    again = random.choice(np.arange(3, moments.size - 3, 3), double, replace=False)
+    starts = np.concatenate((moments, moments[again] + 0.4 * gaps[again]))
+    width = 0.4 * gaps
+    width[again] *= 0.5
+    ends = starts + np.concatenate((width, width[again]))
+    change = np.zeros(time.size + 1)
+    np.add.at(change, np.searchsorted(time, starts), 5.0)
+    np.add.at(change, np.searchsorted(time, ends), -5.0)
+    return np.asarray(np.cumsum(change)[:-1])

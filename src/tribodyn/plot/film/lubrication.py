@@ -1,0 +1,149 @@
+"""Lubrication regime of a tooth pair along the path of contact, and the parts of its friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import Need, drawing
+from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
+from tribodyn.plot.film.path import Path
+from tribodyn.plot.gear.path import sharing_words
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.look.panels import Panel, event_lines, stack
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, WHEEL, line
+from tribodyn.plot.mesh.cycle import TABLE, roll_angle_label, roll_angle_positions
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+
+_OIL, _METAL = PAIR_COLORS[2], WHEEL
+#: Fills of the regimes, from boundary to full film.
+FILLS = ("#f9dfcc", "#fdf5e5", "#e1f1fb")
+#: Film ratios that the axis shows at least.
+_SHOWN = (0.1, 4.0)
+_TICKS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
+has_ratio = Need(
+    "film_ratio",
+    "There is no film ratio: it needs an oil film and rough flanks. Choose film.model, for example "
+    '"dowson-higginson", and give gears.pinion.roughness_ra and gears.wheel.roughness_ra.',
+)
+LIMITS_IN_WORDS = (
+    f"Below a film ratio of {REGIME_LIMITS[0]:g} asperities carry most of the load (boundary "
+    f"lubrication), from {REGIME_LIMITS[1]:g} on hardly any of it (full film), in between both "
+    "(mixed)."
+)
+
+
+def _caption(mesh: MeshTable) -> str:
+    whose = (
+        f'as the friction law "{mesh.friction_law}" has it'
+        if mesh.asperity_friction_coefficient is not None
+        else f'by the film ratio, because the friction law "{mesh.friction_law}" has none'
+    )
+    return (
+        f"The least film of one tooth pair over the composite roughness. {LIMITS_IN_WORDS} The "
+        f"load share of the film is {whose}. {sharing_words(mesh.transverse_contact_ratio)}"
+    )
+
+
+def _missing(mesh: MeshTable) -> str:
+    if mesh.film_ratio is None or mesh.film_load_share is not None:
+        return has_ratio(mesh)
+    return "The program that made this table tells no load share of the film (film_load_share)."
+
+
+@drawing(
+    "lubrication",
+    heading="Lubrication regime",
+    caption=_caption,
+    of=("MeshTable", "Result.mesh"),
+    made_by=TABLE,
+    missing=_missing,
+)
+def lubrication(mesh: MeshTable) -> Any:
+    """Draw film ratio, load share and the parts of the friction force over the roll angle.
+
+    Parameters
+    ----------
+    mesh : MeshTable
+        Contact of one mesh cycle with an oil film between rough flanks.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    path = Path(mesh)
+    ratio, share = path.life("film_ratio"), path.life("film_load_share")
+    low, high = min(_SHOWN[0], 0.8 * np.nanmin(ratio)), max(_SHOWN[1], 1.2 * np.nanmax(ratio))
+    axis = {
+        "type": "log",
+        "range": [float(np.log10(low)), float(np.log10(high))],
+        "tickvals": _TICKS,
+    }
+    shares = [
+        line(path.angle, share, "oil film", _OIL),
+        line(path.angle, 1.0 - share, "asperities", _METAL, dash="dash"),
+    ]
+    panels = [
+        Panel(axis_label("film_ratio"), [line(path.angle, ratio, "film ratio", TOTAL)], axis),
+        Panel("Part of the load", shares, {"range": [0.0, 1.02]}),
+    ]
+    if mesh.asperity_friction_coefficient is not None:
+        panels.append(_friction(path))
+    marks = event_lines(roll_angle_positions(mesh).items())
+    marks["shapes"] = [*_bands(low, high), *marks["shapes"]]
+    marks["annotations"] += _names(low, high)
+    return stack(_title(mesh, share), roll_angle_label(mesh), panels, marks)
+
+
+def _title(mesh: MeshTable, share: Array) -> str:
+    """Regimes that the pair meets, and the least share of its film."""
+    regime = np.asarray(mesh.lubrication_regime)
+    met = [REGIMES[int(number)] for number in np.unique(regime[np.isfinite(regime)])]
+    words = " and ".join(met)
+    least = significant(100.0 * float(np.nanmin(share)))
+    return f"{words[0].upper()}{words[1:]} lubrication: the oil film carries at least {least} %"
+
+
+def _friction(path: Path) -> Panel:
+    """Friction force of a pair, and the part of it that asperities cause."""
+    unit = display_unit("friction_force")
+    force = path.life("normal_force") * path.life("sliding_direction")
+    whole, metal = (
+        displayed("friction_force", path.life(name) * force)
+        for name in ("friction_coefficient", "asperity_friction_coefficient")
+    )
+    curves = [
+        line(path.angle, whole, "both", TOTAL, unit=unit),
+        line(path.angle, whole - metal, "oil film", _OIL, unit=unit),
+        line(path.angle, metal, "asperities", _METAL, unit=unit, dash="dash"),
+    ]
+    return Panel(axis_label("friction_force"), curves, {"zeroline": True})
+
+
+def _edges(low: float, high: float) -> list[tuple[float, float]]:
+    """Film ratios between which each regime is shown."""
+    inner = np.clip(REGIME_LIMITS, low, high).tolist()
+    return [(low, inner[0]), (inner[0], inner[1]), (inner[1], high)]
+
+
+def _bands(low: float, high: float) -> list[dict[str, Any]]:
+    """Fill the regimes behind the first panel."""
+    place = {"type": "rect", "xref": "paper", "x0": 0, "x1": 1, "yref": "y", "layer": "below"}
+    return [
+        {**place, "y0": bottom, "y1": top, "fillcolor": fill, "line": {"width": 0}}
+        for (bottom, top), fill in zip(_edges(low, high), FILLS, strict=True)
+    ]
+
+
+def _names(low: float, high: float) -> list[dict[str, Any]]:
+    """Name the regimes beside the first panel."""
+    common = {"xref": "paper", "x": 1.01, "xanchor": "left", "yref": "y", "showarrow": False}
+    return [
+        {**common, "y": 0.5 * float(np.log10(bottom) + np.log10(top)), "text": name}
+        | {"font": {"size": 12, "color": MUTED}}
+        for (bottom, top), name in zip(_edges(low, high), REGIMES, strict=True)
+    ]

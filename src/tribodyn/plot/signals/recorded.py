@@ -1,0 +1,140 @@
+"""Recordings of a test rig: channels over time, amplitudes over orders, orders through time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.measurement import OrderSpectrum, Recording, TrackedOrders
+from tribodyn.plot.look.labels import readable, significant
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.types import Array
+
+#: Most panels of a recording, most points of a curve, and names in a title.
+_PANELS, _POINTS, _NAMED = 8, 4000, 3
+_DASHES = ("solid", "dash", "dot", "dashdot")
+
+
+@drawing(
+    "recording",
+    heading="Recording",
+    caption="The channels as they were recorded. Where there are more samples than the screen has "
+    "points, the largest and the smallest of each stretch are drawn.",
+    of="Recording",
+    made_by="Call tribodyn.measurement.read(path) and its plot method.",
+)
+def recording(recording: Recording) -> Any:
+    """Draw the channels over time, one panel each.
+
+    Parameters
+    ----------
+    recording : Recording
+        What :func:`tribodyn.measurement.read` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        With at most eight channels.
+    """
+    names = list(recording.channels)
+    panels = []
+    for name in names[:_PANELS]:
+        time, values = _outline(recording.time, recording[name])
+        unit = recording.units[name]
+        panels.append(Panel(_label(name, unit), [line(time, values, name, TOTAL, unit=unit)]))
+    left_out = f"; {len(names) - _PANELS} more channels" if len(names) > _PANELS else ""
+    words = ", ".join(names[:_NAMED]) + (" and others" if len(names) > _NAMED else "")
+    return stack(f"{recording.duration:.4g} s of {words}{left_out}", "Time [s]", panels)
+
+
+def _label(name: str, unit: str) -> str:
+    return f"{name} [{readable(unit)}]" if unit else name
+
+
+def _outline(time: Array, values: Array) -> tuple[Array, Array]:
+    """Smallest and largest sample of every stretch, so that no peak is lost."""
+    if values.size <= _POINTS:
+        return time, values
+    length = -(-values.size // (_POINTS // 2))
+    starts = np.arange(0, values.size, length)
+    ends = [np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)]
+    return np.repeat(time[starts], 2), np.stack(ends, axis=1).ravel()
+
+
+@drawing(
+    "order_spectrum",
+    heading="Orders",
+    caption="How strong each multiple of the rotation is, as a mean over the angle of the shaft. "
+    "What turns with the shaft is a line; what does not is spread.",
+    of="OrderSpectrum",
+    made_by="Call tribodyn.measurement.order_spectrum(...) and its plot method.",
+)
+def order_spectrum(spectrum: OrderSpectrum) -> Any:
+    """Draw the amplitudes over the orders of a shaft.
+
+    Parameters
+    ----------
+    spectrum : OrderSpectrum
+        What :func:`tribodyn.measurement.order_spectrum` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    top = 1 + int(np.argmax(spectrum.amplitudes[1:]))
+    order, size = spectrum.orders[1:], spectrum.amplitudes[1:]
+    if size.size > 2 * _POINTS:
+        length = -(-size.size // (2 * _POINTS))
+        starts = np.arange(0, size.size, length)
+        last = np.append(starts[1:], size.size)
+        largest = [a + int(np.argmax(size[a:b])) for a, b in zip(starts, last, strict=True)]
+        order, size = order[largest], size[largest]
+    curve = line(order, size, "amplitude", TOTAL, unit=spectrum.unit, width=1.2)
+    return stack(
+        f"Order {significant(float(spectrum.orders[top]), 4)} is the strongest: "
+        f"{with_unit(float(spectrum.amplitudes[top]), spectrum.unit)}",
+        "Order [cycles per revolution]",
+        [Panel(amplitude_label(spectrum.unit), [curve], {"rangemode": "tozero"}, 1.4)],
+    )
+
+
+@drawing(
+    "tracked_orders",
+    heading="Orders through time",
+    caption="The amplitude of every followed order while the speed changes, and the speed.",
+    of="TrackedOrders",
+    made_by="Call tribodyn.measurement.track_orders(...) and its plot method.",
+)
+def tracked_orders(tracked: TrackedOrders) -> Any:
+    """Draw the amplitudes of the followed orders, and the speed of the shaft, over time.
+
+    Parameters
+    ----------
+    tracked : TrackedOrders
+        What :func:`tribodyn.measurement.track_orders` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    curves: list[Trace] = []
+    for number, (order, size) in enumerate(zip(tracked.order, tracked.amplitude, strict=True)):
+        time, values = _outline(tracked.time, size)
+        color, dash = PAIR_COLORS[number % 4], _DASHES[number // 4 % 4]
+        name = f"order {order:g}"
+        curves.append(line(time, values, name, color, unit=tracked.unit, dash=dash))
+    row, column = np.unravel_index(int(np.argmax(tracked.amplitude)), tracked.amplitude.shape)
+    rpm = np.gradient(tracked.angle, tracked.time) * 30.0 / np.pi
+    speed = line(*_outline(tracked.time, rpm), "speed", TOTAL, unit="rpm")
+    return stack(
+        f"Order {tracked.order[row]:g} reaches "
+        f"{with_unit(float(tracked.amplitude[row, column]), tracked.unit)} at "
+        f"{significant(float(rpm[column]), 4)} rpm",
+        "Time [s]",
+        [Panel(amplitude_label(tracked.unit), curves, {"rangemode": "tozero"}, 1.4),
+         Panel("Speed [rpm]", [speed], {"rangemode": "tozero"}, 0.8)],
+    )  # fmt: skip

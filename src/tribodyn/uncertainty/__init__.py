@@ -1,0 +1,16 @@
+"""What is known within bounds only: samples of inputs, bands of outputs, shares of the variance.
+
+| module | what it answers |
+|---|---|
+| ``distribution`` | how a quantity is spread, from a text |
+| ``sampling`` | which values to compute with |
+| ``bands`` | how well a mean curve is known |
+| ``variance`` | which input the spread of an output comes from |
+"""
+
+from tribodyn.uncertainty.bands import Band, bootstrap_band
+from tribodyn.uncertainty.distribution import distribution
+from tribodyn.uncertainty.sampling import sample
+from tribodyn.uncertainty.variance import SobolIndices, sobol_indices
+
+__all__ = ["Band", "SobolIndices", "bootstrap_band", "distribution", "sample", "sobol_indices"]

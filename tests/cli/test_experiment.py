@@ -1,0 +1,94 @@
+"""The command that judges claims: what it tells and writes, what it refuses, how it is stopped."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tribodyn.cli import call
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+_FEW = ("--laws", "xu-2007", "--roughness", "0.4,0.8 um")
+
+
+def test_claims_and_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    place = tmp_path / "f"
+    assert call(["experiment", "friction", "--out", str(place), "--json", *_FEW]) == 0
+    found: dict[str, Any] = json.loads(capsys.readouterr().out)
+    assert found["complete"]
+    assert len(found["rows"]) == 2 * 3 * 3
+    assert {row["friction"] for row in found["rows"]} == {"none", "xu-2007 0.4 um",
+                                                          "xu-2007 0.8 um"}  # fmt: skip
+    (claim,) = (c for c in found["claims"] if c["source_of"] == "time-varying-friction")
+    assert claim["verdict"] == "fails"
+    assert claim["computed"].endswith("it falls where pinion drives")
+    assert {file.name for file in place.iterdir()} == {
+        "case.toml", "sweep.csv", "sweep.nc", "report.html"
+    }  # fmt: skip
+    # a second time needs --force
+    assert call(["experiment", "friction", "--out", str(place), *_FEW]) == 2
+    assert "--force" in capsys.readouterr().err
+    assert call(["experiment", "friction", "--out", str(place), "--force", *_FEW]) == 0
+    assert "holds" not in capsys.readouterr().out.splitlines()[5]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["experiment"], "tribodyn experiment friction"),
+        (["experiment", "wear"], 'there is no experiment "wear"'),
+        (["experiment", "friction", "fzg-rough"], "fzg-roughness"),
+        (["experiment", "friction", "--roughness", "0.4,0.8"], "lengths with a unit"),
+        (["experiment", "friction", "--roughness", "0.4..0.8 um:3"], "lengths with a unit"),
+        (["experiment", "friction", "--roughness", "0.4,0.8 mm"], "Allowed"),
+        (["experiment", "friction", "--laws", "xu"], "xu-2007"),
+        (["experiment", "friction", "--set", "operation.torque=3"], "unit"),
+    ],
+)
+def test_wrong_words_are_refused_with_the_remedy(
+    words: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert call(words) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "Traceback" not in error
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tribodyn", "experiment", "friction", "--out", "part"]
+    process = subprocess.Popen(command, cwd=tmp_path, text=True, stderr=subprocess.PIPE,
+                               stdout=subprocess.PIPE, start_new_session=True)  # fmt: skip
+    members = tmp_path / ".part.members" / "members.jsonl"
+    for _ in range(1200):
+        if members.exists() and members.read_text().count("\n") > 12:
+            break
+        assert process.poll() is None
+        time.sleep(0.1)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == 130, err
+    assert "Traceback" not in err
+    assert "not computed" in out
+    kept = members.read_text().count("\n") - 1
+    rows = (tmp_path / "part" / "sweep.csv").read_text().splitlines()[1:]
+    assert 10 <= len(rows) <= kept
+    done = subprocess.run([*command, "--force"], cwd=tmp_path, text=True, capture_output=True,
+                          check=True, timeout=600)  # fmt: skip
+    assert f"{kept} finished parts" in done.stderr
+    again = (tmp_path / "part" / "sweep.csv").read_text().splitlines()[1:]
+    assert again[: len(rows)] == rows
+    assert len(again) == 204
+    assert sorted(os.listdir(tmp_path)) == ["part"]

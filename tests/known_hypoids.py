@@ -1,0 +1,39 @@
+"""Hypoid pairs that tests share."""
+
+import math
+
+import numpy as np
+
+from tribodyn.errors import InputError
+from tribodyn.gear import hypoid_blank
+
+
+def h1043(**more):
+    """10 teeth against 43, offset 31.7 mm, a cutter of 9 in."""
+    return hypoid_blank(10, 43, 31.7e-3, 336e-3, 47.7e-3, math.radians(46.0), 114.3e-3, **more)
+
+
+def random_blanks(number, seed=0, **more):
+    """Blanks of random designs: teeth, offset of both signs, spiral angle and cutter."""
+    drawn, blanks, refused = np.random.default_rng(seed), [], 0
+    while len(blanks) < number:
+        diameter = drawn.uniform(0.15, 0.4)
+        offset = diameter * drawn.uniform(0.05, 0.15)
+        try:
+            blanks.append(
+                hypoid_blank(
+                    int(drawn.integers(8, 16)),
+                    int(drawn.integers(30, 46)),
+                    offset,
+                    diameter,
+                    0.14 * diameter,
+                    math.radians(drawn.uniform(42.0, 50.0)),
+                    drawn.uniform(0.33, 0.4) * diameter,
+                    hand_pinion=("left", "right")[len(blanks) % 2],
+                    **more,
+                )
+            )
+        except InputError:
+            refused += 1
+    assert refused <= number // 10
+    return blanks

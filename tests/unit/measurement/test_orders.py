@@ -1,0 +1,185 @@
+"""Angle of the shaft, orders and their course, on run-ups whose orders are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tribodyn.errors import ComputationError, InputError, ModelWarning
+from tribodyn.measurement import (
+    order_map,
+    order_spectrum,
+    shaft_angle,
+    synthetic_run_up,
+    track_orders,
+)
+from tribodyn.measurement.orders import _uneven_transform
+
+ORDERS = {1: 1.0, 14.5: 0.3, 29: 2.0, 58: 0.5}
+UP_AND_DOWN = (0.0, 3000.0 * np.pi / 30.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return synthetic_run_up(ORDERS, UP_AND_DOWN, jitter=0.01, noise=0.05)
+
+
+@pytest.fixture(scope="module")
+def angle(run):
+    return shaft_angle(run["tacho"], run.sample_rate, 60)
+
+
+def test_the_uneven_transform_equals_its_sum() -> None:
+    random = np.random.default_rng(0)
+    strength, place = random.normal(size=400), random.uniform(0.0, 0.5, 400)
+    sums = np.exp(-2j * np.pi * np.outer(np.arange(80), place)) @ strength
+    np.testing.assert_allclose(_uneven_transform(strength, place, 80), sums, atol=1e-10)
+
+
+def test_orders_of_a_run_from_rest_to_rest_to_a_thousandth(run, angle) -> None:
+    found = order_spectrum(run["signal"], angle, 70, unit="m/s^2")
+    for order, amplitude in ORDERS.items():
+        assert found.amplitude(order) == pytest.approx(amplitude, rel=1e-3)
+    assert "order 29" in repr(found)
+    assert found.to_xarray().units == "m/s^2"
+
+
+def test_an_order_between_lines_and_its_phase() -> None:
+    time = np.arange(60_000) / 20_000.0
+    turned = 2.0 * np.pi * (4.0 * time + 9.0 * time**2 + 0.3)
+    signal = 0.7 + 2.0 * np.cos(4.08 * turned + 0.5)
+    found = order_spectrum(signal, turned, 20)
+    line = int(np.argmax(found.amplitudes[1:])) + 1
+    assert found.amplitudes[line] == pytest.approx(2.0, rel=1e-3)
+    assert found.amplitudes[0] == pytest.approx(0.7, rel=1e-3)
+    whole = order_spectrum(2.0 * np.cos(7.0 * turned + 0.5), turned, 20)
+    at = int(np.argmin(np.abs(whole.orders - 7.0)))
+    assert whole.phases[at] == pytest.approx(0.5, abs=1e-4)
+
+
+def test_a_resonance_in_hertz_is_not_folded_onto_low_orders() -> None:
+    """Without a filter over the angle a fixed frequency would appear as an order."""
+    time = np.arange(100_000) / 20_000.0
+    turned = 2.0 * np.pi * (2.0 * time + time**2)
+    tone = np.cos(2.0 * np.pi * 3000.0 * time)
+    assert order_spectrum(tone, turned, 20).amplitudes.max() < 1e-6
+
+
+def test_the_map_and_its_cut_follow_an_order_from_rest(run, angle) -> None:
+    made = order_map(run["signal"], angle, 70, run.sample_rate, unit="m/s^2")
+    cut = made.cut(29)
+    np.testing.assert_allclose(cut.amplitude, 2.0, rtol=3e-3)
+    # speed of the middle of each block against the known course
+    known = UP_AND_DOWN[1] * (1.0 - np.abs(made.time - 10.0) / 10.0)
+    np.testing.assert_allclose(made.speed[3:-3], known[3:-3], rtol=0.02)
+
+
+@pytest.mark.parametrize("per", [1, 4, 60])
+@pytest.mark.parametrize("edge", ["rising", "falling"])
+def test_the_angle_of_clean_pulses(per: int, edge: str) -> None:
+    run = synthetic_run_up({}, UP_AND_DOWN, pulses_per_revolution=per)
+    tacho = run["tacho"] if edge == "rising" else 5.0 - run["tacho"]
+    found = shaft_angle(tacho, run.sample_rate, per, edge=edge)
+    away = found - run["angle"]
+    inner = (run.time > 1.0) & (run.time < 19.0)
+    # a sample of a pulse is 2 pi 50 / 25600 = 0.012 rad at the highest speed
+    assert np.std(away[inner]) < 0.002
+    assert np.all(np.diff(found) >= 0.0)
+    assert found[-1] - found[0] == pytest.approx(run["angle"][-1], abs=0.6)
+
+
+@pytest.mark.parametrize(("missing", "double"), [(20, 0), (0, 20), (15, 15)])
+def test_missing_and_double_pulses_are_counted_right(missing: int, double: int) -> None:
+    run = synthetic_run_up(
+        {}, UP_AND_DOWN, sample_rate=51200.0, jitter=0.01, missing=missing, double=double, seed=3
+    )
+    with pytest.warns(ModelWarning, match="tacho-repaired") as told:
+        found = shaft_angle(run["tacho"], run.sample_rate, 60)
+    text = str(told[0].message)
+    assert (f"{missing} missing" in text) == bool(missing)
+    assert (f"{double} double" in text) == bool(double)
+    away = found - run["angle"]
+    assert np.ptp(away[(run.time > 1.0) & (run.time < 19.0)]) < 0.01  # a pulse is 0.105 rad
+
+
+def test_a_standstill_is_no_missing_pulse() -> None:
+    turn = np.pi / 30.0
+    run = synthetic_run_up({}, np.array([0.0, 1500.0, 0.0, 0.0, 1500.0, 0.0]) * turn)
+    found = shaft_angle(run["tacho"], run.sample_rate, 60)
+    assert np.ptp(found - run["angle"]) < 0.2
+
+
+def test_jitter_is_smoothed_and_speed_is_not() -> None:
+    run = synthetic_run_up({}, (100.0, 300.0, 150.0), jitter=0.05, seed=1)
+    found = shaft_angle(run["tacho"], run.sample_rate, 60)
+    away = (found - run["angle"])[1000:-1000]
+    assert np.std(away) < 0.25 * 0.05 * 2.0 * np.pi / 60.0
+
+
+def test_the_filter_solves_its_equations() -> None:
+    count, rate, width = 60, 100.0, 10.0
+    signal = np.random.default_rng(0).normal(size=count)
+    turned = np.linspace(0.0, 20.0, count)
+    found = track_orders(signal, turned, [1.0, 2.5], rate, bandwidth=width)
+    weight = (np.sqrt(2) - 1) / (
+        6 - 8 * np.cos(np.pi * width / rate) + 2 * np.cos(2 * np.pi * width / rate)
+    )
+    second = np.diff(np.eye(count), 2, axis=0)
+    waves = np.hstack([np.diag(np.exp(1j * order * turned)) for order in (1.0, 2.5)])
+    matrix = waves.conj().T @ waves + weight * np.kron(np.eye(2), second.T @ second)
+    known = np.linalg.solve(matrix, 2.0 * waves.conj().T @ signal).reshape(2, count)
+    np.testing.assert_allclose(found.amplitude * np.exp(1j * found.phase), known, atol=1e-10)
+
+
+def test_the_filter_passes_half_its_power_at_the_edge_of_its_band() -> None:
+    rate, width = 1000.0, 4.0
+    time = np.arange(20_000) / rate
+    turned = 2.0 * np.pi * 100.0 * time
+    beside = np.cos(2.0 * np.pi * (100.0 + 0.5 * width) * time)
+    found = track_orders(beside, turned, [1.0], rate, bandwidth=width)
+    assert np.median(found.amplitude) == pytest.approx(1.0 / np.sqrt(2.0), rel=1e-3)
+
+
+def test_two_orders_that_cross_a_third_are_told_apart(run, angle) -> None:
+    part = run.cut(5.0, 8.0)
+    found = track_orders(part["signal"], part["angle"], [1, 29, 58], run.sample_rate, bandwidth=2.0)
+    middle = found.amplitude[:, 8000:-8000]
+    np.testing.assert_allclose(middle[1], 2.0, atol=0.03)
+    np.testing.assert_allclose(middle[2], 0.5, atol=0.03)
+    assert found.waveform(29).shape == part["signal"].shape
+    for made in (found, order_spectrum(part["signal"], part["angle"], 40), run):
+        assert made.plot().layout.title.text
+
+
+def test_known_lines_of_a_made_run_up() -> None:
+    quiet = synthetic_run_up({2: 3.0}, (50.0,), duration=2.0, sample_rate=4000.0)
+    np.testing.assert_allclose(quiet["angle"], 50.0 * quiet.time)
+    np.testing.assert_allclose(quiet["signal"], 3.0 * np.cos(2.0 * quiet["angle"]))
+    with pytest.raises(InputError, match="half of"):
+        synthetic_run_up({5000: 1.0})
+    with pytest.raises(InputError, match="samples"):
+        synthetic_run_up({}, pulses_per_revolution=2000)
+
+
+def test_refusals() -> None:
+    time = np.arange(20_000) / 1000.0
+    turned = 2.0 * np.pi * 20.0 * time
+    signal = np.cos(turned)
+    with pytest.raises(InputError, match="apart up to 25"):
+        order_spectrum(signal, turned, 30)
+    with pytest.raises(InputError, match="angle falls"):
+        order_spectrum(signal, -turned, 3)
+    with pytest.raises(InputError, match="samples"):
+        order_spectrum(signal, turned[:-1], 3)
+    with pytest.raises(InputError, match=r"turns 0\.99"):
+        order_spectrum(signal[:51], turned[:51] * 0.999, 3)
+    with pytest.raises(InputError, match="constant"):
+        shaft_angle(np.ones(100), 1000.0, 1)
+    with pytest.raises(ComputationError, match="pulses found"):
+        shaft_angle(np.cos(2.0 * np.pi * np.arange(1000) / 400.0), 1000.0, 1)
+    with pytest.raises(InputError, match="followed once"):
+        track_orders(signal, turned, [1, 1], 1000.0)
+    with pytest.raises(InputError, match="not two"):
+        track_orders(signal, turned, [40], 1000.0)
+    with pytest.raises(ComputationError, match="bandwidth"):
+        track_orders(signal, turned, [1], 1000.0, bandwidth=0.001)

@@ -1,0 +1,219 @@
+"""Recordings come back as the libraries that define their formats wrote them."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from scipy.io import savemat, wavfile
+from scipy.io.matlab import MatlabOpaque
+
+from tribodyn.errors import InputError
+from tribodyn.measurement import Recording, read
+
+RATE = 5000.0
+TIME = np.arange(1000) / RATE
+ACC, SOUND = np.sin(2 * np.pi * 50 * TIME), 3.0 * np.cos(2 * np.pi * 70 * TIME)
+
+
+def rows(separator: str, point: str = ".") -> str:
+    lines = (f"{a:.4f}{separator}{b:.7f}" for a, b in zip(TIME, ACC, strict=True))
+    return "\n".join(line.replace(".", point) for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("head", "separator", "point"),
+    [
+        ("time [s],acc [m/s^2]\n", ",", "."),
+        ("Rig 3; Mr. Smith\nZeit [s];acc [m/s^2]\n", ";", ","),
+        ("time\tacc\ns\tm/s^2\n", "\t", "."),
+        ("# comment\n# t acc\n", " ", "."),
+    ],
+)
+def test_columns_of_text_in_any_dialect(tmp_path: Path, head, separator, point) -> None:
+    file = tmp_path / "run.csv"
+    file.write_text("\ufeff" + head + rows(separator, point), "utf-8")
+    found = read(file)
+    assert found.sample_rate == pytest.approx(RATE)
+    np.testing.assert_allclose(found["acc"], ACC, atol=1e-7)
+    assert found.units["acc"] == ("" if "#" in head else "m/s^2")
+
+
+def test_compressed_text_and_milliseconds(tmp_path: Path) -> None:
+    file = tmp_path / "run.csv.gz"
+    text = "\n".join(f"{1e3 * a:.3f},{b:.7f}" for a, b in zip(TIME, ACC, strict=True))
+    with gzip.open(file, "wt") as out:
+        out.write("time [ms],acc\n" + text)
+    assert read(file).sample_rate == pytest.approx(RATE)
+
+
+def test_wav_of_floats_and_of_whole_numbers(tmp_path: Path) -> None:
+    wavfile.write(tmp_path / "f.wav", 5000, np.stack([ACC, SOUND], 1).astype("f4"))
+    wavfile.write(tmp_path / "i.wav", 5000, np.round(ACC * 32767).astype("i2"))
+    wavfile.write(tmp_path / "u.wav", 5000, np.round(128 + ACC * 127).astype("u1"))
+    np.testing.assert_allclose(read(tmp_path / "f.wav")["channel 2"], SOUND, atol=1e-6)
+    np.testing.assert_allclose(read(tmp_path / "i.wav")["channel 1"], ACC, atol=1e-4)
+    np.testing.assert_allclose(read(tmp_path / "u.wav")["channel 1"], ACC, atol=1e-2)
+
+
+def test_mat_and_hdf5(tmp_path: Path) -> None:
+    savemat(tmp_path / "a.mat", {"acc": ACC, "fs": RATE, "more": {"sound": SOUND}})
+    found = read(tmp_path / "a.mat")
+    np.testing.assert_array_equal(found["acc"], ACC)
+    np.testing.assert_array_equal(found["more.sound"], SOUND)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["rig/acc"] = 0.1 * ACC
+        file["rig/acc"].attrs["units"] = "V"
+        file.attrs["sample_rate"] = RATE
+    scaled = read(tmp_path / "a.h5", sensitivity={"rig/acc": "100 mV/g"})
+    np.testing.assert_allclose(scaled["rig/acc"], 9.80665 * ACC)
+    assert scaled.units["rig/acc"] == "m/s^2"
+
+
+def uff_set(samples: np.ndarray, name: str, binary: int, unit: str) -> dict:
+    """A time history as pyuff writes it."""
+    return {
+        "type": 58, "binary": binary, "func_type": 1, "rsp_node": 1, "rsp_dir": 1, "ref_node": 1,
+        "ref_dir": 1, "data": samples, "x": TIME, "id1": name, "rsp_ent_name": name,
+        "ref_ent_name": "NONE", "abscissa_spacing": 1, "abscissa_inc": 1.0 / RATE,
+        "abscissa_spec_data_type": 17, "ordinate_spec_data_type": 0, "orddenom_spec_data_type": 0,
+        "ordinate_axis_units_lab": unit, "z_axis_spec_data_type": 0, "n_bytes": 0,
+        "id2": "NONE", "id3": "NONE", "id4": "NONE", "id5": "NONE",
+    }  # fmt: skip
+
+
+def test_uff_and_tdms_by_their_own_libraries(tmp_path: Path) -> None:
+    pyuff, nptdms = pytest.importorskip("pyuff"), pytest.importorskip("nptdms")
+    for name, binary in (("text.uff", 0), ("binary.uff", 1)):
+        data = uff_set(SOUND, "microphone", binary, "Pa")
+        pyuff.UFF(str(tmp_path / name)).write_sets(data, "add")
+        found = read(tmp_path / name)
+        np.testing.assert_allclose(found["microphone"], SOUND, rtol=1e-4)
+        assert found.units["microphone"] == "Pa"
+        assert found.sample_rate == pytest.approx(RATE, rel=1e-4)
+    with nptdms.TdmsWriter(str(tmp_path / "a.tdms")) as out:
+        told = {"wf_increment": 1.0 / RATE, "unit_string": "g"}
+        out.write_segment([nptdms.ChannelObject("rig", "acc", ACC, properties=told)])
+    assert read(tmp_path / "a.tdms") == Recording({"acc": ACC}, RATE, {"acc": "g"})
+
+
+def test_a_saved_recording_comes_back_equal(tmp_path: Path) -> None:
+    made = Recording({"acc": ACC, "sound": SOUND}, RATE, {"acc": "m/s^2", "sound": "Pa"})
+    made.save(tmp_path / "made.nc")
+    assert read(tmp_path / "made.nc") == made
+    assert made.to_xarray()["sound"].units == "Pa"
+    assert read(tmp_path / "made.nc", channels=["sound"]).units == {"sound": "Pa"}
+    with h5py.File(tmp_path / "made.nc", "r+") as file:
+        file["acc"][7] = 5.0
+    with pytest.raises(InputError, match="not as it was written"):
+        read(tmp_path / "made.nc")
+
+
+def written(folder: Path) -> dict[str, Path]:
+    """One file of every kind that is written here."""
+    wavfile.write(folder / "a.wav", 5000, ACC.astype("f4"))
+    savemat(folder / "a.mat", {"acc": ACC, "fs": RATE})
+    with h5py.File(folder / "a.h5", "w") as file:
+        file["acc"] = ACC
+        file.attrs["fs"] = RATE
+    pyuff, nptdms = pytest.importorskip("pyuff"), pytest.importorskip("nptdms")
+    data = uff_set(ACC, "a", 1, "g")
+    pyuff.UFF(str(folder / "a.uff")).write_sets(data, "add")
+    with nptdms.TdmsWriter(str(folder / "a.tdms")) as out:
+        out.write_segment([nptdms.ChannelObject("r", "a", ACC, properties={"wf_increment": 2e-4})])
+    return {path.suffix: path for path in folder.iterdir()}
+
+
+def test_files_that_are_cut_short_are_refused(tmp_path: Path) -> None:
+    for suffix, path in written(tmp_path).items():
+        cut = tmp_path / f"cut{suffix}"
+        cut.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
+        with pytest.raises(InputError) as told:
+            read(cut)
+        assert "cut" in str(told.value), suffix
+
+
+def test_files_with_a_wrong_name_say_what_they_are(tmp_path: Path) -> None:
+    files = written(tmp_path)
+    for suffix, path in files.items():
+        for other in {*files, ".csv"} - {suffix}:
+            wrong = tmp_path / f"wrong{other}"
+            wrong.write_bytes(path.read_bytes())
+            with pytest.raises(InputError, match=r"is no .* file"):
+                read(wrong)
+
+
+def test_damaged_files_raise_nothing_but_input_errors(tmp_path: Path, draws) -> None:
+    files = written(tmp_path)
+    files[".csv"] = tmp_path / "a.csv"
+    files[".csv"].write_text("time,acc\n" + rows(","))
+    for random in draws(15):
+        for suffix, path in files.items():
+            raw = bytearray(path.read_bytes())
+            for _ in range(random.randint(1, 9)):
+                raw[random.randrange(len(raw) if random.random() < 0.5 else 600)] = (
+                    random.getrandbits(8)
+                )
+            damaged = tmp_path / f"damaged{suffix}"
+            damaged.write_bytes(raw)
+            try:
+                found = read(damaged)
+            except InputError:
+                continue
+            assert all(np.all(np.isfinite(found[name])) for name in found.channels)
+
+
+def test_a_table_of_matlab_names_the_way_out(tmp_path: Path, monkeypatch) -> None:
+    held = {"None": np.zeros(1).view(MatlabOpaque)}
+    monkeypatch.setattr("scipy.io.loadmat", lambda *_, **__: held)
+    savemat(tmp_path / "t.mat", {"a": ACC})
+    with pytest.raises(InputError, match="table2struct"):
+        read(tmp_path / "t.mat")
+
+
+BAD = [
+    ("a,b\n1,2\n3,x\n", {}, '"x" is no number in row 2'),
+    ("a,b\n1,2\n3\n", {}, "1 columns"),
+    ("a,b\n1,2\n3,nan\n", {}, '"nan" is no number'),
+    ("a,b\n1,2\n3,4\n", {}, "Give sample_rate"),
+    ("time,b\n0,2\n1,4\n2,4\n4,4\n", {}, "a step of 2 s at sample 3"),
+    ("time,b\n0,2\n0,4\n", {}, "do not rise"),
+    ("time\n0\n1\n", {}, "has times and nothing else"),
+    ("nothing here", {}, "no line of numbers"),
+    ("time,b\n0,2\n1,4\n", {"sample_rate": 2.0}, "sampling rates differ"),
+    ("time,acc\n0,2\n1,4\n", {"channels": ["ac"]}, 'Did you mean "acc"'),
+    ("time,acc\n0,2\n1,4\n", {"sensitivity": {"acc": "100 mV"}}, "100 mV/g"),
+    ("time,acc\n0,2\n1,4\n", {"sensitivity": {"acc": "1 kg/g"}}, "100 mV/g"),
+]
+
+
+@pytest.mark.parametrize(("text", "options", "told"), BAD)
+def test_messages(tmp_path: Path, text: str, options: dict, told: str) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text(text)
+    with pytest.raises(InputError) as error:
+        read(file, **options)
+    assert told in str(error.value)
+
+
+@pytest.mark.parametrize("path", ["", "missing.csv", "/dev/zero", 3, None])
+def test_places_that_are_no_recording(path: object) -> None:
+    with pytest.raises(InputError):
+        read(path)
+
+
+def test_recordings_are_whole(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="different numbers"):
+        Recording({"a": ACC, "b": ACC[1:]}, RATE, {})
+    with pytest.raises(InputError, match="nan at sample 2"):
+        Recording({"a": [1.0, 2.0, np.nan]}, RATE, {})
+    with pytest.raises(InputError):
+        Recording({}, RATE, {})
+    made = Recording({"a": ACC}, RATE, {})
+    assert made.cut(0.05, 0.1)["a"].size == 250
+    with pytest.raises(InputError, match=r"lasts 0\.2 s"):
+        made.cut(0.1, 0.3)
+    assert len(made.plot().data) == 1
