@@ -135,7 +135,17 @@ class FilmModel(Model):
         return ("none",) if self.load_exponent is None else ("none", "tangent")
 
     def why_not(self, kind: str) -> str:
-        """Why the film has no stiffness of this kind."""
+        """Tell why the film has no stiffness of some kind.
+
+        Parameters
+        ----------
+        kind : str
+            The stiffness asked for.
+
+        Returns
+        -------
+        str
+        """
         known = f"Its film has: {', '.join(self.stiffness_kinds)}"
         if kind != "approach" or self.central is None:
             return known
