@@ -128,10 +128,6 @@ class Drawing:
         ----------
         result : object
             One of the classes in ``of``.
-
-        Returns
-        -------
-        str
         """
         return self.caption if isinstance(self.caption, str) else self.caption(self.subject(result))
 

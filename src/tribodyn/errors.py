@@ -419,10 +419,6 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
     known : iterable of str
         The words.
 
-    Returns
-    -------
-    str
-
     Raises
     ------
     InputError

@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["STOPPED", "Threads", "in_threads", "refuse_stopped", "stop_flag"]
+__all__ = ["STOPPED", "Threads", "in_threads", "refuse_stopped", "stop_flag", "stoppable"]
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -78,8 +78,12 @@ class Threads:
 
     def __enter__(self) -> Threads:
         """Begin the threads."""
-        for thread in self._threads:
-            thread.start()
+        try:
+            for thread in self._threads:
+                thread.start()
+        except BaseException:
+            self._stop()
+            raise
         return self
 
     def __exit__(
@@ -87,14 +91,10 @@ class Threads:
         trace: TracebackType | None,
     ) -> None:  # fmt: skip
         """Wait for the threads; after an error nothing new begins, and an interruption ends all."""
-        if kind is not None:
-            for future in self._waiting:
-                future.cancel()
-        for _ in self._threads:
-            self._tasks.put(None)
         try:
             if error is not None and not isinstance(error, Exception):
                 self._stop()
+            self._dismiss(cancel=kind is not None)
             while any(thread.is_alive() for thread in self._threads):
                 for thread in self._threads:
                     thread.join(_MOMENT)
@@ -102,14 +102,21 @@ class Threads:
             self._stop()
             raise
 
+    def _dismiss(self, cancel: bool) -> None:
+        """Let every thread end after its task; with ``cancel`` nothing that waits is begun."""
+        if cancel:
+            for future in self._waiting:
+                future.cancel()
+        for _ in self._threads:
+            self._tasks.put(None)
+
     def _stop(self) -> None:
         """Raise the flag, and wait a little for the threads to see it."""
         self.flag[0] = 1
-        for future in self._waiting:
-            future.cancel()
+        self._dismiss(cancel=True)
         end = time.monotonic() + _GRACE
-        for thread in self._threads:
-            thread.join(max(end - time.monotonic(), 0.0))
+        while any(thread.is_alive() for thread in self._threads) and time.monotonic() < end:
+            time.sleep(0.1 * _MOMENT)
         self._threads = []
 
 
@@ -134,3 +141,10 @@ def in_threads(
             for future in done:
                 future.result()
         return [future.result() for future in running]
+
+
+def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:
+    """Call a compiled function that takes the flag last, and returns its status (first)."""
+    answer = in_threads(lambda _: kernel(*arguments, stop_flag()), (0,), 1, brief=brief)[0]
+    refuse_stopped(answer[0] if isinstance(answer, tuple) else answer)
+    return answer

@@ -209,10 +209,6 @@ def lookup(name: str) -> Quantity:
     name : str
         Exact name.
 
-    Returns
-    -------
-    Quantity
-
     Raises
     ------
     KeyError

@@ -360,10 +360,6 @@ def format_quantity(value: float, unit: str, display_unit: str | None = None) ->
     display_unit : str, optional
         Unit to write; ``unit`` by default.
 
-    Returns
-    -------
-    str
-
     Examples
     --------
     >>> format_quantity(0.0045, "m", "mm")

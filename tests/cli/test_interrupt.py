@@ -1,8 +1,9 @@
-"""An interruption that Python drops inside a destructor comes again."""
+"""Interruptions that Python drops come again; repeated ones leave the documented exit code."""
 
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 import threading
 
@@ -53,3 +54,41 @@ def test_other_dropped_exceptions_go_their_usual_way(monkeypatch: pytest.MonkeyP
         thing = Failing()
         del thing
     assert seen == [OSError]
+
+
+#: Interrupts a command and, so many lines later, whatever Python does then; 0 is a shower.
+_TWICE = """
+import signal, sys
+from tribodyn.cli import entry
+
+left = every = int(sys.argv[1])
+heard = False
+
+def trace(frame, event, argument):
+    global left
+    if heard:
+        left -= 1
+        if left <= 0:
+            left = 10**9 if every else 0
+            signal.raise_signal(signal.SIGINT)
+    return trace
+
+def command(arguments):
+    global heard
+    heard = True
+    signal.raise_signal(signal.SIGINT)
+
+entry._dispatch = command
+sys.settrace(trace)
+entry.main([])
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals to the own process")
+@pytest.mark.parametrize("lines", [0, 1, 8, *range(20, 70, 6), 1000])
+def test_a_second_interruption_leaves_the_documented_code(lines: int) -> None:
+    command = [sys.executable, "-c", _TWICE, str(lines)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
+    assert "Traceback" not in done.stderr
+    assert "interrupted" in done.stderr
+    assert done.returncode == 130

@@ -13,8 +13,11 @@ import numpy as np
 import pytest
 
 import tribodyn as td
+from tribodyn.ehl import solve_line_contacts
 from tribodyn.errors import ComputationError, ModelWarning, quiet
 from tribodyn.study import read_case
+
+Draws = Callable[[int], Iterator[random.Random]]
 
 PAIR = """
 [gears]
@@ -40,10 +43,14 @@ backlash = "0.05 mm"
 """
 
 
-def solved(changes: dict[str, Any]) -> dict[str, Any]:
+def computed(changes: dict[str, Any]) -> td.Result:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # the flanks do part
-        return td.run(read_case(PAIR).replace(changes)).summary()
+        return td.run(read_case(PAIR).replace(changes))
+
+
+def solved(changes: dict[str, Any]) -> dict[str, Any]:
+    return computed(changes).summary()
 
 
 @pytest.mark.parametrize("law", ["force-law", "tangent"])
@@ -64,22 +71,35 @@ def test_the_orbit_is_that_of_finer_steps(speed: int, law: str) -> None:
     assert coarse["rms_mesh_force"] == pytest.approx(fine["rms_mesh_force"], rel=1e-4)
 
 
-def test_random_pairs_near_resonance_end(draws: Callable[[int], Iterator[random.Random]]) -> None:
+def near_resonance(chance: random.Random) -> dict[str, Any]:
+    changes = {
+        "gears.pinion.teeth": chance.randint(18, 40),
+        "gears.wheel.teeth": chance.randint(41, 80),
+        "operation.torque": f"{chance.uniform(20, 300):.4g} N*m",
+        "dynamics.mesh_damping_ratio": round(chance.uniform(0.01, 0.06), 4),
+        "dynamics.backlash": f"{chance.uniform(0.02, 0.2):.3g} mm",
+        "dynamics.mesh_law": chance.choice(["force-law", "tangent", "stiffness"]),
+    }
+    with quiet():
+        modes = td.natural_modes(read_case(PAIR).replace(changes))
+    own = modes.frequency[int(np.argmax(modes.contact_share))]
+    speed = own * chance.uniform(0.4, 1.2) / changes["gears.pinion.teeth"] * 60.0
+    return {**changes, "operation.speed": f"{speed:.6g} rpm"}
+
+
+def relief(chance: random.Random) -> dict[str, Any]:
+    return {
+        f"gears.{gear}.modification.tip_relief": f"{chance.uniform(2, 25):.3g} um"
+        for gear in ("pinion", "wheel")
+    }
+
+
+def test_random_pairs_near_resonance_end(draws: Draws) -> None:
     told: list[str] = []
     for chance in draws(6):
-        changes = {
-            "gears.pinion.teeth": chance.randint(18, 40),
-            "gears.wheel.teeth": chance.randint(41, 80),
-            "operation.torque": f"{chance.uniform(20, 300):.4g} N*m",
-            "dynamics.mesh_damping_ratio": round(chance.uniform(0.01, 0.06), 4),
-            "dynamics.backlash": f"{chance.uniform(0.02, 0.2):.3g} mm",
-            "dynamics.mesh_law": chance.choice(["force-law", "tangent", "stiffness"]),
-        }
-        with quiet():
-            modes = td.natural_modes(read_case(PAIR).replace(changes))
-        own = modes.frequency[int(np.argmax(modes.contact_share))]
-        speed = own * chance.uniform(0.4, 1.2) / changes["gears.pinion.teeth"] * 60.0
-        changes["operation.speed"] = f"{speed:.6g} rpm"
+        changes = near_resonance(chance)
+        if chance.random() < 0.5:
+            changes |= relief(chance)
         print(changes)
         try:
             found = solved(changes)
@@ -90,3 +110,66 @@ def test_random_pairs_near_resonance_end(draws: Callable[[int], Iterator[random.
         assert found["steady_state_error"] < 1e-6
     # A motion that never repeats has no orbit, and that is what it says.
     assert all("period" in words or "orbit" in words for words in told), told
+
+
+OILS = ("ISO VG 46", "ISO VG 100", "ISO VG 220", "ISO VG 460")
+
+
+def film(chance: random.Random) -> dict[str, Any]:
+    return {
+        "lubricant.name": chance.choice(OILS),
+        "lubricant.temperature": f"{chance.uniform(40, 90):.3g} degC",
+        "film.model": "newton",
+        "film.stiffness": chance.choice(["none", "tangent"]),
+        "film.positions": chance.choice([12, 30, 60]),
+    }
+
+
+def deviations(result: td.Result, chance: random.Random) -> dict[str, float]:
+    """Greatest deviation of films from those of the very contacts that they stand at.
+
+    At the places that the figures of the summary come from, and at some others.
+    """
+    mesh, case, summary = result.mesh, result.case, result.summary()
+    oil, steel = case.lubricant_properties, case.material_properties
+    modulus = steel.youngs_modulus / (1.0 - steel.poissons_ratio**2)
+    columns = {
+        "central_film": (mesh.central_film, np.nanargmin),
+        "minimum_film_over_path": (mesh.minimum_film, np.nanargmin),
+        "maximum_film_pressure": (mesh.film_pressure, np.nanargmax),
+    }
+    places = chance.sample(list(np.argwhere(mesh.in_contact & np.isfinite(mesh.central_film))), 12)
+    for name, (column, extreme) in columns.items():
+        known = np.where(mesh.in_contact, column, np.nan)
+        place = np.unravel_index(extreme(known), known.shape)
+        assert summary[name] == known[place]
+        places.append(np.array(place))
+    index = tuple(np.array(places).T)
+    contacts = (mesh.load_per_width, mesh.equivalent_radius, mesh.entrainment_speed)
+    with quiet():
+        films = solve_line_contacts(
+            *(column[index] for column in contacts), oil, modulus, nodes=513, keep_solutions=True
+        )
+    pressure = np.array([solution.pressure.max() for solution in films.solutions])
+    solved = (films.central_film, films.minimum_film, pressure)
+    return {
+        name: float(np.nanmax(np.abs(column[index] / exact - 1.0)))
+        for (name, (column, _)), exact in zip(columns.items(), solved, strict=True)
+    }
+
+
+@pytest.mark.slow
+def test_films_of_random_pairs_near_resonance_are_those_of_their_contacts(draws: Draws) -> None:
+    told: list[str] = []
+    for chance in draws(2):
+        changes = {**near_resonance(chance), **relief(chance), **film(chance)}
+        print(changes)
+        try:
+            result = computed(changes)
+        except ComputationError as error:
+            told.append(str(error))
+            continue
+        found = deviations(result, chance)
+        print(found)
+        assert max(found.values()) < 0.02
+    assert all(any(word in words for word in ("period", "orbit", "film")) for words in told), told

@@ -40,7 +40,7 @@ def solve_level(n, dx, lam, target, imposed, tail, oil, shape, offset, free, P, 
     equation = Equation(lam, oil, 1.0, 0.0, np.zeros(n + 1), shape, tail, imposed, target)
     return newton_level(
         make_grid(n, dx), equation, Limits(1e-10, 1e-9, 40, 1e-2, 0.3), offset, free, P, H,
-        np.empty(0), no_coarse(), newton_work(n),
+        np.empty(0), no_coarse(), newton_work(n, np.zeros(1, np.int64)),
     )  # fmt: skip
 
 

@@ -22,10 +22,6 @@ def run(case: Case | str | os.PathLike[str], progress: Progress = SILENT) -> Res
     progress : Progress
         Told how far the run has come; silent by default.
 
-    Returns
-    -------
-    Result
-
     Raises
     ------
     InputError

@@ -23,10 +23,6 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
         Name from :func:`tribodyn.cases`, or path of a TOML file. A file that has the name of a
         built-in case is reached as ``./name``.
 
-    Returns
-    -------
-    Case
-
     Raises
     ------
     InputError

@@ -79,12 +79,7 @@ def _welcome(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
 
 
 def make_app() -> App:
-    """Build the command line; nothing heavy is imported.
-
-    Returns
-    -------
-    App
-    """
+    """Build the command line; nothing heavy is imported."""
     app = App(
         name="tribodyn",
         help="Gear tribo-dynamics: tooth contact, friction, stiffness and vibration.",

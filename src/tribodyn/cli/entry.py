@@ -11,6 +11,7 @@ import re
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,25 @@ if TYPE_CHECKING:
 
 #: Time to get out of the callback before the interruption is repeated [s].
 _MOMENT = 0.05
+#: Signals so soon after an interruption are the same one [s].
+_SAME = 0.5
+
+
+class _Ear:
+    """Hears Ctrl-C: a repeated one must not cut off what the first one leads to."""
+
+    def __init__(self) -> None:
+        self.last = -_SAME
+
+    def __call__(self, *_: object) -> None:
+        """Interrupt, unless that was done just now."""
+        now = time.monotonic()
+        if now - self.last >= _SAME:
+            self.last = now
+            raise KeyboardInterrupt
+
+
+_ear = _Ear()
 
 
 @contextmanager
@@ -36,6 +56,7 @@ def interruptible() -> Iterator[None]:
 
     def again(dropped: sys.UnraisableHookArgs) -> None:
         if issubclass(dropped.exc_type, KeyboardInterrupt):
+            _ear.last = -_SAME
             timers.append(threading.Timer(_MOMENT, _interrupt))
             timers[-1].daemon = True
             timers[-1].start()
@@ -104,6 +125,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments : sequence of str, optional
         Words after the program's name; those of the process by default.
     """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _ear)
     code = call(sys.argv[1:] if arguments is None else arguments)
     # All is said: a repeated Ctrl-C no longer meets Python while it ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

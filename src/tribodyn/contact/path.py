@@ -289,10 +289,6 @@ def path_of_contact(pair: SpurPair) -> PathOfContact:
     pair : SpurPair
         The pair; its driver decides which end of the path is A.
 
-    Returns
-    -------
-    PathOfContact
-
     Notes
     -----
     Source: ISO 21771. A is where the driven gear's tip meets the line of action, E where the

@@ -109,10 +109,6 @@ class RoughnessProfile:
         beyond : {"refuse", "periodic", "level"}
             What lies beyond the ends.
 
-        Returns
-        -------
-        RoughnessProfile
-
         Raises
         ------
         InputError

@@ -24,7 +24,16 @@ from tribodyn.gear.flank_gap import (
     run_out_gap,
     tooth_positions,
 )
-from tribodyn.gear.hypoid import HypoidBlank, hypoid_blank
+from tribodyn.gear.hypoid import (
+    EaseOff,
+    HypoidBlank,
+    HypoidFlanks,
+    Misalignment,
+    ToothContact,
+    hypoid_blank,
+    hypoid_flanks,
+    tooth_contact,
+)
 from tribodyn.gear.mass_properties import MassProperties, Material, mass_properties, section_moments
 from tribodyn.gear.mesh_geometry import (
     FlankRange,
@@ -44,15 +53,19 @@ from tribodyn.gear.tooth_form import BasicRack, ToothForm
 
 __all__ = [
     "BasicRack",
+    "EaseOff",
     "FlankModification",
     "FlankRange",
     "HypoidBlank",
+    "HypoidFlanks",
     "MassProperties",
     "Material",
     "MeshGeometry",
+    "Misalignment",
     "ProfileMap",
     "SpurGear",
     "SpurPair",
+    "ToothContact",
     "ToothForm",
     "default_relief_length",
     "flank_gap",
@@ -61,6 +74,7 @@ __all__ = [
     "half_tooth",
     "hunting_period",
     "hypoid_blank",
+    "hypoid_flanks",
     "lead_gap",
     "mass_properties",
     "operating_pressure_angle",
@@ -70,6 +84,7 @@ __all__ = [
     "section_moments",
     "spur_pair",
     "tip_shortening_coefficient",
+    "tooth_contact",
     "tooth_outline",
     "tooth_positions",
     "zero_backlash_center_distance",

@@ -130,10 +130,6 @@ def mass_properties(gear: SpurGear, density: float) -> MassProperties:
     density : float
         Density [kg/m^3].
 
-    Returns
-    -------
-    MassProperties
-
     Raises
     ------
     InputError

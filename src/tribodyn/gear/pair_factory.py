@@ -272,10 +272,6 @@ def spur_pair(
     driver : str
         Driving gear, ``"pinion"`` or ``"wheel"``.
 
-    Returns
-    -------
-    SpurPair
-
     Raises
     ------
     InputError

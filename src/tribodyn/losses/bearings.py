@@ -178,10 +178,6 @@ def bearing_moments(
     oil_level : float [m]
         H: height of the oil above the lowest point of the outer raceway.
 
-    Returns
-    -------
-    BearingMoments
-
     Raises
     ------
     InputError

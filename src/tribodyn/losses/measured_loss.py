@@ -176,10 +176,6 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
     **more : object
         Further arguments of :class:`PowerLossTable`.
 
-    Returns
-    -------
-    PowerLossTable
-
     Raises
     ------
     InputError

@@ -53,10 +53,6 @@ def from_library(name: str, temperature: float | None = None) -> Lubricant:
     temperature : float, optional [K]
         Working temperature. By default the one at which the oil is known, or the lower of two.
 
-    Returns
-    -------
-    Lubricant
-
     Raises
     ------
     InputError

@@ -136,10 +136,6 @@ class Lubricant:
         assumptions : tuple of str
             What was assumed because no source states it.
 
-        Returns
-        -------
-        Lubricant
-
         Raises
         ------
         InputError

@@ -82,10 +82,6 @@ def build(
     progress : Progress
         Told how many oil films are solved.
 
-    Returns
-    -------
-    MeshTable
-
     Raises
     ------
     InputError

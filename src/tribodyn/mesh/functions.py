@@ -180,10 +180,6 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
         The same mesh at the same speed under different torques, on one phase grid, and the one at
         the nominal torque.
 
-    Returns
-    -------
-    MeshFriction
-
     Raises
     ------
     InputError

@@ -123,10 +123,6 @@ def film_over_operation(
     progress : Progress
         Told how many films are solved.
 
-    Returns
-    -------
-    FilmOverOperation
-
     Raises
     ------
     InputError
@@ -352,10 +348,6 @@ def comprehensive_stiffness(
         Phase intervals of a mesh cycle.
     progress : Progress
         Told how many films are solved.
-
-    Returns
-    -------
-    ComprehensiveStiffness
 
     Raises
     ------

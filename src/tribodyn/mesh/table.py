@@ -148,12 +148,7 @@ class MeshTable(MeshColumns):
         return [*stored, *(name for name in self.DERIVED if name != "phase")]
 
     def functions(self) -> MeshFunctions:
-        """Hand over what a dynamic model reads, as functions of mesh phase.
-
-        Returns
-        -------
-        MeshFunctions
-        """
+        """Hand over what a dynamic model reads, as functions of mesh phase."""
         return MeshFunctions(
             stiffness=PhaseFunction(self.grid, self.mesh_stiffness),
             friction_sum=PhaseFunction(self.grid, self.friction_sum),

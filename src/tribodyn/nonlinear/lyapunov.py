@@ -172,10 +172,6 @@ def lyapunov_exponents(
     progress : Progress
         Told about the mesh cycles.
 
-    Returns
-    -------
-    LyapunovExponents
-
     Raises
     ------
     InputError

@@ -103,10 +103,6 @@ def parameter_map(
     progress : Progress
         Told about the motions.
 
-    Returns
-    -------
-    ParameterMap
-
     Raises
     ------
     InputError

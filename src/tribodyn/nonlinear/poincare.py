@@ -121,10 +121,6 @@ def poincare(
     system : System, optional
         That of a motion that is known already, which is then marched again with half the step.
 
-    Returns
-    -------
-    PoincareSection
-
     Raises
     ------
     InputError
@@ -337,10 +333,6 @@ def phase_portrait(
         First mesh cycles to leave out.
     system : System, optional
         That of the motion: it is then marched again with half the step, for the verdict.
-
-    Returns
-    -------
-    PhasePortrait
 
     Raises
     ------

@@ -90,10 +90,6 @@ def angular_resampling(
     highest_order : float, optional
         Highest order that must come through [-]; a third of the samples by default.
 
-    Returns
-    -------
-    AngularSignal
-
     Raises
     ------
     InputError

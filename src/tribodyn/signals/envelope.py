@@ -204,10 +204,6 @@ def sidebands(
     unit : str
         Unit of the signal, for display.
 
-    Returns
-    -------
-    Sidebands
-
     Raises
     ------
     InputError

@@ -50,10 +50,6 @@ def order_map(
     unit : str
         Unit of the signal, for display.
 
-    Returns
-    -------
-    OrderMap
-
     Raises
     ------
     InputError

@@ -259,10 +259,6 @@ def overall_level(
     part
         Likewise.
 
-    Returns
-    -------
-    OverallLevel
-
     Raises
     ------
     InputError

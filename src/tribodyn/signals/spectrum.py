@@ -310,10 +310,6 @@ def zoom_spectrum(
     window, unit
         As :func:`spectrum` takes them.
 
-    Returns
-    -------
-    SignalSpectrum
-
     Raises
     ------
     InputError

@@ -142,10 +142,6 @@ def time_synchronous_average(
     unit : str
         Unit of the signal, for display.
 
-    Returns
-    -------
-    SynchronousAverage
-
     Raises
     ------
     InputError
@@ -280,10 +276,6 @@ def condition_indicators(
         Of all earlier records of the same gear, for NA4.
     mesh_harmonics : int
         Harmonics in the sum of FM0.
-
-    Returns
-    -------
-    ConditionIndicators
 
     Raises
     ------

@@ -78,13 +78,22 @@ def test_the_worst_of_many_contacts_is_told():
     assert films.central_film_error[1] > 0.02 * films.central_film[1]
 
 
-@pytest.mark.parametrize("M", [0.3, 0.7, 2.0, 10.0])
-def test_a_flooded_film_hardly_depends_on_where_the_domain_begins(M):
-    options = {"nodes": 2049, "viscosity_law": "isoviscous", "compressible": False}
-    near = _solved(M, 0.0, **options)
-    start, end = near.domain
-    far = _solved(M, 0.0, **(options | {"domain": (3.0 * start, end), "nodes": 8193}))
-    assert far.central_film == pytest.approx(near.central_film, rel=3e-3)
+def test_the_estimate_bounds_the_error_of_a_domain_that_begins_too_near(draws):
+    """Random flooded contacts, of thick films too, against a domain four times as long."""
+    for drawn in draws(6):
+        M, L = 10.0 ** drawn.uniform(-1.3, 2.0), drawn.choice([0.0, drawn.uniform(0.5, 25.0)])
+        law = drawn.choice(["roelands", "barus"]) if L else "isoviscous"
+        options = {"viscosity_law": law, "compressible": drawn.random() < 0.5, "nodes": "auto"}
+        chosen = _solved(M, L, **options)
+        start, end = chosen.domain
+        near = -max(3.0, drawn.uniform(0.3, 1.0) * abs(start))
+        stated = _solved(M, L, **(options | {"domain": (near, end)}))
+        far = _solved(M, L, film_tolerance=2e-5, **(options | {"domain": (4.0 * start, end)}))
+        fine = _figures(far)
+        assert chosen.central_film == pytest.approx(fine[0], rel=5e-4)
+        for each in (chosen, stated):
+            true = np.abs(_figures(each) - fine)
+            assert np.all(true <= _errors(each) + 2e-4 * fine), (M, L, law, near)
 
 
 @pytest.mark.slow

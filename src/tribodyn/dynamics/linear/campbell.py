@@ -132,10 +132,6 @@ def campbell(
     phase : "mean" or float
         Contact stiffness: mean over the mesh cycle, or that at one mesh phase in [0, 1).
 
-    Returns
-    -------
-    Campbell
-
     Raises
     ------
     InputError

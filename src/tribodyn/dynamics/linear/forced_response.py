@@ -110,10 +110,6 @@ def forced_response(
     friction : bool
         Whether friction follows the contact force.
 
-    Returns
-    -------
-    ForcedResponse
-
     Raises
     ------
     InputError

@@ -152,10 +152,6 @@ def natural_modes(
     friction : bool
         Whether the damped motion feels friction, which can make it grow.
 
-    Returns
-    -------
-    NaturalModes
-
     Raises
     ------
     InputError

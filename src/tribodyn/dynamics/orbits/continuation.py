@@ -108,10 +108,6 @@ def continuation(
     progress : Progress
         Told about the points.
 
-    Returns
-    -------
-    Branch
-
     Raises
     ------
     InputError

@@ -79,10 +79,6 @@ def run_up(
     progress : Progress
         Told about the mesh cycles.
 
-    Returns
-    -------
-    RunUp
-
     Raises
     ------
     InputError

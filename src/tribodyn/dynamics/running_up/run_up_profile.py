@@ -181,10 +181,6 @@ def speed_ramp(
     down : bool
         Whether the speed falls back.
 
-    Returns
-    -------
-    SpeedProfile
-
     Raises
     ------
     InputError

@@ -115,10 +115,6 @@ class Structure(Model):
         **options : object
             Options of the structure, in SI; those left out have their defaults.
 
-        Returns
-        -------
-        System
-
         Raises
         ------
         InputError

@@ -173,10 +173,6 @@ def solve_adaptive(
     extra_force
         As :func:`simulate` takes it [N or N*m].
 
-    Returns
-    -------
-    AdaptiveSolution
-
     Raises
     ------
     InputError

@@ -68,10 +68,6 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
     response : Response
         From :func:`~tribodyn.dynamics.simulate` or :func:`~tribodyn.dynamics.steady_state`.
 
-    Returns
-    -------
-    EnergyAudit
-
     Notes
     -----
     Energies: ``v.M v / 2 + q.K q / 2 + sum k g^2 / 2`` with ``g`` the compression beyond the gap.

@@ -142,10 +142,6 @@ def simulate_ensemble(
     method, rtol, atol, gamma, beta, preset
         As :func:`simulate` takes them [m or rad, m/s or rad/s].
 
-    Returns
-    -------
-    Ensemble
-
     Raises
     ------
     InputError

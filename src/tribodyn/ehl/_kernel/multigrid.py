@@ -36,6 +36,7 @@ from tribodyn.ehl._kernel.multigrid_levels import (
 from tribodyn.ehl._kernel.newton import CONVERGED, NOT_FINITE, ROUNDED, STALLED
 from tribodyn.ehl._kernel.steady import SteadyContact
 from tribodyn.ehl._kernel.transfer import central, cut_negative, extend, refine
+from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
 #: Columns of the record of cycles: intervals, change of pressure, flux error, load error, least
@@ -248,6 +249,7 @@ def _build(digest: str) -> Any:
     def multigrid_solve(
         n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
         offset: float, free: int, P: Array, H: Array, shape: Array, films: Array, record: Array,
+        flag: Index,
     ) -> Cycled:  # fmt: skip
         """Solve a steady contact by full multigrid, from a pressure on the grid ``first``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -272,6 +274,9 @@ def _build(digest: str) -> Any:
             best, since, cycles = np.inf, nb.int64(0), nb.int64(0)
             fill_film(level, work.offset[0], work)
             while g < last:
+                if flag[0] != 0:
+                    status = nb.int64(STOPPED)
+                    break
                 for i in range(m + 1):
                     work.before[i] = level.P[i]
                 k = grids.free[g]

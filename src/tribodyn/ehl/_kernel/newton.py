@@ -23,7 +23,8 @@ from tribodyn.ehl._kernel.linear_solver import (
 )
 from tribodyn.ehl._kernel.reynolds import Fields, fill_oil, fill_tangent, make_fields, residual
 from tribodyn.ehl._kernel.transfer import cut_negative, extend
-from tribodyn.types import Array
+from tribodyn.interrupt import STOPPED
+from tribodyn.types import Array, Index
 
 CONVERGED, STALLED, GAP, SINGULAR, NOT_FINITE, ROUNDED = 0, 1, 2, 3, 4, 5
 
@@ -67,6 +68,7 @@ class NewtonWork(NamedTuple):
     rhs: Array
     delta: Array  #: correction of the free pressures, then of the offset
     visits: Array  #: how often the outlet or a cavity has come to a node
+    flag: Index  #: not zero when the work has to end
 
 
 class Solved(NamedTuple):
@@ -82,10 +84,10 @@ class Solved(NamedTuple):
 
 
 @nb.njit(**BURIED)
-def newton_work(n: int) -> NewtonWork:
+def newton_work(n: int, flag: Index) -> NewtonWork:
     """Arrays of :func:`newton_level` on ``n`` intervals."""
     a = np.zeros((3, n + 2))
-    return NewtonWork(make_fields(n), linear_work(n), a[0], a[1], a[2])
+    return NewtonWork(make_fields(n), linear_work(n), a[0], a[1], a[2], flag)
 
 
 @nb.njit(**BURIED)
@@ -204,6 +206,9 @@ def newton_level(
     streak, refills, used, status = nb.int64(0), nb.int64(0), nb.int64(0), nb.int64(STALLED)
     moved, fresh, change, step, reached, flux_error = False, True, 1.0, 1.0, 0.0, 0.0
     for steps in range(limits.steps + 1):
+        if work.flag[0] != 0:
+            status = nb.int64(STOPPED)
+            break
         if fresh:
             film_sum(n, grid.influence, grid.plan, P, linear.transform, H)
             for i in range(n + 1):

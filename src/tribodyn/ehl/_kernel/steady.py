@@ -30,7 +30,7 @@ from tribodyn.ehl._kernel.newton import (
 )
 from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
 from tribodyn.ehl._kernel.transfer import central, refine
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 #: Intervals from which on the linear solver has a coarse grid, and about how many that has.
 _TWO_GRIDS, _COARSE = 2048, 128
@@ -71,6 +71,7 @@ def _build(digest: str) -> Any:
     def newton_solve(
         n: int, first: int, warm: bool, contact: SteadyContact, limits: Limits,
         film_tolerance: float, offset: float, free: int, P: Array, H: Array, films: Array,
+        flag: Index,
     ) -> tuple[Solved, int, int, int]:  # fmt: skip
         """Solve on all grids from ``first`` to ``n`` intervals; state, last grid, first, count."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -88,7 +89,7 @@ def _build(digest: str) -> Any:
             limits.change,
         )  # fmt: skip
         while True:
-            grid, work = make_grid(m, (contact.end - start) / m), newton_work(m)
+            grid, work = make_grid(m, (contact.end - start) / m), newton_work(m, flag)
             shape = _gap(m, start, grid.dx, n // m, contact.profile)
             equation = Equation(lam, oil, 1.0, 0.0, np.zeros(m + 1), shape, tail, True, load)
             p, h = P[: m + 1], H[: m + 1]

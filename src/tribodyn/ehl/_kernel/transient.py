@@ -28,7 +28,7 @@ from tribodyn.ehl._kernel.newton import (
 )
 from tribodyn.ehl._kernel.reynolds import oil_state
 from tribodyn.ehl._kernel.transfer import central
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 # What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
 
@@ -91,11 +91,11 @@ class _Setting(NamedTuple):
 
 
 @nb.njit(**BURIED)
-def _setting(contact: TransientContact) -> _Setting:
+def _setting(contact: TransientContact, flag: Index) -> _Setting:
     n = contact.n
     kernel = influence(n, contact.dx) + contact.dx * np.log(contact.depth) / np.pi
     grid = Grid(n, contact.dx, kernel, film_plan(n, kernel))
-    return _Setting(grid, np.empty(n + 1), np.zeros(n + 1), newton_work(n))
+    return _Setting(grid, np.empty(n + 1), np.zeros(n + 1), newton_work(n, flag))
 
 
 @nb.njit(**BURIED)
@@ -327,11 +327,11 @@ def _build(digest: str) -> Any:
     def follow_contact(
         contact: TransientContact, ratio: float, time: Array, table: Array, halvings: int,
         every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array,
-        films: Array,
+        films: Array, flag: Index,
     ) -> tuple[int, int, Instant]:  # fmt: skip
         """Follow a contact over time or, without any, carry a steady one to other inputs."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        setting = _setting(contact)
+        setting = _setting(contact, flag)
         if time.size == 0:
             status, reached = _carry(contact, setting, ratio, table, P, H, state)
             return status, nb.int64(0), reached

@@ -128,10 +128,6 @@ def solve_line_contacts(
     progress : Progress
         Told about every contact.
 
-    Returns
-    -------
-    LineContactBatch
-
     Raises
     ------
     InputError

@@ -78,8 +78,20 @@ def inlet_tail(start: float, film: float, lam: float) -> tuple[float, float]:
     return float(np.sum(weight)), float(np.sum(weight * (x - reach)))
 
 
-def choose_domain(domain: Any, inlet: str, film: float, scales: ContactScales) -> Domain:
-    """Extent of the grid: by the film, or as stated."""
+#: Relative error of the film over ``(film/X^2)^2``, X being where a flooded grid begins, at most;
+#: and the part of the tolerance of the film that it may take.
+_CUT, _CUT_SHARE = 2.0, 0.3
+
+
+def cut_error(start: float, film: float) -> float:
+    """Bound of the relative error of a film whose wedge before ``start`` is taken as undeformed."""
+    return _CUT * (film / start**2) ** 2
+
+
+def choose_domain(
+    domain: Any, inlet: str, film: float, scales: ContactScales, tolerance: float = math.inf
+) -> Domain:
+    """Extent of the grid: by the film and its tolerance, or as stated."""
     if not isinstance(inlet, str) or inlet not in INLETS:
         raise InputError(
             f"inlet = {inlet!r}",
@@ -101,7 +113,10 @@ def choose_domain(domain: Any, inlet: str, film: float, scales: ContactScales) -
     else:
         # The first terms hold for gears; between rigid bodies all lengths go with the root.
         root = math.sqrt(2.0 * film)
-        start = -max(3.0, 4.0 + min(1.2 * film, 8.0 * root))
+        start = -max(
+            4.0 + min(1.2 * film, 8.0 * root),
+            math.sqrt(film) * (_CUT / (_CUT_SHARE * tolerance)) ** 0.25,
+        )
         end = 1.5 + min(0.4 * max(0.0, film - 0.5), 1.5 * root)
     _check_extent(start, end, inlet, film)
     tail, tail_load = inlet_tail(start, film, scales.lam) if inlet == "flooded" else (0.0, 0.0)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
-from tribodyn.ehl.steady.grid import FEWEST, MOST
+from tribodyn.ehl.steady.grid import FEWEST, MOST, cut_error
 from tribodyn.ehl.steady.newton_engine import newton_engine
 from tribodyn.types import Array
 
@@ -21,8 +21,8 @@ from tribodyn.types import Array
 _RESOLVED, _FOURFOLD = 0.33, 0.25
 #: Slowest fall that is reckoned with, and margin of the estimate.
 _SLOWEST, _MARGIN = 0.75, 1.3
-#: Further margin of the least film.
-_BETWEEN = 1.15
+#: Further margins of the least film: for its place, and for where the grid begins.
+_BETWEEN, _CUT_LEAST = 1.15, 1.5
 
 
 class GridError(NamedTuple):
@@ -33,10 +33,18 @@ class GridError(NamedTuple):
     pressure: float
 
 
-def grid_error(problem: ContactProblem, outcome: Outcome) -> GridError:
-    """Estimate the errors of a solution by one more grid."""
-    grid, films = outcome.grid, outcome.films
+def grid_error(problem: ContactProblem, outcome: Outcome, cut: bool) -> GridError:
+    """Estimate the errors of a solution by one more grid, and by where a flooded one begins."""
+    grid = outcome.grid
     assert grid is not None  # a verified outcome has a grid
+    apart = cut_error(grid.X[0], float(np.interp(0.0, grid.X, grid.H))) if cut else 0.0
+    central, least, pressure = _of_intervals(problem, grid, outcome.films)
+    return GridError(central + apart, least + _CUT_LEAST * apart, pressure + apart)
+
+
+def _of_intervals(
+    problem: ContactProblem, grid: DiscreteContact, films: tuple[float, ...]
+) -> GridError:
     steps = np.abs(np.diff(films))
     fall = float(steps[-1] / steps[-2]) if steps.size > 1 and steps[-2] > 0.0 else 1.0
     n = grid.n

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
-from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, estimate_film
+from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
 from tribodyn.ehl.steady.grid_error import grid_error
 from tribodyn.ehl.steady.rescue import solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
@@ -113,10 +113,6 @@ def solve_line_contact(
         Solution of a similar contact to start from.
     profile : callable, optional
         Heights [m] that are added to the gap, as a function of the position [m].
-
-    Returns
-    -------
-    LineContactSolution
 
     Raises
     ------
@@ -235,7 +231,12 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
     count, automatic = choose_nodes(options.nodes)
     scales = case.scales
     film = estimate_film(scales.moes_load, scales.moes_viscosity, scales.density_ratio)
-    domain = choose_domain(options.domain, options.inlet, film, scales)
+    tolerance, flooded = options.film_tolerance, options.inlet == "flooded"
+    # Stated nodes are not spread further out: their own error is the greater one.
+    within = tolerance if automatic else math.inf
+    domain = choose_domain(options.domain, options.inlet, film, scales, within)
+    if flooded:
+        tolerance -= min(cut_error(domain.start, film), 0.5 * tolerance)
     problem = ContactProblem(
         nodes=count,
         domain=(domain.start, domain.end),
@@ -247,7 +248,7 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
         moes_load=scales.moes_load,
         tolerance=options.tolerance,
         flux_tolerance=options.flux_tolerance,
-        film_tolerance=options.film_tolerance if automatic else 0.0,
+        film_tolerance=tolerance if automatic else 0.0,
         levels=options.levels,
     )
     if options.profile is not None:
@@ -255,7 +256,7 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
     if options.start is not None:
         problem = replace(problem, start=_start(options.start))
     solved = solve_problem(problem, options.method)
-    return assemble(case, domain, solved, grid_error(problem, solved.outcome))
+    return assemble(case, domain, solved, grid_error(problem, solved.outcome, flooded))
 
 
 def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:

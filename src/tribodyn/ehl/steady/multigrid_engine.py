@@ -18,6 +18,7 @@ from tribodyn.ehl.steady.newton_engine import (
     warm_start,
 )
 from tribodyn.errors import InputError
+from tribodyn.interrupt import stoppable
 from tribodyn.types import Array, Index
 
 #: Set-up of the study "vibration-with-film" of the sources: five grids, the finest with 1024
@@ -113,8 +114,9 @@ def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
         return Outcome(False, None, 0, (), message), _cycles(record[:0])
     flux, film = problem.flux_tolerance, problem.film_tolerance
     limits = MultigridLimits(problem.tolerance, flux, _LOAD, _CYCLES, film)
-    ended = multigrid_solve(
-        n, count, first, steady_contact(problem), limits, offset, free, P, H, shape, films, record
+    contact, start = steady_contact(problem), (offset, free, P, H)
+    ended = stoppable(
+        multigrid_solve, n, count, first, contact, limits, *start, shape, films, record
     )
     if ended.status != 0:
         reason = _REASONS[ended.status].format(
@@ -152,7 +154,8 @@ def _start(
             pressure, flux = max(pressure, _PASSING), max(flux, _PASSING_FLUX)
         limits = Limits(pressure, flux, STEPS, LINEAR, CAP)
         contact, films = steady_contact(problem, n // m), np.zeros(20)
-        solved, *_ = newton_solve(m, m, warm, contact, limits, 0.0, offset, free, P, H, films)
+        start = 0.0, offset, free, P, H, films
+        solved, *_ = stoppable(newton_solve, m, m, warm, contact, limits, *start)
         offset, free = solved.offset, solved.free
         if solved.status == 0:
             return m, offset, free, ""

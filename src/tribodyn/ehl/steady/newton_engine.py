@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.interrupt import stoppable
 from tribodyn.types import Array
 
 #: Intervals of the coarsest grid at least, and interval that resolves an inlet, whose length
@@ -55,8 +56,8 @@ def newton_engine(problem: ContactProblem) -> Outcome:
     linear = _LINEAR_TIGHT if tight else LINEAR
     limits = Limits(problem.tolerance, problem.flux_tolerance, STEPS, linear, CAP)
     contact, film = steady_contact(problem), problem.film_tolerance
-    solved, m, first, grids = newton_solve(
-        n, first, warm, contact, limits, film, offset, free, P, H, films
+    solved, m, first, grids = stoppable(
+        newton_solve, n, first, warm, contact, limits, film, offset, free, P, H, films
     )
     message = ""
     if solved.status != 0:

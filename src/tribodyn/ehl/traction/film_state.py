@@ -102,10 +102,6 @@ class FilmState:
         index : array of int, optional
             Solution of each contact; by default every solution has one contact.
 
-        Returns
-        -------
-        FilmState
-
         Raises
         ------
         InputError

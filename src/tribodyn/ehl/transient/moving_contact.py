@@ -15,6 +15,7 @@ from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
 from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
 from tribodyn.ehl.steady.line_contact import solve_line_contact
 from tribodyn.errors import ComputationError, InputError, require_one_of, require_positive
+from tribodyn.interrupt import stoppable
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 
@@ -415,9 +416,9 @@ class MovingContact:
         """Carry a steady state from one set of inputs to another, in place."""
         from tribodyn.ehl._kernel.transient import follow_contact
 
-        none = np.zeros((0, 0))
-        status, _, state.instant = follow_contact(
-            self.kernel_contact(imposed, depth), _RATIO, np.zeros(0), np.stack((first, row)), 0, 0,
+        none, ends = np.zeros((0, 0)), np.stack((first, row))
+        status, _, state.instant = stoppable(
+            follow_contact, self.kernel_contact(imposed, depth), _RATIO, np.zeros(0), ends, 0, 0,
             state.P, state.H, state.instant, none, none, none,
         )  # fmt: skip
         if status != 0:

@@ -25,6 +25,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
+from tribodyn.interrupt import stoppable
 from tribodyn.lubricant import Lubricant
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array, Index
@@ -194,10 +195,6 @@ def solve_transient_line_contact(
     keep_every : int
         Steps from one kept pressure and film to the next; zero to keep none.
 
-    Returns
-    -------
-    TransientLineContact
-
     Raises
     ------
     InputError
@@ -295,10 +292,10 @@ def _follow(
     records = np.zeros((m, RECORD))
     kept = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, np.int64)
     pressures, films = np.zeros((2, kept.size, n + 1))
-    status, instant, _ = follow_contact(
-        contact.kernel_contact(imposed, 1.0 if imposed else contact.depth), 1.25, contact.time,
-        contact.table(), step_halvings, keep_every, state.P, state.H, state.instant, records,
-        pressures, films,
+    posed = contact.kernel_contact(imposed, 1.0 if imposed else contact.depth)
+    status, instant, _ = stoppable(
+        follow_contact, posed, 1.25, contact.time, contact.table(), step_halvings, keep_every,
+        state.P, state.H, state.instant, records, pressures, films,
     )  # fmt: skip
     if status != 0:
         raise _failure(contact, status, instant, step_halvings)

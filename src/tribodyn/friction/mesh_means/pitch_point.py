@@ -62,10 +62,6 @@ def pitch_point(pair: SpurPair, pinion_speed: float, pinion_torque: float) -> Pi
     pinion_torque : float [N*m]
         Torque on the pinion.
 
-    Returns
-    -------
-    PitchPoint
-
     Raises
     ------
     InputError

@@ -249,10 +249,6 @@ def hypoid_blank(
     hand_pinion : str
         ``"left"`` or ``"right"``.
 
-    Returns
-    -------
-    HypoidBlank
-
     Raises
     ------
     InputError

@@ -142,10 +142,6 @@ def fe2d_influence(
     size : MeshSize, optional
         Sizes of the elements.
 
-    Returns
-    -------
-    GearInfluence
-
     Raises
     ------
     InputError

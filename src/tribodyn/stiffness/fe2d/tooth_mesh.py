@@ -155,10 +155,6 @@ class MeshSize:
         ----------
         factor : float
             By how much smaller.
-
-        Returns
-        -------
-        MeshSize
         """
         return MeshSize(
             self.flank / factor,

@@ -84,10 +84,6 @@ def contact_problem(
     extended_contact, material, options, slices
         As there.
 
-    Returns
-    -------
-    ContactProblem
-
     Raises
     ------
     InputError
@@ -138,10 +134,6 @@ def mesh_problem(
         Let tip corners touch outside of the path of contact; then there are two pairs more.
     material, options
         As for :func:`contact_problem`.
-
-    Returns
-    -------
-    ContactProblem
 
     Raises
     ------
@@ -246,10 +238,6 @@ def loaded_contact(
         Slices of the face width; by default one, or 21 where flanks vary over the width.
     options : mapping
         Further options of the provider.
-
-    Returns
-    -------
-    LoadedContact
 
     Raises
     ------

@@ -17,8 +17,9 @@ from typing import Any
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import source_digest
-from tribodyn.types import Array
+from tribodyn.compiled import announced, source_digest
+from tribodyn.interrupt import STOPPED
+from tribodyn.types import Array, Index
 
 #: NaN stays detectable: neither "nnan" nor "ninf".
 _JIT: dict[str, Any] = {
@@ -236,6 +237,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         delta: Array,
         force: Array,
         tangent: Array,
+        flag: Index,
     ) -> Any:
         """Solve every phase at every total load, in the order of the loads."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -246,6 +248,8 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
             f[:] = 0.0
             start = -np.inf
             for t in range(totals.size):
+                if flag[0] != 0:
+                    return STOPPED
                 start, status = _approach(
                     C[p], A[p], B, gaps[p], width, totals[t], start, f, a, b, place, sums
                 )
@@ -269,6 +273,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         delta: Array,
         total: Array,
         tangent: Array,
+        flag: Index,
     ) -> Any:
         """Force and tangent stiffness (D, P) of every phase at every approach ``delta`` (D, P)."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -278,6 +283,8 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         for p in range(A.shape[0]):
             f[:] = 0.0
             for d in range(delta.shape[0]):
+                if flag[0] != 0:
+                    return STOPPED
                 status = _whole(n, C[p], A[p], B, gaps[p], width, delta[d, p], f, a, b, place, sums)
                 if status != 0:
                     return status
@@ -286,13 +293,17 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         return 0
 
     @nb.njit(cache=True, **_JIT)
-    def pickups(C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array) -> Any:
+    def pickups(
+        C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array, flag: Index
+    ) -> Any:
         """Approach (P, n) at which each pair of a single slice begins to carry, up to ``most``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n = A.shape[1]
         a, b, place = np.empty((n, n)), np.empty(n), np.empty(n)
         f, alone = np.empty(n), np.empty(n)
         for p in range(A.shape[0]):
+            if flag[0] != 0:
+                return STOPPED
             for i in range(n):
                 # The pair itself is kept apart; neighbours may pull its teeth together.
                 for j in range(n):
@@ -317,7 +328,10 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                 found[p, i] = high
         return 0
 
-    return solve_loads, solve_deflections, pickups
+    kernels = solve_loads, solve_deflections, pickups
+    names = (f"the {what} of tooth pairs" for what in ("loads", "forces", "first touch"))
+    loads, forces, touch = map(announced, kernels, names, ["some seconds"] * 3)
+    return loads, forces, touch
 
 
 solve_loads, solve_deflections, pickups = _build(

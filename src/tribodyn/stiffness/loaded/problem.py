@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from tribodyn.contact import PathOfContact, extended_contact
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.gear import Material, flank_gap, hunting_period, pitch_gap, run_out_gap
+from tribodyn.interrupt import stoppable
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.weber import local_terms
 from tribodyn.types import Array, Index, Mask
@@ -206,6 +207,10 @@ _STATUS = {
 }
 
 
+#: Loads of pairs in slices that are found within a tenth of a second.
+_BRIEF = 10_000
+
+
 class Equilibrium(NamedTuple):
     """What the mesh does under given loads.
 
@@ -255,10 +260,6 @@ class ContactProblem:
         lead : array (p, n) [m], optional
             Distance before its flanks meet at which the film of each pair begins to carry. The
             approach is then counted from where the first film of all phases does.
-
-        Returns
-        -------
-        ContactProblem
         """
         structure = self.compliance.structure.copy()
         pairs = np.arange(structure.shape[1])
@@ -282,10 +283,6 @@ class ContactProblem:
         totals : array (t,) [N]
             Normal forces of all pairs together, positive; solved fastest in increasing order.
 
-        Returns
-        -------
-        Equilibrium
-
         Raises
         ------
         ComputationError
@@ -299,10 +296,8 @@ class ContactProblem:
             np.empty((totals.size, phases, slices, pairs)),
             np.empty((totals.size, phases)),
         )
-        _check_status(
-            solve_loads(
-                *self._arguments, self.widths, np.asarray(totals, dtype=float), *equilibrium
-            )
+        self._call(
+            solve_loads, totals.size, self.widths, np.asarray(totals, dtype=float), *equilibrium
         )
         return equilibrium
 
@@ -328,7 +323,7 @@ class ContactProblem:
 
         total, tangent = np.empty(approach.shape), np.empty(approach.shape)
         asked = np.ascontiguousarray(approach, dtype=float)
-        _check_status(solve_deflections(*self._arguments, self.widths, asked, total, tangent))
+        self._call(solve_deflections, approach.shape[0], self.widths, asked, total, tangent)
         return total, tangent
 
     def tangent_at(self, load_per_width: Array) -> Array:
@@ -374,16 +369,16 @@ class ContactProblem:
         from tribodyn.stiffness.loaded.kernel import pickups
 
         approach = np.empty(self.compliance.local.shape)
-        _check_status(pickups(*self._arguments, np.ascontiguousarray(most), approach))
+        self._call(pickups, 1, np.ascontiguousarray(most), approach)
         return approach
 
-    @property
-    def _arguments(self) -> tuple[Array, Array, float, Array]:
-        parts = self.compliance
-        return parts.structure, parts.local, parts.logarithm, np.minimum(self.gaps, FAR)
-
-
-def _check_status(status: int) -> None:
-    if status:
-        what, remedy = _STATUS[status]
-        raise ComputationError(what, "loaded tooth contact", "", remedy)
+    def _call(self, kernel: Any, solves: int, *arguments: Array) -> None:
+        """Call a kernel that solves every slice of every phase so many times."""
+        parts, gaps = self.compliance, np.minimum(self.gaps, FAR)
+        status = stoppable(
+            kernel, parts.structure, parts.local, parts.logarithm, gaps, *arguments,
+            brief=solves * gaps.size <= _BRIEF,
+        )  # fmt: skip
+        if status:
+            what, remedy = _STATUS[status]
+            raise ComputationError(what, "loaded tooth contact", "", remedy)

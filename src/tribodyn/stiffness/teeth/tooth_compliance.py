@@ -274,10 +274,6 @@ def tooth_compliance(
     reference : str
         ``"bore"``: with the wind-up of the body between bore and root circle; ``"rim"``: without.
 
-    Returns
-    -------
-    ToothCompliance
-
     Raises
     ------
     InputError

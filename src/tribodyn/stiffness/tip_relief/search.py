@@ -218,10 +218,6 @@ def with_tip_relief(
     gears, shape : str
         ``"both"``, ``"pinion"`` or ``"wheel"``; ``"linear"`` or ``"parabolic"``.
 
-    Returns
-    -------
-    SpurPair
-
     Raises
     ------
     InputError

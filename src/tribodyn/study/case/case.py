@@ -135,10 +135,6 @@ class Case(Section, whole=True):
             What made the change, for messages, for example ``"--set"``; then a bare number for
             a dimension is refused as in a file.
 
-        Returns
-        -------
-        Case
-
         Raises
         ------
         InputError

@@ -170,10 +170,6 @@ def read_case(text: str, name: str = "") -> Case:
     name : str
         File name, for messages.
 
-    Returns
-    -------
-    Case
-
     Raises
     ------
     InputError

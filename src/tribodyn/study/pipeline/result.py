@@ -107,12 +107,7 @@ class Result(Record):
         return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 
     def loaded_contact(self) -> LoadedContact:
-        """Loaded tooth contact at rest, without oil film: a turn of each gear whose teeth differ.
-
-        Returns
-        -------
-        LoadedContact
-        """
+        """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ."""
         from tribodyn.study.pipeline.loaded_teeth import loaded_contact, phases_of_turns
 
         return loaded_contact(self.case, phases=phases_of_turns(self.case.gear_pair))
@@ -156,10 +151,6 @@ class Result(Record):
         ----------
         style : str
             ``"text"`` or ``"bibtex"``.
-
-        Returns
-        -------
-        str
 
         Raises
         ------

@@ -39,10 +39,6 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     stacklevel : int
         Frames to skip in warnings, as in :func:`warnings.warn`.
 
-    Returns
-    -------
-    Result
-
     Raises
     ------
     InputError

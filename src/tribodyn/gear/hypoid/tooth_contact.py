@@ -1,0 +1,298 @@
+"""Tooth contact analysis: path of contact, transmission error, contact lines and pattern."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import field
+
+import numpy as np
+
+from tribodyn.checks import require_flag, require_whole
+from tribodyn.errors import Argument, InputError, require_between, require_positive, shortened
+from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
+from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.exact_contact import exact_contact
+from tribodyn.gear.hypoid.flank import HypoidFlanks
+from tribodyn.gear.hypoid.formate import hand_sense
+from tribodyn.gear.hypoid.misalignment import Misalignment
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array, Mask
+
+#: Golden section: its ratio, and steps that leave a nanometre.
+_GOLDEN, _STEPS = 0.5 * (math.sqrt(5.0) - 1.0), 30
+#: Distance over which the curvature of the ease-off along a line is measured [m].
+_NEAR = 1e-4
+_LINES, _CELLS = ("rotation",), ("rotation", "cell")
+
+
+@record
+class ToothContact(Record):
+    """Contact of one tooth pair without load from entry to exit; made by :func:`tooth_contact`.
+
+    Rotations follow the order of contact: both gears turn on from the calculation point.
+
+    Parameters
+    ----------
+    rotation : array (rotation,) [rad]
+        Rotation of the wheel in its running sense at which the conjugate flanks would touch.
+    angular_transmission_error : array (rotation,) [rad]
+        By how much the wheel runs ahead of the ratio; negative where it lags behind.
+    along, across : array (rotation,) [m]
+        Place of the contact on the wheel, along and across its pitch cone.
+    position, normal : array (rotation, 3) [m]
+        Contact in the fixed frame, and unit normal (a pure number) into the wheel.
+    on_edge : array of bool (rotation,)
+        Whether the contact lies on the end of its line: an edge touches.
+    leads : array of bool (rotation,)
+        Whether this pair touches, and not the one before or after it.
+    cell_along, cell_across : array (rotation, cell) [m]
+        Places on each contact line, from its first to its last point on both flanks.
+    clearance : array (rotation, cell) [m]
+        Gap there while the pair touches.
+    line_length : array (rotation,) [m]
+        Length of the contact line.
+    semi_axes : array (rotation, 2) [m]
+        Half length of the contact ellipse along and across the line, as far as the marking
+        compound reaches; infinite along a line of conjugate flanks.
+    exact : bool
+        Whether both surfaces were brought into touch; else the ease-off was taken to first order.
+    marking_thickness : float [m]
+        Thickness of the marking compound.
+    flanks : HypoidFlanks
+        The flanks.
+    misalignment : Misalignment
+        Displacements of both gears.
+
+    Notes
+    -----
+    Source: Litvin and Fuentes, Gear Geometry and Applied Theory, 2004, simulation of contact.
+    """
+
+    rotation: Array = quantity(*_LINES, unit="rad", axis=True)
+    angular_transmission_error: Array = quantity(*_LINES, unit="rad")
+    along: Array = quantity(*_LINES, unit="m")
+    across: Array = quantity(*_LINES, unit="m")
+    position: Array = quantity(*_LINES, "component", unit="m")
+    normal: Array = quantity(*_LINES, "component", unit="1")
+    on_edge: Mask = quantity(*_LINES, unit="1")
+    leads: Mask = quantity(*_LINES, unit="1")
+    cell_along: Array = quantity(*_CELLS, unit="m")
+    cell_across: Array = quantity(*_CELLS, unit="m")
+    clearance: Array = quantity(*_CELLS, unit="m")
+    line_length: Array = quantity(*_LINES, unit="m")
+    semi_axes: Array = quantity(*_LINES, "direction", unit="m")
+    exact: bool = fact()
+    marking_thickness: float = fact()
+    flanks: HypoidFlanks = field()
+    misalignment: Misalignment = field()
+
+    @property
+    def contact_ratio(self) -> float:
+        """Rotation over which a pair has contact lines, over the pitch."""
+        low, high = ContactLines(self.flanks.conjugate).span()
+        return (high - low) * self.flanks.blank.teeth_wheel / (2.0 * math.pi)
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Transmission error of the running pair, from its least to its greatest value [rad]."""
+        return float(np.ptp(self.angular_transmission_error[self.leads]))
+
+    @property
+    def marked(self) -> Mask:
+        """Cells (rotation, cell) of the contact pattern: the compound fills the gap."""
+        return np.asarray(self.clearance <= self.marking_thickness)
+
+
+def tooth_contact(
+    flanks: HypoidFlanks,
+    misalignment: Misalignment | None = None,
+    *,
+    exact: bool = False,
+    marking_thickness: float = 6.35e-6,
+    rotations_per_pitch: int = 24,
+    cells: int = 41,
+) -> ToothContact:
+    """Contact of a tooth pair without load.
+
+    Parameters
+    ----------
+    flanks : HypoidFlanks
+        The flanks with their ease-off.
+    misalignment : Misalignment, optional
+        Displacements of both gears; none by default.
+    exact : bool
+        Bring both surfaces into touch where no edge touches; else take the gap to first order.
+    marking_thickness : float
+        Thickness of the marking compound [m].
+    rotations_per_pitch : int
+        Rotations over a pitch, at least 4.
+    cells : int
+        Places along each contact line, at least 5.
+
+    Returns
+    -------
+    ToothContact
+
+    Raises
+    ------
+    InputError
+        If an argument is wrong.
+    ComputationError
+        If the flanks do not touch anywhere.
+
+    Notes
+    -----
+    To first order the wheel lags by the least gap over the lever of the normal, taken over the
+    contact line of the conjugate flanks; that is exact in the limit of a small ease-off.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
+    >>> blank = hypoid_blank(10, 43, 31.7e-3, 0.336, 47.7e-3, math.radians(46.0), 0.1143)
+    >>> ease_off = EaseOff(lengthwise_crowning=29e-6, profile_crowning=9e-6, bias=6e-6)
+    >>> contact = tooth_contact(hypoid_flanks(blank, ease_off=ease_off))
+    >>> round(contact.peak_to_peak * 1e6)
+    31
+    """
+    if not isinstance(flanks, HypoidFlanks):
+        what = f"flanks = {shortened(repr(flanks))}"
+        raise InputError(what, Argument("flanks"), "Wanted: what hypoid_flanks returns")
+    if not isinstance(misalignment, Misalignment | None):
+        what = f"misalignment = {shortened(repr(misalignment))}"
+        raise InputError(what, Argument("misalignment"), "Wanted: a Misalignment or None")
+    exact = require_flag("exact", exact)
+    require_positive("marking_thickness", marking_thickness, "m", remedy="6 um is 6e-6")
+    require_between("marking_thickness", marking_thickness, 0.0, 1e-3, "m", remedy="6 um is 6e-6")
+    counts = [
+        require_whole("rotations_per_pitch", rotations_per_pitch, 4),
+        require_whole("cells", cells, 5),
+    ]
+    for name, count in zip(("rotations_per_pitch", "cells"), counts, strict=True):
+        require_between(name, count, 4, 1000, remedy="A thousand are enough")
+    return _analysis(flanks, misalignment or Misalignment(), exact, marking_thickness, counts)
+
+
+def _analysis(
+    flanks: HypoidFlanks,
+    misalignment: Misalignment,
+    exact: bool,
+    thickness: float,
+    counts: list[int],
+) -> ToothContact:
+    conjugate = flanks.conjugate
+    lines = ContactLines(conjugate)
+    step = 2.0 * math.pi / flanks.blank.teeth_wheel / counts[0]
+    low, high = lines.span()
+    rotation: Array = step * np.arange(math.ceil(low / step), math.floor(high / step) + 1.0)
+    rotation = rotation if conjugate.sense > 0.0 else rotation[::-1]
+    ends, there = lines.ends(rotation)
+    rotation, ends = rotation[there], ends[there]
+    station, lag, at_end = lightest(lines, rotation, ends, misalignment)
+    share = np.linspace(0.0, 1.0, counts[1])
+    cells = lines.touch(rotation[:, None], ends[:, :1] + share * np.ptp(ends, axis=1)[:, None])
+    clearance = (_lag(conjugate, cells, misalignment) - lag[:, None]) * cells.lever
+    spots = cells.contact.wheel.position
+    touch = lines.touch(rotation, station)
+    error, position = -lag, touch.contact.wheel.position
+    normal, places = touch.contact.wheel.normal, touch.places.copy()
+    inner = ~at_end
+    if exact and np.any(inner):
+        found = exact_contact(
+            conjugate,
+            rotation[inner] / conjugate.axes.ratio,
+            start_values(lines, rotation[inner], station[inner], lag[inner]),
+            misalignment,
+        )
+        error = error.copy()
+        error[inner] = conjugate.sense * (found.wheel_rotation - rotation[inner])
+        position[inner], normal[inner], places[inner] = found.position, found.normal, found.places
+    return ToothContact(
+        rotation=conjugate.sense * rotation,
+        angular_transmission_error=error,
+        along=places[:, 0],
+        across=places[:, 1],
+        position=position,
+        normal=normal,
+        on_edge=at_end,
+        leads=_leads(np.round(rotation / step).astype(int), error, counts[0]),
+        cell_along=cells.places[..., 0],
+        cell_across=cells.places[..., 1],
+        clearance=clearance,
+        line_length=np.linalg.norm(np.diff(spots, axis=1), axis=-1).sum(axis=1),
+        semi_axes=_semi_axes(lines, rotation, station, misalignment, thickness),
+        exact=exact,
+        marking_thickness=float(thickness),
+        flanks=flanks,
+        misalignment=misalignment,
+    )
+
+
+def _lag(flanks: ConjugateFlanks, touch: Touch, misalignment: Misalignment) -> Array:
+    """Rotation of the wheel that would close the gap at each place."""
+    gap, _ = flanks.ease_off.gap(flanks.blank, touch.places)
+    wheel = touch.contact.wheel
+    gap = gap + misalignment.gap(wheel.position, wheel.normal, hand_sense(flanks.blank))
+    return np.asarray(gap / touch.lever)
+
+
+def lightest(
+    lines: ContactLines, rotation: Array, ends: Array, misalignment: Misalignment
+) -> tuple[Array, Array, Mask]:
+    """Station of each line where the wheel lags least, that lag, and whether it is an end."""
+
+    def lag(station: Array) -> Array:
+        return _lag(lines.flanks, lines.touch(rotation, station), misalignment)
+
+    samples = ends[:, :1] + np.linspace(0.0, 1.0, 33) * np.ptp(ends, axis=1)[:, None]
+    lags = _lag(lines.flanks, lines.touch(rotation[:, None], samples), misalignment)
+    best, row = np.argmin(lags, axis=1), np.arange(len(rotation))
+    low, high = (samples[row, np.clip(best + side, 0, 32)] for side in (-1, 1))
+    for _ in range(_STEPS):
+        width = _GOLDEN * (high - low)
+        left = lag(high - width) <= lag(low + width)
+        low, high = np.where(left, low, high - width), np.where(left, low + width, high)
+    station = 0.5 * (low + high)
+    near = 1e-6 * np.ptp(ends, axis=1)
+    at_start, at_stop = station - ends[:, 0] < near, ends[:, 1] - station < near
+    station = np.where(at_start, ends[:, 0], np.where(at_stop, ends[:, 1], station))
+    return station, lag(station), np.asarray(at_start | at_stop)
+
+
+def start_values(lines: ContactLines, rotation: Array, station: Array, lag: Array) -> Array:
+    """Guess of the exact contact: both flanks at the contact to first order."""
+    parameters = lines.parameters(rotation, station)
+    turn = rotation - lines.flanks.sense * lag
+    return np.hstack([parameters, parameters, turn[:, None]])
+
+
+def _leads(number: Array, error: Array, pitch: int) -> Mask:
+    """Whether a pair runs ahead of those a pitch before and after it."""
+    known = dict(zip(number.tolist(), error.tolist(), strict=True))
+    shifts = range(-9 * pitch, 10 * pitch, pitch)
+    return np.array(
+        [
+            value >= max(known.get(place + shift, -math.inf) for shift in shifts)
+            for place, value in known.items()
+        ]
+    )
+
+
+def _semi_axes(
+    lines: ContactLines,
+    rotation: Array,
+    station: Array,
+    misalignment: Misalignment,
+    thickness: float,
+) -> Array:
+    """Half axes of the ellipse within which the gap stays below the compound's thickness."""
+    near = station + _NEAR * np.array([[-1.0], [0.0], [1.0]])
+    touch = lines.touch(rotation, near)
+    lag = _lag(lines.flanks, touch, misalignment)
+    gap = (lag - lag[1]) * touch.lever[1]
+    position = touch.contact.wheel.position
+    step = 0.5 * np.linalg.norm(position[2] - position[0], axis=-1)
+    along = (gap[0] + gap[2]) / step**2
+    across = touch.curvature.tensor[1, :, 1, 1]
+    with np.errstate(divide="ignore"):
+        curvature = np.maximum(np.stack([along, across], axis=-1), 0.0)
+        return np.asarray(np.sqrt(2.0 * thickness / curvature))
