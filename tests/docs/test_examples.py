@@ -215,6 +215,19 @@ def mesh_table(text: str) -> None:
     assert figure(text, "peak mesh force") > figure(text, "mean mesh force")
 
 
+def losses(text: str) -> None:
+    # the motor brings up all losses; seals lose 7.69e-6 d^2 n; the teeth are alike on both sides
+    parts = ("gear", "bearing_rolling", "bearing_sliding", "seal", "churning", "windage")
+    rows = [[figure(text, part, box) for box in (0, 1)] for part in parts]
+    assert figure(text, "motor") == pytest.approx(sum(map(sum, rows)), abs=0.1)
+    assert rows[3][0] == pytest.approx(7.69e-6 * 900.0 * 1400.0 * (1.0 + 1.0 / 1.5), abs=0.005)
+    assert rows[0][0] == rows[0][1]
+    # 0.05 less what the run without load rubs at 5 N*m, within the band of 95 %
+    for torque in (50, 150, 300):
+        low, high = (figure(text, f"{torque} ", column) for column in (1, 2))
+        assert low <= 0.05 * (1.0 - 5.0 / torque) <= high
+
+
 EXPECTED: dict[str, Callable[[str], None]] = {
     "01_first_light.py": first_light,
     "02_roughness_study.py": roughness_study,
@@ -233,6 +246,7 @@ EXPECTED: dict[str, Callable[[str], None]] = {
     "15_run_up.py": run_up,
     "16_jump.py": jump,
     "17_mesh_table.py": mesh_table,
+    "18_losses.py": losses,
 }
 
 

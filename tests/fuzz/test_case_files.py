@@ -12,11 +12,11 @@ import pytest
 
 from fuzz.damage import at_most
 from tribodyn import load_case
-from tribodyn.cases.catalogue import case_files
+from tribodyn.cases import case_files
 from tribodyn.errors import TribodynError, quiet
-from tribodyn.study.case.case import Case
+from tribodyn.study import Case
+from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.cautions import case_cautions
-from tribodyn.study.pipeline.geometry import geometry
 
 Draws = Callable[[int], Iterator[random.Random]]
 

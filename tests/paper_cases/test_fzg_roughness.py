@@ -9,7 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.study.case.provenance import provenance
-from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.assembly import geometry
 
 _ROUGHNESS = ("0.325 um", "0.53 um", "0.991 um")
 
@@ -94,6 +94,20 @@ def test_peak_force_falls_with_roughness_as_printed(studied: list[Any]) -> None:
     peaks = _figures(studied, "peak_mesh_force")
     assert peaks[0] > peaks[1] > peaks[2]
     assert peaks[2] / peaks[0] - 1.0 == pytest.approx(3.0 / 3.6 - 1.0, abs=0.03)
+
+
+def test_peak_force_falls_because_friction_is_outside_of_its_range(studied: list[Any]) -> None:
+    # The roughest flanks are given a mean coefficient of 0.49, as no lubricated steel has; with
+    # 0.12, which is much, the fall of 15 % is one of 1 %.
+    coefficients = _figures(studied, "mean_friction_coefficient")
+    assert coefficients[2] == pytest.approx(0.494, abs=5e-3)
+    assert "friction-roughness" in {warning.code for warning in studied[2].warnings}
+    usual = {"friction.law": "constant", "friction.coefficient": 0.12}
+    with pytest.warns(td.ModelWarning, match="mixed-lubrication"):
+        capped = td.run(td.load_case("fzg-roughness").replace(usual))
+    smooth, _, rough = _figures(studied, "peak_mesh_force")
+    assert rough / smooth - 1.0 == pytest.approx(-0.147, abs=5e-3)
+    assert -0.02 < capped.summary()["peak_mesh_force"] / smooth - 1.0 < 0.0
 
 
 @pytest.mark.regression

@@ -10,16 +10,18 @@ import pytest
 
 from references import mixed_contact as plain
 from tribodyn.ehl import (
+    FILM_MODELS,
     Asperities,
     FilmState,
     RoughnessProfile,
     asperity_integral,
     balanced_load_share,
     lubrication_regime,
+    mixed_line_contact,
 )
 from tribodyn.errors import InputError, quiet
 from tribodyn.friction import LAWS, TribologicalContact, ehl, mixed, mixed_solved, xu_2007
-from tribodyn.lubricant import from_library
+from tribodyn.lubricant import Lubricant, from_library
 
 MODULUS = 2.3e11
 FLANKS = Asperities.from_slope(0.7e-6, 0.1)
@@ -282,3 +284,40 @@ def test_coefficient_of_the_asperities_outside_of_its_range_is_told():
     with quiet("friction-range"):
         rough = mixed(contact(), rms_slope=0.3).asperities
     assert np.all(rough > mixed(contact(), rms_slope=0.05).asperities)
+
+
+OIL = Lubricant(0.03, 860.0, 1.8e-8)
+SPEEDS = np.array([0.5, 3.0, 12.0])
+
+
+def test_power_law_of_the_film_is_that_of_its_formula():
+    found = mixed_line_contact(1e5, 8e-3, SPEEDS, OIL, MODULUS, FLANKS)
+    share, gap = balanced_load_share(found.smooth_film, found.hertz_pressure, MODULUS, FLANKS)
+    assert found.film_load_share == pytest.approx(share, rel=1e-8)
+    assert found.gap == pytest.approx(gap, rel=1e-8)
+    assert found.film_load + found.asperity_load == pytest.approx(np.full(3, 1e5), rel=1e-12)
+
+
+@pytest.mark.parametrize("model", ["moes", "pan-hamrock", "newton"])
+def test_film_carries_its_own_share_at_the_gap_at_which_asperities_carry_theirs(model):
+    options = {"nodes": 257} if model == "newton" else {}
+    speeds = SPEEDS[:2]
+    found = mixed_line_contact(1e5, 8e-3, speeds, OIL, MODULUS, FLANKS, film_model=model, **options)
+    for i, f in enumerate(found.film_load_share):
+        film = FILM_MODELS[model].films(
+            f * 1e5, 8e-3, speeds[i], OIL, float(f) * MODULUS, **options
+        )
+        assert film.central_film == pytest.approx(found.gap[i], rel=1e-6)
+        # The flanks keep the width that the whole load gives them.
+        width = math.sqrt(8.0 * f * 1e5 * 8e-3 / (math.pi * f * MODULUS))
+        assert found.half_width[i] == pytest.approx(width, rel=1e-12)
+    law, _ = balanced_load_share(found.smooth_film, found.hertz_pressure, MODULUS, FLANKS)
+    # The law, which knows no more than the film under the whole load, is as near as this.
+    assert found.film_load_share == pytest.approx(law, abs=0.06)
+
+
+def test_rough_contacts_without_film_model_or_in_a_table_are_refused():
+    with pytest.raises(InputError, match='film_model = "none"'):
+        mixed_line_contact(1e5, 8e-3, 1.0, OIL, MODULUS, FLANKS, film_model="none")
+    with pytest.raises(InputError, match="arrays of 2 axes"):
+        mixed_line_contact(np.full((2, 2), 1e5), 8e-3, 1.0, OIL, MODULUS, FLANKS)

@@ -22,7 +22,7 @@ from tribodyn.signals.indicators import (
     peak_to_peak,
     rms,
 )
-from tribodyn.signals.order_map import OrderCut, OrderMap, order_map
+from tribodyn.signals.order_map import OrderCut, OrderMap, Spectrogram, order_map, spectrogram
 from tribodyn.signals.run_up_orders import (
     OverallLevel,
     RunUpResonance,
@@ -31,7 +31,6 @@ from tribodyn.signals.run_up_orders import (
     resonances,
     run_up_order_map,
 )
-from tribodyn.signals.spectrogram import Spectrogram, spectrogram
 from tribodyn.signals.spectrum import Peak, SignalSpectrum, spectrum, zoom_spectrum
 from tribodyn.signals.synchronous_average import (
     ConditionIndicators,

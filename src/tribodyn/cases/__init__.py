@@ -6,8 +6,7 @@ import sys
 from types import ModuleType
 
 from tribodyn.cases.catalogue import case_files, cases
-from tribodyn.cases.compute import run
-from tribodyn.cases.load import load_case
+from tribodyn.cases.load import load_case, run
 from tribodyn.cases.stored_result import load_result
 
 __all__ = ["case_files", "cases", "load_case", "load_result", "run"]

@@ -6,9 +6,18 @@ name is the case's name, and it loads to the path of a case file.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import lru_cache
 from importlib.metadata import entry_points
 from importlib.resources import files
 from pathlib import Path
+
+from tribodyn.errors import InputError
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.checks import DEFAULT_MARK
+from tribodyn.study.case.provenance import changed_keys, same
+from tribodyn.study.case.read import read_case, read_text
+from tribodyn.study.case.values import Plain
 
 
 def case_files() -> dict[str, Path]:
@@ -55,3 +64,58 @@ def cases() -> dict[str, str]:
         name: tomllib.loads(path.read_text(encoding="utf-8")).get("title", "")
         for name, path in case_files().items()
     }
+
+
+def with_known_reasons(case: Case) -> Case:
+    """Drop reasons that a built-in case gives, word for word, for another value of the same key."""
+    # A file with the origin of a built-in case began as its copy: that case tells what has changed.
+    lines = case.source.lines
+    if "based_on" in lines:
+        return case
+    plain = {
+        key: why
+        for key, why in case.assumed.items()
+        if why != DEFAULT_MARK and f"assumed.{key}.value" not in lines
+    }
+    models = _models(case.origin, plain)
+    stale = {key for key in plain if _of_another_value(case, key, models)}
+    data = {**case.given.data, "assumed": _without(case.given.data["assumed"], stale)}
+    began = [model for model in models if case.origin and model.origin == case.origin]
+    if not (stale or began):
+        return case
+    bases = [{key: Plain(v) for key, v in model.stated.base.items()} for model in began]
+    copies = [Case(case.source, **{**data, "based_on": base}) for base in bases]
+    return min(copies or [Case(case.source, **data)], key=lambda copy: len(changed_keys(copy)))
+
+
+def _models(origin: str | None, plain: Mapping[str, str]) -> list[Case]:
+    """Built-in cases with the origin, or with one of the reasons, of a case."""
+    if not (origin or plain):
+        return []
+    models = [_model(path) for path in case_files().values()]
+    return [
+        model
+        for model in models
+        if model is not None
+        and ((origin and model.origin == origin) or plain.items() & model.assumed.items())
+    ]
+
+
+@lru_cache(maxsize=64)
+def _model(path: Path) -> Case | None:
+    """A named case, or None where another package brings one that is faulty."""
+    try:
+        return read_case(read_text(path), path.name)
+    except InputError:
+        return None
+
+
+def _of_another_value(case: Case, key: str, models: list[Case]) -> bool:
+    """Whether built-in cases have the reason of a key, and none of them its value."""
+    told = [model for model in models if model.assumed.get(key) == case.assumed[key]]
+    value = case.stated.marks[key]
+    return bool(told) and not any(same(model.stated.marks[key], value) for model in told)
+
+
+def _without(marks: Mapping[str, object], keys: set[str]) -> dict[str, object]:
+    return {key: mark for key, mark in marks.items() if key not in keys}

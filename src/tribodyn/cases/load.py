@@ -1,4 +1,4 @@
-"""From a name or a path to a case."""
+"""From a name or a path to a case, and to its result."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 from tribodyn.cases.catalogue import case_files
 from tribodyn.errors import InputError, Problem
+from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+    from tribodyn.study import Case, Result
 
 
 def load_case(name_or_path: str | os.PathLike[str]) -> Case:
@@ -33,7 +34,7 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     >>> load_case("fzg-roughness").operation.torque
     90.0
     """
-    from tribodyn.cases.copies import with_known_reasons
+    from tribodyn.cases.catalogue import with_known_reasons
     from tribodyn.stored import file_kind
     from tribodyn.study.case.read import read_case, read_text
 
@@ -64,3 +65,35 @@ def _not_found(asked: str, path: Path, names: list[str]) -> Problem:
     why = f"Built-in cases: {', '.join(names)}"
     remedy = f'Did you mean "{near[0]}"?' if near else "See: tribodyn cases"
     return Problem("no built-in case and no file is called so", asked, why, remedy)
+
+
+def run(case: Case | str | os.PathLike[str], progress: Progress = SILENT) -> Result:
+    """Compute a case.
+
+    Parameters
+    ----------
+    case : Case, str or path
+        From :func:`tribodyn.load_case`, or what that function takes.
+    progress : Progress
+        Told how far the run has come; silent by default.
+
+    Raises
+    ------
+    InputError
+        If there is no such case, or it cannot be computed as it stands.
+    ComputationError
+        If no steady motion is found.
+
+    Warns
+    -----
+    ModelWarning
+        Everything that the models said, once each; also kept in ``Result.warnings``.
+
+    Examples
+    --------
+    >>> result = run("fzg-roughness")  # doctest: +SKIP
+    """
+    from tribodyn.study import run as compute
+
+    ready = load_case(case) if isinstance(case, (str, os.PathLike)) else case
+    return compute(ready, progress, stacklevel=3)

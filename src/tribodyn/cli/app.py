@@ -40,6 +40,16 @@ COMMANDS = (
     ("relief", "tribodyn.cli.study_commands:relief", "Find the best tip relief of a case."),
     ("run-up", "tribodyn.cli.study_commands:run_up", "March a case while its speed rises."),
     (
+        "losses",
+        "tribodyn.cli.losses_commands:losses",
+        "Find losses and efficiency of a case over torque and speed.",
+    ),
+    (
+        "friction-from-loss",
+        "tribodyn.cli.losses_commands:friction_from_loss",
+        "Find friction coefficients from measured torque losses.",
+    ),
+    (
         "experiment",
         "tribodyn.cli.experiment_command:experiment",
         "Judge published claims on one gear pair: friction.",

@@ -48,9 +48,9 @@ def check(
         Write one flat JSON object in SI to stdout.
     """
     from tribodyn.study.case.provenance import assumptions
+    from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.first_look import operating_figures
-    from tribodyn.study.pipeline.geometry import geometry
     from tribodyn.study.pipeline.run import rehearse
 
     checked = changed_case(case, set_ or [])

@@ -107,6 +107,8 @@ _EXAMPLES = {
     "harris": "fzg-roughness",
     "relief": "fzg-roughness",
     "run-up": 'fzg-roughness "400..3500 rpm"',
+    "losses": "fzg-roughness",
+    "friction-from-loss": "losses.csv --case fzg-roughness",
     "experiment": "friction",
     "compare": "first second",
     "new": "my.toml",

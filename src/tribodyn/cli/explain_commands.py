@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.case.words import Word, listed, word
+from tribodyn.study.case.values import Word, listed, word
 
 #: Entries beyond this are named, not told.
 _MOST = 8

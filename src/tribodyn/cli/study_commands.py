@@ -22,7 +22,7 @@ Output = Path | None
 _ROWS = 40
 
 
-class _Found(NamedTuple):
+class Found(NamedTuple):
     """What a study tells: its data, figures, sentences and a table."""
 
     data: Any  #: result whose data set is stored
@@ -34,14 +34,15 @@ class _Found(NamedTuple):
     best: Case | None = None  #: a case that the study made
 
 
-def _begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
+def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
+    """The case of a study with its changes, and the directory to write."""
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
     ready = changed_case(case, settings or [])
     check_place(target, force)
     return ready, target
 
 
-def _finish(kind: str, case: Case, target: Path, found: _Found, force: bool, json: bool) -> None:
+def finish(kind: str, case: Case, target: Path, found: Found, force: bool, json: bool) -> None:
     """Write the directory of a study and tell what was found."""
     from tribodyn.report import write_study_report
     from tribodyn.stored import write_dataset
@@ -92,10 +93,10 @@ def modes(
     """
     from tribodyn import plot
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.report.modes import HEAD, cells
+    from tribodyn.report.numbers import HEAD, cells
     from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows, system_of_case
 
-    ready, target = _begun("modes", case, out, set_, force)
+    ready, target = begun("modes", case, out, set_, force)
     with progress_bar() as progress:
         from tribodyn.dynamics import natural_modes
         from tribodyn.study.studies.axes import operation_values
@@ -109,12 +110,13 @@ def modes(
         (each.heading, each(thing), each.caption_of(thing))
         for each, thing in ((plot.mode_shapes, found), (plot.campbell, diagram))
     ]
-    told = [f"{diagram.plot().layout.title.text}; speeds are those of the "
-            f"{ready.operation.speed_of}."]  # fmt: skip
+    told = [
+        f"{diagram.plot().layout.title.text}; speeds are those of the {ready.operation.speed_of}."
+    ]
     facts = {"mesh_frequency": mesh_frequency, "orders": list(ORDERS),
              "modes": [vars(row) for row in rows]}  # fmt: skip
-    answer = _Found(found, figures, told, HEAD, [cells(row) for row in rows], facts)
-    _finish("modes", ready, target, answer, force, json)
+    answer = Found(found, figures, told, HEAD, [cells(row) for row in rows], facts)
+    finish("modes", ready, target, answer, force, json)
 
 
 def harris(
@@ -146,21 +148,22 @@ def harris(
     from tribodyn import plot
     from tribodyn.study.studies.static import harris_map
 
-    ready, target = _begun("harris", case, out, set_, force)
+    ready, target = begun("harris", case, out, set_, force)
     found = harris_map(ready, list(torque) or None)
     columns = {
-        "torque": found.torque, "mean_transmission_error": found.mean_transmission_error,
+        "torque": found.torque,
+        "mean_transmission_error": found.mean_transmission_error,
         "peak_to_peak_transmission_error": found.peak_to_peak_transmission_error,
         "mean_mesh_stiffness_secant": found.mean_mesh_stiffness_secant,
-    }  # fmt: skip
+    }
     rows = [[f"{t:.4g}", f"{m * 1e6:.4g}", f"{p * 1e6:.4g}", f"{k * 1e-6:.4g}"]
             for t, m, p, k in zip(*columns.values(), strict=True)]  # fmt: skip
     head = ["Pinion torque [N*m]", "Mean error [um]", "Peak to peak [um]", "Stiffness [N/um]"]
     figure = found.plot()
     figures = [(plot.harris_map.heading, figure, plot.harris_map.caption_of(found))]
     facts = {name: values.tolist() for name, values in columns.items()}
-    answer = _Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
-    _finish("harris", ready, target, answer, force, json)
+    answer = Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
+    finish("harris", ready, target, answer, force, json)
 
 
 def relief(
@@ -195,7 +198,7 @@ def relief(
     from tribodyn import plot
     from tribodyn.study.studies.static import optimize_tip_relief
 
-    ready, target = _begun("relief", case, out, set_, force)
+    ready, target = begun("relief", case, out, set_, force)
     found = optimize_tip_relief(ready, list(torque) or None, gears=gears)
     before, after = found.peak_to_peak_before, found.peak_to_peak_after
     rows = [[f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
@@ -209,8 +212,8 @@ def relief(
     facts = {"amount": found.amount, "length": found.length, "torque": found.torque.tolist(),
              "peak_to_peak_before": before.tolist(), "peak_to_peak_after": after.tolist(),
              "on_edge": bool(found.on_edge)}  # fmt: skip
-    answer = _Found(found, figures, told, head, rows, facts, found.case)
-    _finish("relief", ready, target, answer, force, json)
+    answer = Found(found, figures, told, head, rows, facts, found.case)
+    finish("relief", ready, target, answer, force, json)
 
 
 def run_up(
@@ -252,7 +255,7 @@ def run_up(
     from tribodyn.study.studies.run_up import run_up as compute
     from tribodyn.units import convert
 
-    ready, target = _begun("run-up", case, out, set_, force)
+    ready, target = begun("run-up", case, out, set_, force)
     with progress_bar() as progress:
         found = compute(ready, read_ends(between), duration, down=down, progress=progress)
     level = overall_level(found, "contact_force")
@@ -260,10 +263,11 @@ def run_up(
     rpm = convert(1.0, "rad/s", "rpm") * level.speed
     rows = [[f"{rpm[k]:.5g}", f"{level.rms[k]:.4g}"] for k in picked]
     figure = found.plot()
-    figures = [(each.heading, drawn, each.caption_of(found))
-               for each, drawn in ((plot.run_up, figure), (plot.run_up_map,
-                                                           plot.run_up_map(found)))]  # fmt: skip
+    figures = [
+        (each.heading, drawn, each.caption_of(found))
+        for each, drawn in ((plot.run_up, figure), (plot.run_up_map, plot.run_up_map(found)))
+    ]
     facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
     head = ["Speed [rpm]", "Mesh force, rms [N]"]
-    answer = _Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
-    _finish("run-up", ready, target, answer, force, json)
+    answer = Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
+    finish("run-up", ready, target, answer, force, json)

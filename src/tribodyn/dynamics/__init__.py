@@ -14,8 +14,7 @@ from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.running_up.run_up import run_up
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, speed_ramp
 from tribodyn.dynamics.running_up.run_up_result import RunUp
-from tribodyn.dynamics.structure.follow_load import follow_load
-from tribodyn.dynamics.structure.force_law import MeshForce, law_contacts
+from tribodyn.dynamics.structure.force_law import MeshForce, follow_load, law_contacts
 from tribodyn.dynamics.structure.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12
 from tribodyn.dynamics.structure.gear_pair import SPUR6_NAMES, TORSIONAL_NAMES, spur6, torsional
 from tribodyn.dynamics.structure.shafts import (

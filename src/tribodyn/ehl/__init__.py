@@ -10,6 +10,7 @@
 | ``traction`` | shear of the oil, and its temperature |
 | ``load_share`` | how much of the load the film carries between rough surfaces, and the regime |
 | ``asperities`` | summits of rough flanks from their roughness, and their contact |
+| ``mixed_contact`` | which part of its load the film of a rough line contact carries, solved |
 | ``roughness`` | measured heights of a surface |
 """
 
@@ -25,6 +26,7 @@ from tribodyn.ehl.formulas.power_laws import (
     pan_hamrock_minimum,
 )
 from tribodyn.ehl.load_share import balanced_load_share, film_load_share, lubrication_regime
+from tribodyn.ehl.mixed_contact import MixedLineContact, mixed_line_contact
 from tribodyn.ehl.models import FILM_MODELS, FilmModel
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
@@ -50,6 +52,7 @@ __all__ = [
     "Groups",
     "LineContactBatch",
     "LineContactSolution",
+    "MixedLineContact",
     "RoughnessProfile",
     "Traction",
     "TransientLineContact",
@@ -63,6 +66,7 @@ __all__ = [
     "inlet_heating_factor",
     "line_contact_groups",
     "lubrication_regime",
+    "mixed_line_contact",
     "moes_central",
     "moes_dimensionless_central",
     "newtonian_shear_stress",

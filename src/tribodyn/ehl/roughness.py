@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, require_one_of, require_positive, warn
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    Problem,
+    require_one_of,
+    require_positive,
+    warn,
+)
+from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
+from tribodyn.units import convert
 
 #: What lies beyond the ends of a profile.
 BEYOND = ("refuse", "periodic", "level")
@@ -128,6 +140,50 @@ class RoughnessProfile:
             height = np.asarray(height - np.polyval(line, index), dtype=float)
         first = -0.5 * spacing * (height.size - 1) if start is None else start
         return cls(np.asarray(first + spacing * index, dtype=float), height, beyond)
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> RoughnessProfile:
+        """Profile of a text file with the columns position and height.
+
+        Parameters
+        ----------
+        path : str or path
+            CSV file: the first row names the columns, the second has their units, for example
+            ``mm,um``; each further row is one point. The straight line of least squares is taken
+            away.
+
+        Returns
+        -------
+        RoughnessProfile
+
+        Raises
+        ------
+        InputError
+            If there is no such file, or its rows are no profile; the message names the line.
+        """
+        try:
+            text = read_bytes(path, "profile map").decode("utf-8-sig")
+        except (OSError, UnicodeDecodeError) as error:
+            reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
+            raise _fault(path, 0, f"the file cannot be read: {reason}") from None
+        lines = [(n, line.strip()) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
+        rows = [(n, re.split(r"[;,\t]", line)) for n, line in lines if not line.startswith("#")]
+        if len(rows) < 2 or [name.strip() for name in rows[0][1]] != ["position", "height"]:
+            raise _fault(path, rows[0][0] if rows else 0, "the columns are not position and height")
+        try:
+            factors = [convert(1.0, unit.strip(), "m") for unit in rows[1][1]]
+        except ValueError as error:
+            raise _fault(path, rows[1][0], str(error)) from None
+        points = []
+        for number, cells in rows[2:]:
+            values = [plain_number(cell.strip()) for cell in cells]
+            if len(values) != 2 or len(factors) != 2 or None in values:
+                raise _fault(
+                    path, number, f'"{",".join(cells)[:40]}" is not a position and a height'
+                )
+            points.append([v * f for v, f in zip(values, factors, strict=True) if v is not None])
+        position, height = np.array(points).reshape(-1, 2).T
+        return cls.from_heights(cls(position, height).spacing, height)
 
     @property
     def spacing(self) -> float:
@@ -286,6 +342,12 @@ class RoughnessProfile:
                 remedy="Measure a longer profile, shift it by its start, or choose beyond = "
                 '"periodic" or "level"',
             )
+
+
+def _fault(path: str | PathLike[str], line: int, what: str) -> InputError:
+    place = f"{Path(path).name}, line {line}" if line else Path(path).name
+    why = "A profile has the columns position and height, their units below, for example mm,um"
+    return InputError(Problem(f"{what} ({place})", Argument("roughness_profile"), why))
 
 
 #: Grid points that a wavelength needs, and the share of the mean square that may lie below.

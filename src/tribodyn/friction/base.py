@@ -247,6 +247,8 @@ class FrictionLaw(Model):
         One line for whoever chooses a law.
     papers : tuple of str
         Keys of the bibliography of the package.
+    rehearsal : str
+        Where it needs a solved film: the law that refuses the same options without one.
 
     Examples
     --------
@@ -262,6 +264,7 @@ class FrictionLaw(Model):
     needs_oil: bool = True
     meaning: str = ""
     papers: tuple[str, ...] = ()
+    rehearsal: str = "none"
 
     def __call__(self, contact: TribologicalContact, **options: Any) -> Array:
         """Friction coefficient of every contact, never negative.

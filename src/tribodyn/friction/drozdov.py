@@ -53,8 +53,8 @@ def drozdov(
         Code ``friction-range`` outside of |v_s| 0 to 15 m/s, v_r 3 to 20 m/s, nu 4 to 500 mm^2/s
         and p_max 4000 to 20000 kgf/cm^2.
 
-    Fitted to disc tests. Source: Drozdov and Gavrikov, Wear 11 (1968), as listed by Xu et al.
-    (2007).
+    Fitted to disc tests. No second source of the constants was found. Source: Drozdov and Gavrikov,
+    Wear 11 (1968), as listed by Xu et al. (2007).
 
     Examples
     --------

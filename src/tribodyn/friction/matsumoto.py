@@ -55,7 +55,8 @@ def matsumoto(
         Code ``friction-range`` where D exceeds 100: there is no film any more.
 
     Source: Matsumoto and Morikawa, Int. Gear Conf. Lyon (2014). Their friction of the film is a
-    model of its own; here any may be given.
+    model of its own; here any may be given. Of 0.5 log10(D) no second source was found: their
+    abstract tells a function of the maximum heights over the minimum film.
 
     Examples
     --------

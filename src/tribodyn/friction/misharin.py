@@ -53,8 +53,8 @@ def misharin(
         Code ``friction-range`` below 245 MPa (2500 kgf/cm^2), and where the formula leaves 0.02
         to 0.08, as it does where sliding stops.
 
-    Fitted to disc tests. Source: Misharin, Proc. Int. Conf. Gearing, IMechE (1958), as listed by
-    Xu et al. (2007).
+    Fitted to disc tests. No second source of the constants was found. Source: Misharin, Proc. Int.
+    Conf. Gearing, IMechE (1958), as listed by Xu et al. (2007).
 
     Examples
     --------

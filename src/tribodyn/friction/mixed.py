@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tribodyn.ehl import FilmState
-from tribodyn.ehl.asperities import Asperities
-from tribodyn.ehl.load_share import balanced_load_share
+from tribodyn.ehl import Asperities, FilmState, RoughnessProfile, balanced_load_share
+from tribodyn.errors import Argument, InputError, warn
 from tribodyn.friction.base import LAWS, FrictionParts, TribologicalContact
 from tribodyn.friction.ehl import SHEAR_OPTIONS, ehl
 from tribodyn.friction.mixed_ehl import BOUNDARY, FILM, friction_of_film, shared_friction
-from tribodyn.model import Option, number
+from tribodyn.model import Option, file_path, number
 from tribodyn.types import Array
 
 #: Options of the asperities.
@@ -34,14 +34,40 @@ _ASPERITIES: dict[str, Option] = {
         of="summit_density",
         basis="summit density times summit radius times composite roughness of 0.05",
     ),
+    "roughness_profile": file_path(
+        meaning="CSV file with a measured profile of the flanks, for its height, slope and summits",
+        example='"profile.csv"',
+    ),
 }
 
 
+#: Relative difference of the rms heights of profile and case that is told.
+_LIKE = 0.1
+
+
 def _asperities_of(
-    roughness: float, rms_slope: float, summit_density: float | None
+    roughness: float, rms_slope: float, summit_density: float | None, profile: str | None
 ) -> Asperities | None:
     """Asperities of two flanks alike; None where they are smooth."""
-    return Asperities.from_slope(roughness, rms_slope, summit_density) if roughness else None
+    if profile is None and not roughness:
+        return None
+    try:
+        if profile is None:
+            return Asperities.from_slope(roughness, rms_slope, summit_density)
+        measured = Asperities.from_profiles(RoughnessProfile.read(profile))
+    except InputError as error:
+        where = Argument("rms_slope" if profile is None else "roughness_profile")
+        raise InputError([replace(each, where=where) for each in error.problems]) from None
+    if abs(measured.rms_height - roughness) > _LIKE * measured.rms_height:
+        warn(
+            "roughness-differs",
+            f"two flanks with the profile {Path(profile).name} have a composite rms roughness of "
+            f"{measured.rms_height * 1e6:.4g} um, the film ratio is formed with "
+            f"{roughness * 1e6:.4g} um. Give roughness_rms = "
+            f'"{measured.rms_height * 1e6 / np.sqrt(2.0):.4g} um" to both gears',
+            stacklevel=4,
+        )
+    return measured
 
 
 def _load_share(contact: TribologicalContact, asperities: Asperities | None) -> tuple[Array, Array]:
@@ -62,6 +88,7 @@ def mixed(
     boundary_friction_coefficient: float = 0.15,
     rms_slope: float = 0.1,
     summit_density: float | None = None,
+    roughness_profile: str | None = None,
     ehl_friction_coefficient: float | None = None,
 ) -> FrictionParts:
     """Friction of a film and asperities that carry the load together at one gap.
@@ -80,6 +107,9 @@ def mixed(
     summit_density : float, optional [1/m^2]
         Summits of one flank per area; by default as of
         :meth:`tribodyn.ehl.Asperities.from_slope`.
+    roughness_profile : str, optional
+        Path of a measured profile of a flank, see :meth:`tribodyn.ehl.RoughnessProfile.read`: it
+        tells height, slope and summits in the place of all three.
     ehl_friction_coefficient : float, optional
         Coefficient of the film alone; by default that of :func:`tribodyn.friction.xu_2007`
         for smooth flanks, because asperities are counted apart.
@@ -92,13 +122,15 @@ def mixed(
     Raises
     ------
     InputError
-        If the film is not known, or heights, slope and summits do not belong together.
+        If the film is not known, heights, slope and summits do not belong together, or the
+        profile cannot be read.
 
     Warns
     -----
     ModelWarning
         Code ``friction-range`` of the formula of the film, and where the coefficient of the
-        asperities lies outside of 0.1 to 0.15.
+        asperities lies outside of 0.1 to 0.15; code ``roughness-differs`` where the profile has
+        another height than the composite roughness.
 
     Elastic asperities of flanks alike. Source: Johnson, Greenwood and Poon, Wear 19 (1972);
     Greenwood and Tripp, Proc. IMechE 185 (1970); powers of f: Castro and Seabra (2007).
@@ -114,7 +146,9 @@ def mixed(
     >>> print(np.round(parts.film_load_share, 3), np.round(parts.coefficient, 4))
     [0.697] [0.0751]
     """
-    asperities = _asperities_of(contact.composite_roughness, rms_slope, summit_density)
+    asperities = _asperities_of(
+        contact.composite_roughness, rms_slope, summit_density, roughness_profile
+    )
     share, _ = _load_share(contact, asperities)
     film = friction_of_film(contact, 0.0, ehl_friction_coefficient)
     return shared_friction(share, film, boundary_friction_coefficient)
@@ -135,6 +169,7 @@ def mixed_solved(
     boundary_friction_coefficient: float = 0.15,
     rms_slope: float = 0.1,
     summit_density: float | None = None,
+    roughness_profile: str | None = None,
     **shear: Any,
 ) -> FrictionParts:
     """Friction as of :func:`mixed`, with the solved film sheared under its own part of the load.
@@ -146,6 +181,8 @@ def mixed_solved(
     boundary_friction_coefficient, rms_slope
         As there.
     summit_density : float, optional [1/m^2]
+        As there.
+    roughness_profile : str, optional
         As there.
     **shear : object
         Options of :func:`tribodyn.friction.ehl`, such as ``eyring_stress``.
@@ -184,7 +221,9 @@ def mixed_solved(
     """
     film: FilmState = contact.known("film")
     central = film.central_film[film.contacts].reshape(contact.load_per_width.shape)
-    asperities = _asperities_of(contact.composite_roughness, rms_slope, summit_density)
+    asperities = _asperities_of(
+        contact.composite_roughness, rms_slope, summit_density, roughness_profile
+    )
     share, gap = _load_share(replace(contact, central_film=central), asperities)
     oil = ehl(replace(contact, film=_lighter(film, share, gap / central)), **shear)
     return FrictionParts(oil, boundary_friction_coefficient * (1.0 - share), share)
@@ -196,6 +235,7 @@ LAWS.define(
     meaning="as mixed, with the shear stress of the solved film under its own part of the load",
     options={**_ASPERITIES, **{n: o for n, o in SHEAR_OPTIONS.items() if n != "rolling"}},
     needs_film=True,
+    rehearsal="mixed",
     papers=("johnson-greenwood-poon", "greenwood-tripp", "mccool", "johnson-tevaarwerk"),
 )(mixed_solved)
 

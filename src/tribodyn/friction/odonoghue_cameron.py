@@ -56,8 +56,8 @@ def odonoghue_cameron(
     ModelWarning
         Code ``friction-range`` where the coefficient exceeds 0.2.
 
-    Fitted to disc tests. Source: O'Donoghue and Cameron, ASLE Trans. 9 (1966), as listed by Xu et
-    al. (2007).
+    Fitted to disc tests. No second source of the constants was found. Source: O'Donoghue and
+    Cameron, ASLE Trans. 9 (1966), as listed by Xu et al. (2007).
 
     Examples
     --------

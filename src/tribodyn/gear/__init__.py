@@ -28,10 +28,12 @@ from tribodyn.gear.hypoid import (
     EaseOff,
     HypoidBlank,
     HypoidFlanks,
+    HypoidKinematics,
     Misalignment,
     ToothContact,
     hypoid_blank,
     hypoid_flanks,
+    hypoid_kinematics,
     tooth_contact,
 )
 from tribodyn.gear.mass_properties import MassProperties, Material, mass_properties, section_moments
@@ -58,6 +60,7 @@ __all__ = [
     "FlankRange",
     "HypoidBlank",
     "HypoidFlanks",
+    "HypoidKinematics",
     "MassProperties",
     "Material",
     "MeshGeometry",
@@ -75,6 +78,7 @@ __all__ = [
     "hunting_period",
     "hypoid_blank",
     "hypoid_flanks",
+    "hypoid_kinematics",
     "lead_gap",
     "mass_properties",
     "operating_pressure_angle",

@@ -119,12 +119,7 @@ def tooth_outline(gear: ToothForm, points: int = 200) -> Array:
     root_angle = np.linspace(pitch_angle, fillet[1][0], arc, endpoint=False)
     tip_angle = np.linspace(0.0, flank[1][-1], arc, endpoint=False)[::-1]
     radius = np.concatenate(
-        [
-            np.full(arc, gear.root_radius),
-            fillet[0][:-1],
-            flank[0],
-            np.full(arc, gear.tip_radius),
-        ]
+        [np.full(arc, gear.root_radius), fillet[0][:-1], flank[0], np.full(arc, gear.tip_radius)]
     )
     angle = np.concatenate([root_angle, fillet[1][:-1], flank[1], tip_angle])
     right = _cartesian(radius, angle)

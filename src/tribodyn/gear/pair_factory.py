@@ -168,10 +168,11 @@ def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
 def _less_play(backlash: float, play: float, mesh: MeshGeometry) -> str:
     """How to come to a smaller play: a centre distance, or that of the teeth where they reach."""
     least = zero_backlash_center_distance(
-        mesh.pinion.teeth + mesh.wheel.teeth, mesh.pinion.normal_module,
+        mesh.pinion.teeth + mesh.wheel.teeth,
+        mesh.pinion.normal_module,
         mesh.pinion.normal_pressure_angle,
         mesh.pinion.profile_shift_coefficient + mesh.wheel.profile_shift_coefficient,
-    )  # fmt: skip
+    )
     low, high = least, mesh.center_distance
     while high - low > 1e-7:
         middle = 0.5 * (low + high)

@@ -5,31 +5,39 @@
 | `gear_loss` | sliding work over transmitted work, by integration and by Ohlendorf |
 | `bearings` | frictional moment of rolling bearings by the model of SKF; bearings of an FZG rig |
 | `no_load` | radial shaft seals, churning in an oil bath, windage |
+| `gearbox` | all losses of a gear stage over torque and speed |
+| `rig` | power flow of a back-to-back rig |
+| `loss_table` | measured torque losses, read from a file or printed in a paper |
 | `measured_loss` | friction coefficient and its uncertainty from measured torque losses |
 """
 
 from tribodyn.losses.bearings import BEARINGS, BearingMoments, RollingBearing, bearing_moments
 from tribodyn.losses.gear_loss import gear_loss_factor, ohlendorf_loss_factor
-from tribodyn.losses.measured_loss import (
-    FrictionFromLoss,
-    PowerLossTable,
-    friction_from_power_loss,
-    read_power_loss_table,
-)
+from tribodyn.losses.gearbox import Gearbox, GearboxLosses, ShaftParts, gearbox_losses
+from tribodyn.losses.loss_table import PowerLossTable, power_loss_table, read_power_loss_table
+from tribodyn.losses.measured_loss import FrictionFromLoss, friction_from_power_loss
 from tribodyn.losses.no_load import churning_loss, seal_loss, windage_loss
+from tribodyn.losses.rig import RigPowerFlow, rig_power_flow
 
 __all__ = [
     "BEARINGS",
     "BearingMoments",
     "FrictionFromLoss",
+    "Gearbox",
+    "GearboxLosses",
     "PowerLossTable",
+    "RigPowerFlow",
     "RollingBearing",
+    "ShaftParts",
     "bearing_moments",
     "churning_loss",
     "friction_from_power_loss",
     "gear_loss_factor",
+    "gearbox_losses",
     "ohlendorf_loss_factor",
+    "power_loss_table",
     "read_power_loss_table",
+    "rig_power_flow",
     "seal_loss",
     "windage_loss",
 ]

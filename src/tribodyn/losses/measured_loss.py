@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tribodyn import units
-from tribodyn.errors import InputError, Problem, require_between, require_positive, warn
+from tribodyn.errors import InputError, Problem, warn
+from tribodyn.losses.loss_table import PowerLossTable
+from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, Index
 
 _RPM = math.pi / 30.0
@@ -21,104 +20,9 @@ _SOUND, _LOST = 0.1, 0.3
 _SCATTER = 3.0
 _SAME_SPEED = 0.01  # relative difference of speeds that count as one
 
-#: Columns of a table and their units.
-COLUMNS = {"speed": "rad/s", "torque": "N*m", "torque_loss": "N*m"}
 
-
-@dataclass(frozen=True)
-class PowerLossTable:
-    """Measured torque losses, one row for each run, repeats as rows of one speed and torque.
-
-    All torques are of one shaft. Rows of at most ``no_load_torque`` tell the loss without load at
-    their speed, which is taken off the others.
-
-    Parameters
-    ----------
-    speed : array [rad/s]
-        Speed of each run, shape (n,).
-    torque : array [N*m]
-        Torque of each run.
-    torque_loss : array [N*m]
-        Torque that the loss asks for.
-    gear_loss_factor : float
-        H_V of the gears, see :func:`gear_loss_factor`.
-    no_load_torque : float [N*m]
-        Torque up to which a row counts as without load.
-    other_loss : array or float [N*m]
-        What bearings and seals lose more than without load, in each row, as torque.
-    gear_sets : float
-        Gear sets in the loop that share the loss, a pure number: 1 where the slave gears are in
-        ``other_loss``, 2 where they are like those tested.
-    torque_loss_uncertainty : float [N*m]
-        Standard uncertainty of one reading; by default that of the repeats.
-    torque_uncertainty : float [N*m]
-        Standard uncertainty of the torque.
-    other_loss_uncertainty : float [N*m]
-        Standard uncertainty of ``other_loss``.
-    gear_loss_factor_uncertainty : float
-        Standard uncertainty of H_V, a pure number.
-
-    Raises
-    ------
-    InputError
-        Listing every row that is not as long as the others, not finite or not positive.
-
-    Examples
-    --------
-    >>> table = PowerLossTable([146.6, 146.6], [5.0, 150.0], [1.0, 3.0], gear_loss_factor=0.3)
-    >>> len(table.speed)
-    2
-    """
-
-    speed: Array
-    torque: Array
-    torque_loss: Array
-    gear_loss_factor: float
-    no_load_torque: float = 5.0
-    other_loss: Any = 0.0
-    gear_sets: float = 1.0
-    torque_loss_uncertainty: float | None = None
-    torque_uncertainty: float = 0.0
-    other_loss_uncertainty: float = 0.0
-    gear_loss_factor_uncertainty: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Make arrays of the columns and look at every row."""
-        for name in (*COLUMNS, "other_loss"):
-            object.__setattr__(self, name, np.atleast_1d(np.asarray(getattr(self, name), float)))
-        counts = {name: np.size(getattr(self, name)) for name in COLUMNS}
-        if len(set(counts.values())) > 1 or not counts["speed"]:
-            listed = ", ".join(f"{count} of {name}" for name, count in counts.items())
-            why, remedy = "Each row has one of each", "Give columns of one length"
-            raise InputError(listed, where="PowerLossTable", why=why, remedy=remedy)
-        object.__setattr__(self, "other_loss", np.broadcast_to(self.other_loss, self.speed.shape))
-        problems = [
-            Problem(
-                f"{name} = {value:.6g} {unit}", f"row {row + 1}", "It must be finite and above 0"
-            )
-            for name, unit in COLUMNS.items()
-            for row, value in enumerate(getattr(self, name))
-            if not (np.isfinite(value) and value > 0.0)
-        ]
-        if problems:
-            raise InputError(problems)
-        require_between("other_loss", self.other_loss, 0.0, np.inf, "N*m")
-        require_positive("gear_loss_factor", self.gear_loss_factor)
-        require_between("gear_sets", self.gear_sets, 1.0, 2.0)
-        for name in (
-            "torque_uncertainty",
-            "other_loss_uncertainty",
-            "gear_loss_factor_uncertainty",
-        ):
-            require_between(name, getattr(self, name), 0.0, np.inf)
-        if self.torque_loss_uncertainty is not None:
-            require_between(
-                "torque_loss_uncertainty", self.torque_loss_uncertainty, 0.0, np.inf, "N*m"
-            )
-
-
-@dataclass(frozen=True)
-class FrictionFromLoss:
+@record
+class FrictionFromLoss(Record):
     """Friction coefficients from measured losses: one row for each speed and torque under load.
 
     Parameters
@@ -151,105 +55,21 @@ class FrictionFromLoss:
     ([0.05], ('sound',))
     """
 
-    speed: Array
-    torque: Array
-    friction_coefficient: Array
-    standard_uncertainty: Array
-    degrees_of_freedom: Array
-    monte_carlo_uncertainty: Array
-    low: Array
-    high: Array
-    sensitivity: Array
-    verdict: tuple[str, ...]
+    speed: Array = quantity("point", axis=True)
+    torque: Array = quantity("point", axis=True)
+    friction_coefficient: Array = quantity("point")
+    standard_uncertainty: Array = quantity("point", unit="1")
+    degrees_of_freedom: Array = quantity("point", unit="1")
+    monte_carlo_uncertainty: Array = quantity("point", unit="1")
+    low: Array = quantity("point", unit="1")
+    high: Array = quantity("point", unit="1")
+    sensitivity: Array = quantity("point", unit="1/(N*m)")
+    verdict: tuple[str, ...] = quantity("point", unit="1")
 
-
-def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any) -> PowerLossTable:
-    r"""Read measured torque losses from a CSV file.
-
-    Parameters
-    ----------
-    path : str or Path
-        File whose first line names ``speed``, ``torque`` and ``torque_loss`` with their units in
-        brackets; lines with # are left out.
-    gear_loss_factor : float
-        H_V of the gears.
-    **more : object
-        Further arguments of :class:`PowerLossTable`.
-
-    Raises
-    ------
-    InputError
-        Naming file and line of what is no number, or the column that is missing.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "losses.csv"
-    ...     _ = file.write_text("speed [rpm], torque [N*m], torque_loss [N*m]\n1400, 50, 2.5\n")
-    ...     print(read_power_loss_table(file, 0.3).speed.round(1))
-    [146.6]
-    """
-    file = Path(path)
-    try:
-        text = file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        remedy = "Give the path of a CSV file"
-        raise InputError(
-            "the table cannot be read", where=str(file), why=str(error), remedy=remedy
-        ) from None
-    lines = [
-        (number, [cell.strip() for cell in line.split(",")])
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise InputError("the table is empty", where=str(file), remedy="Write a head and its rows")
-    columns = _columns(file, lines[0][1])
-    problems: list[Problem] = []
-    values = {name: _column(file, lines[1:], columns[name], problems) for name in COLUMNS}
-    if problems:
-        raise InputError(problems)
-    speed, torque, loss = (np.array(values[name]) * columns[name][1] for name in COLUMNS)
-    return PowerLossTable(speed, torque, loss, gear_loss_factor, **more)
-
-
-def _columns(file: Path, head: Iterable[str]) -> Mapping[str, tuple[int, float]]:
-    """Place of each column and what its unit is in SI."""
-    found = {}
-    for place, cell in enumerate(head):
-        name, _, unit = cell.partition("[")
-        if name.strip() in COLUMNS:
-            written = unit.rstrip("] ") or COLUMNS[name.strip()]
-            try:
-                found[name.strip()] = (place, units.parse(f"1 {written}", COLUMNS[name.strip()]))
-            except units.UnitProblemError as error:
-                raise InputError(f'column "{cell}"', where=f"{file}:1", why=str(error)) from None
-    missing = [name for name in COLUMNS if name not in found]
-    if missing:
-        raise InputError(
-            f"no column {', '.join(missing)}",
-            where=f"{file}:1",
-            remedy="Name the columns: speed [rpm], torque [N*m], torque_loss [N*m]",
-        )
-    return found
-
-
-def _column(
-    file: Path,
-    lines: Iterable[tuple[int, list[str]]],
-    column: tuple[int, float],
-    problems: list[Problem],
-) -> list[float]:
-    values = []
-    for number, cells in lines:
-        try:
-            values.append(float(cells[column[0]]))
-        except (IndexError, ValueError):
-            shown = cells[column[0]] if column[0] < len(cells) else "nothing"
-            why = f"Column {column[0] + 1} holds a number"
-            problems.append(Problem(f'"{shown}" is no number', f"{file}:{number}", why))
-    return values
+    def __repr__(self) -> str:
+        """One line."""
+        sound = sum(verdict == "sound" for verdict in self.verdict)
+        return f"FrictionFromLoss({self.torque.size} points, {sound} of them sound)"
 
 
 @dataclass(frozen=True)
@@ -340,7 +160,7 @@ def friction_from_power_loss(
         sensitivity=slope,
         verdict=tuple(_verdict(*row) for row in zip(mu, uncertainty, strict=True)),
     )
-    _warn_of_negative(points, mu)
+    _warn_of_negative([table.place(point.rows[0]) for point in points], mu)
     return found
 
 
@@ -368,7 +188,7 @@ def _point(table: PowerLossTable, rows: list[int]) -> _Point:
         return _Point(rows, float(readings.mean()), variance, count - 1.0)
     raise InputError(
         f"one reading at {table.torque[rows[0]]:g} N*m and {table.speed[rows[0]] / _RPM:.4g} rpm",
-        where=f"row {rows[0] + 1}",
+        where=table.place(rows[0]),
         why="One reading tells no scatter",
         remedy="Repeat it, or give torque_loss_uncertainty",
     )
@@ -386,7 +206,7 @@ def _matched(
             for idle in idles
             if math.isclose(table.speed[idle.rows[0]], speed, rel_tol=_SAME_SPEED)
         ]
-        where = f"row {point.rows[0] + 1}"
+        where = table.place(point.rows[0])
         if not rest:
             known = sorted({round(table.speed[idle.rows[0]] / _RPM, 1) for idle in idles})
             problems.append(
@@ -471,12 +291,12 @@ def _verdict(mu: float, uncertainty: float) -> str:
     return f"{kind}: {100.0 * relative:.0f} % standard uncertainty"
 
 
-def _warn_of_negative(points: list[_Point], coefficients: Array) -> None:
-    rows = [p.rows[0] + 1 for p, mu in zip(points, coefficients, strict=True) if mu <= 0.0]
+def _warn_of_negative(places: list[str], coefficients: Array) -> None:
+    rows = [place for place, mu in zip(places, coefficients, strict=True) if mu <= 0.0]
     if rows:
         warn(
             "friction-from-loss",
-            f"the friction coefficient of row {', '.join(map(str, rows))} is not positive: "
-            "bearings, seals, slave gears and the loss without load are more than the loss "
-            "measured. Check other_loss, which must not hold what is lost without load as well.",
+            f"the friction coefficient of {', '.join(rows)} is not positive: bearings, seals, "
+            "slave gears and the loss without load are more than the loss measured. Check "
+            "other_loss, which must not hold what is lost without load as well.",
         )

@@ -36,8 +36,8 @@ def seal_loss(shaft_diameter: ArrayLike, speed: ArrayLike) -> Array:
     InputError
         If a value is not finite, or the diameter not positive.
 
-    Valid for lips of nitrile or fluorinated rubber in gear oil. Source: Freudenberg, in
-    ISO/TR 14179-2.
+    Valid for lips of nitrile or fluorinated rubber in gear oil; an open program that quotes the
+    standard has the same. Source: Freudenberg, in ISO/TR 14179-2.
 
     Examples
     --------
@@ -98,8 +98,8 @@ def churning_loss(
         If a value is not positive (immersion and speed may be zero), or the gear immersed to more
         than its radius.
 
-    Valid for one gear without flanges near it. Source: Changenet and Velex, J. Mech. Des. 129
-    (2007) and 130 (2008).
+    Valid for one gear without flanges near it. No second source of the constants was found. Source:
+    Changenet and Velex, J. Mech. Des. 129 (2007) and 130 (2008).
 
     Examples
     --------
@@ -175,7 +175,8 @@ def windage_loss(
     ModelWarning
         Code ``windage-range`` beyond 200 m/s at the pitch circle.
 
-    Source: Anderson and Loewenthal, NASA TP-1622 (1980).
+    No second source of the constants was found. Source: Anderson and Loewenthal, NASA TP-1622
+    (1980).
 
     Examples
     --------

@@ -17,8 +17,8 @@ import numpy as np
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
 from tribodyn.measurement.spread import HALF, SHAPE, spread
 from tribodyn.record import Record, fact, quantity, record
+from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.signals.order_map import OrderMap
-from tribodyn.signals.recorded_signal import checked_signal
 from tribodyn.types import Array, ComplexArray
 
 #: Cosine sums over the block: G. Heinzel, A. Ruediger, R. Schilling, Spectrum and spectral density

@@ -15,7 +15,7 @@ from tribodyn.errors import Argument, InputError, Problem, require_positive, sho
 from tribodyn.measurement.readers.content import Content, equal_steps
 from tribodyn.measurement.readers.recognised import content_of
 from tribodyn.record import Parts, Record, fact, record
-from tribodyn.signals.recorded_signal import checked_signal
+from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
 from tribodyn.units import convert
 

@@ -17,7 +17,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
-from tribodyn.signals.recorded_signal import checked_signal
+from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
 
 #: Part of the distance of both levels by which the signal must pass the middle.

@@ -15,7 +15,7 @@ from tribodyn.errors import (
     require_positive,
 )
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.signals.recorded_signal import checked_signal
+from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array, ComplexArray
 
 #: Most unknowns: samples times orders.

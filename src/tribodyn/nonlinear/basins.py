@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions

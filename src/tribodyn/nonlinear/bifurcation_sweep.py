@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.survey import Outcomes, Points, Survey, each_in_threads, march_group
 from tribodyn.progress import SILENT, Progress

@@ -21,12 +21,9 @@ from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import (
-    ComputationError,
-    InputError,
-)
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress

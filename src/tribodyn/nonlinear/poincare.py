@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike
 from tribodyn.drawing import draw
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
+from tribodyn.dynamics.orbits.coordinates import orbit_coordinates, static_start
 from tribodyn.dynamics.orbits.periods import closed_period, open_period
-from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.time.response import Response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError

@@ -15,6 +15,9 @@ from tribodyn.plot.film.path import film, film_pressure, film_stiffness, frictio
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid_blank import hypoid_blank
+from tribodyn.plot.gear.hypoid_contact import hypoid_contact
+from tribodyn.plot.gear.hypoid_flanks import ease_off, hypoid_pair
+from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
@@ -50,6 +53,7 @@ __all__ = [
     "comprehensive_stiffness",
     "continuation",
     "drawing",
+    "ease_off",
     "film",
     "film_along_path",
     "film_over_operation",
@@ -64,14 +68,18 @@ __all__ = [
     "friction",
     "friction_claims",
     "friction_effect",
+    "friction_from_loss",
     "friction_harmonics",
     "gear_pair",
     "harris_map",
     "hypoid_blank",
+    "hypoid_contact",
+    "hypoid_pair",
     "line_contact",
     "load_sharing",
     "loaded_contact",
     "loaded_sharing",
+    "losses",
     "lubrication",
     "lubrication_map",
     "lyapunov",
@@ -85,6 +93,7 @@ __all__ = [
     "path_of_contact",
     "phase_portrait",
     "poincare",
+    "power_flow",
     "recording",
     "run_up",
     "run_up_map",

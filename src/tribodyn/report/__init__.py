@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 from tribodyn.report.html import render_report, write_report
-from tribodyn.report.study import (
-    write_bifurcation_report,
-    write_study_report,
-    write_sweep_report,
-)
+from tribodyn.report.study import write_bifurcation_report, write_study_report, write_sweep_report
 
 __all__ = [
     "render_report",

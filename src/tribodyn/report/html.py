@@ -9,9 +9,7 @@ from typing import Any
 
 from tribodyn.drawing import report_of
 from tribodyn.report.blocks import Block, figure_blocks
-from tribodyn.report.friction_loop import compared_friction
-from tribodyn.report.modes import HEAD, modes_table
-from tribodyn.report.numbers import headlines, table
+from tribodyn.report.numbers import HEAD, compared_friction, headlines, modes_table, table
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.study.pipeline.save import write_file
 

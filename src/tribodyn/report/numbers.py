@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from tribodyn.plot.look.labels import engineering, readable
+from tribodyn.plot.look.labels import display_unit, displayed, engineering, readable, significant
 from tribodyn.study.pipeline.summary import SUMMARY, by_topic
 from tribodyn.study.pipeline.words import in_words
+from tribodyn.study.studies.modes import ORDERS, Mode, mode_rows
 from tribodyn.units import convert
 
 #: Summary figures shown on cards at the top, most wanted first.
@@ -68,3 +70,54 @@ def table(summary: Mapping[str, float]) -> list[Number]:
 def headlines(summary: Mapping[str, float]) -> list[Number]:
     """Pick the figures that everybody asks for first."""
     return [describe(name, summary[name], digits=4) for name in HEADLINES if name in summary]
+
+
+_ENDING = "_nominal_friction"
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One figure with friction in the loop and without."""
+
+    own: Number
+    nominal: Number
+    change: str  #: change of the former from the latter, with its sign [%]
+
+
+def compared_friction(summary: Mapping[str, float]) -> list[Compared]:
+    """Put the comparison with nominal friction into words."""
+    found = []
+    for name, nominal in summary.items():
+        own = name.removesuffix(_ENDING)
+        if own != name and own in summary:
+            found.append(
+                Compared(describe(own, summary[own]), describe(name, nominal),
+                         _change(float(summary[own]), float(nominal)))
+            )  # fmt: skip
+    return found
+
+
+def _change(own: float, nominal: float) -> str:
+    """Write the relative change, or a dash where there is nothing to relate it to."""
+    return f"{100.0 * (own - nominal) / abs(nominal):+.3f} %" if nominal else "–"
+
+
+#: Head of the table, in reports and on the screen.
+HEAD = (
+    "Mode", f"Frequency [{display_unit('frequency')}]", "Damping [%]", "Moves", "Strained",
+    *(f"{display_unit('speed')} at harmonic {order}" for order in ORDERS),
+)  # fmt: skip
+
+
+def cells(mode: Mode) -> list[str]:
+    """One mode as it is printed."""
+    speeds = (significant(float(displayed("speed", speed)), 4) for speed in mode.speeds)
+    damping = significant(100.0 * mode.damping_ratio, 3)
+    return [str(mode.number), significant(mode.frequency, 4), damping, mode.moves, mode.strains,
+            *speeds]  # fmt: skip
+
+
+def modes_table(result: Any) -> list[list[str]]:
+    """All elastic modes of a result."""
+    rows = mode_rows(result.natural_modes, result.case, result.mesh.mesh_frequency)
+    return [cells(row) for row in rows]

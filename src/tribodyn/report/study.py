@@ -158,8 +158,8 @@ def write_study_report(
 
     Parameters
     ----------
-    case : Case
-        The case that was studied.
+    case : Case or None
+        The case that was studied; None for a study of measurements alone.
     path : path
         File to write; an existing one is replaced.
     kind : str
@@ -250,12 +250,16 @@ def _write(path: Path, case: Any, page: _Page) -> Path:
     gone = {_CHIPS.get(key, "") for key in page.varied}
     drawn = ",\n".join(f'"{block.name}": {block.json}' for block in page.blocks)
     text = template("study.html.j2").render(
-        title=case.title,
+        title=case.title if case else page.kind.capitalize(),
         version=version(),
-        operating_point=[chip for chip in operating_point(case) if chip[0] not in gone],
-        assumptions=[row for row in assumptions(case) if row.key not in page.varied],
+        operating_point=[
+            chip for chip in (operating_point(case) if case else ()) if chip[0] not in gone
+        ],
+        assumptions=[
+            row for row in (assumptions(case) if case else ()) if row.key not in page.varied
+        ],
         provenance=provenance(None),
-        case_text=case.to_toml(),
+        case_text=case.to_toml() if case else "",
         figures=Markup("{\n" + drawn + "\n}"),
         style=text_of("report.css"),
         script=text_of("report.js"),

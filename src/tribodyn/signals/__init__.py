@@ -8,9 +8,7 @@ The public names stand on the page of :mod:`tribodyn.analysis`.
 | ``envelope`` | how strong a signal is at each moment, how that repeats, what modulates it |
 | ``indicators`` | mean, rms, ranges, dynamic factor, direction and harmonics of a motion |
 | ``order_map`` | how strong each multiple of the rotation is over the speed |
-| ``recorded_signal`` | whether a record is fit to be analysed |
 | ``run_up_orders`` | orders and levels of a run-up, and the natural modes of its peaks |
-| ``spectrogram`` | how a spectrum changes over time |
 | ``spectrum`` | how strong each frequency is |
 | ``synchronous_average`` | what repeats with the rotation, and what the rest tells of damage |
 """

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tribodyn.errors import ComputationError, InputError, require_positive
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half
+from tribodyn.signals.angular_resampling import checked_signal, refuse_above_half
 from tribodyn.signals.spectrum import SignalSpectrum, spectrum
 from tribodyn.types import Array, ComplexArray
 

@@ -13,7 +13,7 @@ import numpy as np
 from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
 from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Record, quantity, record
-from tribodyn.signals.recorded_signal import checked_signal
+from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array, ComplexArray
 
 

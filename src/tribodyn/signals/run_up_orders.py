@@ -12,8 +12,8 @@ from tribodyn.dynamics.linear.natural_modes import NaturalModes
 from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, quantity, record
+from tribodyn.signals.angular_resampling import window_values
 from tribodyn.signals.order_map import OrderCut, OrderMap
-from tribodyn.signals.recorded_signal import window_values
 from tribodyn.types import Array, Index, Mask
 
 Part = Literal["all", "up", "down"]

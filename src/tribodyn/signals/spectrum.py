@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.signals.recorded_signal import checked_signal, refuse_above_half, window_values
+from tribodyn.signals.angular_resampling import checked_signal, refuse_above_half, window_values
 from tribodyn.types import Array, ComplexArray, Mask
 
 _SCALINGS = ("amplitude", "power", "density")

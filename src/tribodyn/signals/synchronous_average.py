@@ -10,8 +10,12 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, InputError, require_positive
 from tribodyn.record import Parts, Record, fact, quantity, record
-from tribodyn.signals.angular_resampling import angular_resampling, shaft_rotation
-from tribodyn.signals.recorded_signal import checked_rising, checked_signal
+from tribodyn.signals.angular_resampling import (
+    angular_resampling,
+    checked_rising,
+    checked_signal,
+    shaft_rotation,
+)
 from tribodyn.types import Array
 
 

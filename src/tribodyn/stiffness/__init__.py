@@ -31,9 +31,10 @@ from tribodyn.stiffness.models.potential_energy import (
 from tribodyn.stiffness.models.rectangular import rectangular_stiffness
 from tribodyn.stiffness.models.table import tabulated_stiffness
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import LoadPoint, load_point
 from tribodyn.stiffness.teeth.tooth_bending import (
+    LoadPoint,
     ToothBendingCompliance,
+    load_point,
     tooth_bending_compliance,
 )
 from tribodyn.stiffness.teeth.tooth_compliance import (

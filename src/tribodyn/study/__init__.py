@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
-    from tribodyn.study.pipeline.loaded_teeth import loaded_contact
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
+    from tribodyn.study.pipeline.tooth_contact import loaded_contact
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.friction_experiment import friction_experiment
+    from tribodyn.study.studies.losses import loss_map, rig_power_flow
     from tribodyn.study.studies.modes import campbell, natural_modes
-    from tribodyn.study.studies.run_up import run_up
-    from tribodyn.study.studies.speed_sweep import speed_sweep
+    from tribodyn.study.studies.run_up import run_up, speed_sweep
     from tribodyn.study.studies.static import (
         comprehensive_stiffness,
         film_over_operation,
@@ -38,9 +38,11 @@ __all__ = [
     "friction_experiment",
     "harris_map",
     "loaded_contact",
+    "loss_map",
     "natural_modes",
     "optimize_tip_relief",
     "read_case",
+    "rig_power_flow",
     "run",
     "run_up",
     "speed_sweep",
@@ -56,13 +58,15 @@ _HOMES = {
     "film_over_operation": "studies.static",
     "friction_experiment": "studies.friction_experiment",
     "harris_map": "studies.static",
-    "loaded_contact": "pipeline.loaded_teeth",
+    "loss_map": "studies.losses",
+    "loaded_contact": "pipeline.tooth_contact",
     "natural_modes": "studies.modes",
     "optimize_tip_relief": "studies.static",
     "read_case": "case.read",
+    "rig_power_flow": "studies.losses",
     "run": "pipeline.run",
     "run_up": "studies.run_up",
-    "speed_sweep": "studies.speed_sweep",
+    "speed_sweep": "studies.run_up",
     "Result": "pipeline.result",
     "SUMMARY": "pipeline.summary",
     "summary_figure": "pipeline.summary",

@@ -25,8 +25,8 @@ from tribodyn.dynamics import (
     steady_state,
 )
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.equations.load_friction import friction_force, friction_tangent
-from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.equations.nodes import friction_force, friction_tangent
+from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import InputError
 
 AT_REST = (np.zeros(6), np.zeros(6))

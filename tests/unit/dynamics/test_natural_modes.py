@@ -8,7 +8,7 @@ from scipy.linalg import ldl
 
 from known_systems import reference_system
 from tribodyn.dynamics import Contact, System, law_contacts, natural_modes, torsional
-from tribodyn.dynamics.linear.natural_modes_linear import linear_system
+from tribodyn.dynamics.linear.natural_modes import linear_system
 from tribodyn.errors import InputError
 from tribodyn.mesh import MeshForceLaw, phase_grid
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.dynamics import STRUCTURES
-from tribodyn.dynamics.structure.structures import Gearing
+from tribodyn.dynamics import STRUCTURES, Gearing
 from tribodyn.study import read_case
 
 FLAT = SimpleNamespace(

@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from tribodyn.errors import InputError, ModelWarning, quiet
-from tribodyn.losses import PowerLossTable, friction_from_power_loss, read_power_loss_table
+from tribodyn.friction import measured
+from tribodyn.losses import (
+    PowerLossTable,
+    friction_from_power_loss,
+    power_loss_table,
+    read_power_loss_table,
+)
 
 H = 0.3024
 RPM = math.pi / 30.0
@@ -87,17 +93,33 @@ def test_slave_gears_alike_halve_the_friction():
 
 
 def test_factors_of_the_printed_points():
-    # 339 % from 50 to 300 N*m, -63.2 % from 400 to 1800 rpm, as printed.
-    assert pytest.approx(3.39, abs=5e-3) == 0.119 / 0.0271 - 1.0
-    assert pytest.approx(-0.632, abs=5e-4) == 0.0554 / 0.1505 - 1.0
-    rows = PowerLossTable(
-        1400.0 * RPM * np.ones(4), [5.0, *TORQUES],
-        [1.0, *(1.0 + TORQUES * H * np.array([0.0271, 0.0692, 0.119]))], H,
-        torque_loss_uncertainty=0.1,
-    )  # fmt: skip
+    rows = power_loss_table("fzg-wheel-driven")
     found = friction_from_power_loss(rows)
-    assert found.friction_coefficient == pytest.approx([0.0271, 0.0692, 0.119])
+    points = {
+        (round(torque), round(speed / RPM)): mu
+        for torque, speed, mu in zip(
+            found.torque, found.speed, found.friction_coefficient, strict=True
+        )
+    }
+    # 339 % from 50 to 300 N*m, -63.2 % from 400 to 1800 rpm, as printed.
+    assert points[300, 1400] / points[50, 1400] - 1.0 == pytest.approx(3.39, abs=5e-3)
+    assert points[150, 1800] / points[150, 400] - 1.0 == pytest.approx(-0.632, abs=5e-4)
     assert found.verdict[0].startswith("ill-conditioned")
+    for (torque, speed), mu in points.items():
+        assert measured(float(torque), speed * RPM) == pytest.approx(mu, rel=1e-9)
+    assert "neither is printed" in rows.source
+    with pytest.raises(InputError, match="fzg-wheel-driven"):
+        power_loss_table("fzg")
+
+
+def test_a_run_without_load_still_rubs():
+    """What is taken off holds the friction of its own torque: 5/50 of it at 50 N*m."""
+    torque = np.array([5.0, *TORQUES])
+    rows = PowerLossTable(
+        np.full(4, 100.0), torque, 1.0 + 0.05 * torque * H, H, torque_loss_uncertainty=0.0
+    )
+    found = friction_from_power_loss(rows)
+    assert found.friction_coefficient == pytest.approx(0.05 * (1.0 - 5.0 / TORQUES), rel=1e-12)
 
 
 def rows_of(speed, torque, loss, **more):

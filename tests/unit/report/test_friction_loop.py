@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tribodyn.report import render_report
-from tribodyn.report.friction_loop import compared_friction
+from tribodyn.report.numbers import compared_friction
 
 NAMES = (
     "rms_mesh_force", "peak_mesh_force", "peak_to_peak_dynamic_transmission_error",

@@ -13,7 +13,7 @@ from tribodyn.errors import InputError
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness import load_point, tooth_compliance, wind_up_compliance
 from tribodyn.stiffness.teeth.analytic import analytic_influence
-from tribodyn.stiffness.teeth.load_point import flank_nodes
+from tribodyn.stiffness.teeth.tooth_bending import flank_nodes
 
 
 def standard_gear(teeth: int, bore: float, shift: float = 0.0) -> SpurGear:

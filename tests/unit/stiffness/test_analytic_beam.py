@@ -9,8 +9,7 @@ import pytest
 
 from tribodyn.gear import BasicRack, SpurGear, half_tooth
 from tribodyn.stiffness import LoadPoint, load_point, tooth_bending_compliance
-from tribodyn.stiffness.teeth.load_point import flank_nodes
-from tribodyn.stiffness.teeth.tooth_bending import beam_to_axis
+from tribodyn.stiffness.teeth.tooth_bending import beam_to_axis, flank_nodes
 
 #: Bar of 2 mm half thickness from height 10 to 30 mm.
 BAR = (np.array([0.01, 0.02, 0.03]), np.full(3, 2e-3))

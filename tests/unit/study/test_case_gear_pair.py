@@ -4,7 +4,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import InputError
-from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.assembly import geometry
 
 MINIMAL = """
 [gears]

@@ -11,8 +11,8 @@ import pytest
 
 import tribodyn as td
 from tribodyn.members import Members
+from tribodyn.study import friction_experiment
 from tribodyn.study.studies import friction_experiment as module
-from tribodyn.study.studies.friction_experiment import friction_experiment
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

@@ -18,7 +18,7 @@ from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, default_relief_length, flank_gap, flank_ranges
 from tribodyn.study import SUMMARY, Case, read_case
 from tribodyn.study.case.provenance import assumptions
-from tribodyn.study.pipeline.geometry import geometry
+from tribodyn.study.pipeline.assembly import geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

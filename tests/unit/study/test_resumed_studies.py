@@ -12,8 +12,7 @@ import tribodyn.study.studies.sweep as sweeps
 from tribodyn import load_case
 from tribodyn.members import Members
 from tribodyn.nonlinear.attractors import Motions
-from tribodyn.study.studies.bifurcation import bifurcation
-from tribodyn.study.studies.sweep import sweep
+from tribodyn.study import bifurcation, sweep
 
 _SPEEDS = {"operation.speed": ("900 rpm", "1500 rpm", 4)}
 

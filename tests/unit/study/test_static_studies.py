@@ -8,7 +8,7 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.stiffness import loaded_contact
-from tribodyn.study.pipeline.loaded_teeth import loaded_settings
+from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
 
 @pytest.fixture(scope="module")

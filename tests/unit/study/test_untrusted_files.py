@@ -13,7 +13,7 @@ from broken import SOUND
 from tribodyn import load_case
 from tribodyn.errors import InputError, Problem, TribodynError
 from tribodyn.mesh.table_file import read_table_file
-from tribodyn.study.case.read import read_case
+from tribodyn.study import read_case
 from tribodyn.units import UnitProblemError, convert, parse
 
 

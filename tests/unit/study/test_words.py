@@ -22,7 +22,7 @@ from tribodyn.study.case.reference import (
     explanations,
     warning_meanings,
 )
-from tribodyn.study.case.words import listed, word
+from tribodyn.study.case.values import listed, word
 
 _SOURCE = Path(tribodyn.__file__).parent
 _PAGE = Path(__file__).resolve().parents[3] / "docs" / "command-line.md"

@@ -17,7 +17,7 @@ from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import compile_system, lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate, state_roots
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.start import static_start
+from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import InputError, real_numbers, require_between
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, Index

@@ -3,7 +3,6 @@
 | module | what it answers |
 |---|---|
 | `system` | What is a structure with its contacts and frictions? |
-| `load_friction` | What does friction that follows the load do? |
 | `grid` | How is the mesh cycle divided so that no step spans a jump? |
 | `nodes` | What are the entries at both ends and in the middle of every step? |
 | `motion` | What forces and accelerations follow from a motion? The law, readable. |

@@ -15,9 +15,8 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.load_friction import coefficient_count
 from tribodyn.dynamics.equations.motion import has_gap
-from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
 from tribodyn.dynamics.equations.step_limit import (
     largest_rate,
@@ -25,10 +24,7 @@ from tribodyn.dynamics.equations.step_limit import (
     refuse_unstable_step,
 )
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import (
-    InputError,
-    require_positive,
-)
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Index, Mask
 
 

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, system_events
-from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
-from tribodyn.dynamics.equations.nodes import Nodes, sampled
+from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction, sampled
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError

@@ -7,10 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import (
-    InputError,
-    real_numbers,
-)
+from tribodyn.errors import InputError, real_numbers
 from tribodyn.types import Array
 
 

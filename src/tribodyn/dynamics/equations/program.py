@@ -13,8 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
-from tribodyn.dynamics.equations.load_friction import coefficient_count
-from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes
+from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
 

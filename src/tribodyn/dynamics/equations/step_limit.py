@@ -14,13 +14,9 @@ import numpy as np
 from tribodyn.checks import require_number
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.load_friction import friction_tangent, push_with_friction
-from tribodyn.dynamics.equations.nodes import Nodes, sampled
+from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction, sampled
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import (
-    InputError,
-    require_positive,
-)
+from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array, ComplexArray, Index
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.

@@ -18,11 +18,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
-from tribodyn.errors import (
-    InputError,
-    real_numbers,
-    require_positive,
-)
+from tribodyn.errors import InputError, real_numbers, require_positive
 from tribodyn.types import Array
 
 
@@ -237,9 +233,10 @@ class System:
         one = isinstance(self.frictions, LoadFriction)
         frictions = (self.frictions,) if one else self.frictions
         for name, parts, kind in (
-            ("contacts", contacts, Contact), ("frictions", frictions, LoadFriction),
+            ("contacts", contacts, Contact),
+            ("frictions", frictions, LoadFriction),
             ("names", self.names, str),
-        ):  # fmt: skip
+        ):
             if not isinstance(parts, list | tuple) or not all(isinstance(p, kind) for p in parts):
                 raise InputError(
                     f"{name} is no sequence of {kind.__name__}",

@@ -5,7 +5,6 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 | module | what it answers |
 |---|---|
 | ``natural_modes`` | natural frequencies, modes and where their energy sits |
-| ``natural_modes_linear`` | matrices with the contacts in touch |
 | ``forced_response`` | what a harmonic transmission error does |
 | ``campbell`` | at which speeds mesh orders meet natural frequencies |
 """

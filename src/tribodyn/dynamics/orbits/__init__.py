@@ -4,7 +4,6 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 
 | module | what it answers |
 |---|---|
-| ``anderson`` | how a fixed-point iteration is accelerated |
 | ``continuation``, ``continuation_path`` | where a branch of orbits goes, stable or not |
 | ``coordinates`` | in which coordinates a motion closes |
 | ``orbit_map`` | where states are after one period, and which of them close |
@@ -12,7 +11,5 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 | ``search`` | which orbit a start comes to, and whether it stays in touch on the way |
 | ``solution_branch`` | what a branch of orbits holds |
 | ``speed_sweep``, ``speed_sweep_follow`` | what a slow sweep of the speed meets, up and down |
-| ``start`` | where a search begins |
 | ``steady_state`` | the orbit at one speed, with a certified error |
-| ``step_error`` | how far the orbit at half the step lies away |
 """

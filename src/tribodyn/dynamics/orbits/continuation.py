@@ -28,10 +28,10 @@ from tribodyn.dynamics.orbits.continuation_path import (
     tests_of_multipliers,
     with_values,
 )
+from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
-from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response, sample_extremes
 from tribodyn.dynamics.time.simulate import read_start

@@ -11,9 +11,8 @@ from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.program import Program
-from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
+from tribodyn.dynamics.orbits.coordinates import orbit_coordinates, static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, Orbits, newton
-from tribodyn.dynamics.orbits.start import static_start
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array, ComplexArray, Index, Mask

@@ -20,12 +20,7 @@ from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import (
-    ComputationError,
-    InputError,
-    quiet,
-    require_positive,
-)
+from tribodyn.errors import ComputationError, InputError, quiet, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

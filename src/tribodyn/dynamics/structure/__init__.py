@@ -9,5 +9,4 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 | ``fzg12`` | the gear test rig with twelve coordinates |
 | ``shafts`` | drives of shafts, discs and several meshes |
 | ``force_law`` | contacts with a stiffness, a tangent or the whole force law |
-| ``follow_load`` | friction that follows the load of the teeth |
 """

@@ -11,10 +11,7 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_force, read_start
-from tribodyn.errors import (
-    InputError,
-    require_positive,
-)
+from tribodyn.errors import InputError, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array

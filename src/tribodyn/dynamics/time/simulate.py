@@ -10,12 +10,7 @@ from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.dynamics.time.response import Response, build_response, later
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    real_numbers,
-    require_positive,
-)
+from tribodyn.errors import Argument, InputError, real_numbers, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_positive
-from tribodyn.friction.base import LAWS, TribologicalContact
-from tribodyn.friction.mesh_means.pitch_point import OPTIONS
-from tribodyn.friction.mesh_means.schlenk import mean_friction, pitch_state, warn_of_mean
+from tribodyn.friction.base import TribologicalContact
+from tribodyn.friction.mesh_means.mean_law import mean_friction, mean_law
+from tribodyn.friction.mesh_means.pitch_point import PitchPoint
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.model import choice
 from tribodyn.types import Array
@@ -49,7 +49,8 @@ def iso_14179_1(
     ModelWarning
         Code ``friction-range`` outside 2 to 25 m/s and K of 1.4 to 14 N/mm^2.
 
-    Source: ISO/TR 14179-1:2001, mesh coefficient of friction.
+    No second source of the constants was found. Source: ISO/TR 14179-1:2001, mesh coefficient of
+    friction.
 
     Examples
     --------
@@ -89,16 +90,8 @@ def iso_14179_2(
 
     Parameters
     ----------
-    load_per_width : float or array [N/m]
-        Tangential load at the base circle per face width.
-    sum_velocity : float or array [m/s]
-        SUM of the surface speeds at the pitch point.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature at the pitch point.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure and oil temperature.
-    roughness_ra : float or array [m]
-        Mean of the arithmetical roughnesses Ra of both flanks.
+    load_per_width, sum_velocity, equivalent_radius, dynamic_viscosity, roughness_ra
+        State at the pitch point, each in the same unit as for :func:`schlenk`.
     pitch_line_velocity : float or array [m/s]
         Speed of the pitch circles.
     lubricant_factor : float or array
@@ -119,7 +112,8 @@ def iso_14179_2(
     ModelWarning
         Code ``friction-range`` where Ra exceeds 4 um or the coefficient 0.2.
 
-    Source: ISO/TR 14179-2:2001, mean coefficient of gear friction.
+    The least load and the greatest speed stand without a second source. Source: ISO/TR
+    14179-2:2001, mean coefficient of gear friction.
 
     Examples
     --------
@@ -131,43 +125,27 @@ def iso_14179_2(
     load = np.maximum(np.asarray(load_per_width, dtype=float), _LEAST_LOAD)
     held = np.minimum(1.0, _FASTEST / np.asarray(pitch_line_velocity, dtype=float))
     speed = np.asarray(sum_velocity, dtype=float) * held
-    coefficient = 0.048 * mean_friction(
-        load, speed, equivalent_radius, dynamic_viscosity, roughness_ra, 0.25, lubricant_factor
-    )
-    warn_of_mean("iso-14179", coefficient, 0.0, roughness_ra)
-    return coefficient
+    state = (load, speed, equivalent_radius, dynamic_viscosity, roughness_ra)
+    return mean_friction("iso-14179", state, lubricant_factor, lambda *_: 0.048, np.inf)
 
 
-@LAWS.define(
+_PARTS = {
+    "1": "ISO/TR 14179-1: from pitch-line speed, load intensity and viscosity; falls with the load",
+    "2": "ISO/TR 14179-2: the formula of Schlenk with its loads and speeds held",
+}
+
+
+@mean_law(
     "iso-14179",
     source="ISO/TR 14179-1 and -2 (2001)",
     meaning="mean friction coefficient of a mesh for the heat balance of gear units",
-    options={
-        "part": choice(
-            "2",
-            {
-                "1": "ISO/TR 14179-1: from pitch-line speed, load intensity and viscosity; falls "
-                "with the load",
-                "2": "ISO/TR 14179-2: the formula of Schlenk with its loads and speeds held",
-            },
-            meaning="part of ISO/TR 14179",
-        ),
-        **OPTIONS,
-    },
+    own={"part": choice("2", _PARTS, meaning="part of ISO/TR 14179")},
     papers=("iso-14179",),
 )
 def _law(
-    contact: TribologicalContact, *, part: str, roughness_ra: float | None, lubricant_factor: float
+    contact: TribologicalContact, point: PitchPoint, state: dict[str, float], part: str
 ) -> Array:
-    point = contact.known("pitch")
+    speed = point.pitch_line_velocity
     if part == "1":
-        mean = iso_14179_1(
-            point.pitch_line_velocity, point.load_intensity, contact.kinematic_viscosity
-        )
-    else:
-        mean = iso_14179_2(
-            **pitch_state(contact, roughness_ra),
-            pitch_line_velocity=point.pitch_line_velocity,
-            lubricant_factor=lubricant_factor,
-        )
-    return np.full(np.shape(contact.load_per_width), mean)
+        return iso_14179_1(speed, point.load_intensity, contact.kinematic_viscosity)
+    return iso_14179_2(**state, pitch_line_velocity=speed)

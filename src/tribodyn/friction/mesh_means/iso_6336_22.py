@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import require_positive
-from tribodyn.friction.base import LAWS, TribologicalContact
-from tribodyn.friction.mesh_means.pitch_point import OPTIONS
-from tribodyn.friction.mesh_means.schlenk import mean_friction, pitch_state, warn_of_mean
+from tribodyn.friction.mesh_means.mean_law import mean_friction, mean_law
+from tribodyn.friction.mesh_means.pitch_point import PitchPoint
 from tribodyn.model import number
 from tribodyn.types import Array
 
@@ -28,16 +25,9 @@ def iso_6336_22(
 
     Parameters
     ----------
-    load_per_width : float or array [N/m]
-        Tangential load at the base circle per face width, times the load factors K of ISO 6336-1.
-    sum_velocity : float or array [m/s]
-        SUM of the surface speeds at the pitch point.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature at the pitch point.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure and oil temperature.
-    roughness_ra : float or array [m]
-        Mean of the arithmetical roughnesses Ra of both flanks.
+    load_per_width, sum_velocity, equivalent_radius, dynamic_viscosity, roughness_ra
+        State at the pitch point, each in the same unit as for :func:`schlenk`; the load times
+        the load factors K of ISO 6336-1.
     lubricant_factor : float or array
         X_L: mineral oil 1, PAO 0.8, polyglycols 0.6 (water-soluble) or 0.7, phosphate ester 1.3,
         traction fluid 1.5.
@@ -58,48 +48,37 @@ def iso_6336_22(
         Code ``friction-range`` where the speeds add up to more than 35 m/s, Ra exceeds 4 um or the
         coefficient 0.2.
 
-    Source: ISO/TS 6336-22:2018 (before: ISO/TR 15144-1), mean coefficient of friction.
+    No second source of the constants was found. Source: ISO/TS 6336-22:2018 (before: ISO/TR
+    15144-1), mean coefficient of friction.
 
     Examples
     --------
     >>> print(round(float(iso_6336_22(133022.0, 2.6333, 8.382e-3, 0.082, 0.53e-6)), 4))
     0.057
     """
-    require_positive("equivalent_radius", equivalent_radius, "m")
     state = (load_per_width, sum_velocity, equivalent_radius, dynamic_viscosity, roughness_ra)
-    radius = 1e3 * np.asarray(equivalent_radius, dtype=float)
-    smooth = mean_friction(*state, 0.25, lubricant_factor)
-    coefficient = np.asarray(0.045 * 2.2 * smooth * radius**-0.25)[()]
-    warn_of_mean("iso-6336-22", coefficient, sum_velocity, roughness_ra)
-    return coefficient
+    return mean_friction(
+        "iso-6336-22", state, lubricant_factor, lambda _, v, rho, eta: 0.045 * 2.2 * rho**-0.25
+    )
 
 
-@LAWS.define(
+_LOAD_FACTOR = number(
+    1.0,
+    0.5,
+    10.0,
+    "load factors of ISO 6336-1 lie between 1 and 4",
+    meaning="product of the load factors of ISO 6336-1 on the load",
+    symbol="K",
+    example="1.3",
+)
+
+
+@mean_law(
     "iso-6336-22",
     source="ISO/TS 6336-22:2018",
     meaning="mean friction coefficient of a mesh, as the micropitting standard has it",
-    options={
-        "load_factor": number(
-            1.0,
-            0.5,
-            10.0,
-            "load factors of ISO 6336-1 lie between 1 and 4",
-            meaning="product of the load factors of ISO 6336-1 on the load",
-            symbol="K",
-            example="1.3",
-        ),
-        **OPTIONS,
-    },
+    own={"load_factor": _LOAD_FACTOR},
     papers=("iso-6336-22",),
 )
-def _law(
-    contact: TribologicalContact,
-    *,
-    load_factor: float,
-    roughness_ra: float | None,
-    lubricant_factor: float,
-) -> Array:
-    state = pitch_state(contact, roughness_ra)
-    state["load_per_width"] *= load_factor
-    mean = iso_6336_22(**state, lubricant_factor=lubricant_factor)
-    return np.full(np.shape(contact.load_per_width), mean)
+def _law(contact: object, point: PitchPoint, state: dict[str, float], load_factor: float) -> Array:
+    return iso_6336_22(**{**state, "load_per_width": load_factor * point.load_per_width})

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_between, require_positive, warn
-from tribodyn.friction.base import LAWS, TribologicalContact
+from tribodyn.friction.mesh_means.mean_law import mean_law
+from tribodyn.friction.mesh_means.pitch_point import PitchPoint
 from tribodyn.model import numbers
 from tribodyn.types import Array, Index, Mask
 
@@ -149,49 +151,39 @@ def _nearest(points: Array, edges: Index, where: Array) -> tuple[Array, Array]:
     return np.asarray(place[rows, best, 2]), np.asarray(distance[rows, best])
 
 
-@LAWS.define(
+def _column(
+    low: float, high: float, why: str, column: int, of: str, words: str, example: str
+) -> Any:
+    told = {"default": FZG_POINTS[column], "of": of, "example": example}
+    return numbers(low, high, why, meaning=f"{words} at each measured point", **told)
+
+
+_GUARD = "guards against a wrong unit"
+
+
+@mean_law(
     "measured",
     source="the points measured; by default those of an FZG rig (1400 rpm, 150 N*m and others)",
     meaning="mean friction coefficient of a mesh between measured points of torque and speed",
     needs_oil=False,
-    options={
-        "measured_torques": numbers(
-            1e-6,
-            1e8,
-            "guards against a wrong unit",
-            default=FZG_POINTS[0],
-            of="torque",
-            meaning="torque on the driving gear at each measured point",
-            example='["50 N*m", "150 N*m"]',
+    rough=False,
+    own={
+        "measured_torques": _column(
+            1e-6, 1e8, _GUARD, 0, "torque", "torque on the driving gear", '["50 N*m", "150 N*m"]'
         ),
-        "measured_speeds": numbers(
-            1e-3,
-            2e4,
-            "guards against a wrong unit",
-            default=FZG_POINTS[1],
-            of="speed",
-            meaning="speed of the driving gear at each measured point",
-            example='["1400 rpm", "1400 rpm"]',
+        "measured_speeds": _column(
+            1e-3, 2e4, _GUARD, 1, "speed", "speed of the driving gear", '["1400 rpm", "1400 rpm"]'
         ),
-        "measured_coefficients": numbers(
+        "measured_coefficients": _column(
             1e-6,
             1.0,
             "lubricated steel lies below 0.2",
-            default=FZG_POINTS[2],
-            of="friction_coefficient",
-            meaning="friction coefficient at each measured point",
-            example="[0.0271, 0.0692]",
+            2,
+            "friction_coefficient",
+            "friction coefficient",
+            "[0.0271, 0.0692]",
         ),
     },
 )
-def _law(
-    contact: TribologicalContact,
-    *,
-    measured_torques: Sequence[float],
-    measured_speeds: Sequence[float],
-    measured_coefficients: Sequence[float],
-) -> Array:
-    point = contact.known("pitch")
-    table = (measured_torques, measured_speeds, measured_coefficients)
-    mean = measured(point.driving_torque, point.driving_speed, *table)
-    return np.full(np.shape(contact.load_per_width), mean)
+def _law(contact: object, point: PitchPoint, **table: Sequence[float]) -> Array:
+    return measured(point.driving_torque, point.driving_speed, **table)

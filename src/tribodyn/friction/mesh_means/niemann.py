@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_one_of, require_positive
-from tribodyn.friction.base import LAWS, TribologicalContact
-from tribodyn.friction.mesh_means.pitch_point import OPTIONS
-from tribodyn.friction.mesh_means.schlenk import mean_friction, pitch_state, warn_of_mean
+from tribodyn.friction.mesh_means.mean_law import mean_friction, mean_law
+from tribodyn.friction.mesh_means.pitch_point import PitchPoint
 from tribodyn.model import choice
 from tribodyn.types import Array
 
@@ -39,16 +38,8 @@ def niemann(
 
     Parameters
     ----------
-    load_per_width : float or array [N/m]
-        Tangential load at the base circle per face width.
-    sum_velocity : float or array [m/s]
-        SUM of the surface speeds at the pitch point.
-    equivalent_radius : float or array [m]
-        Reduced radius of curvature at the pitch point.
-    dynamic_viscosity : float or array [Pa*s]
-        Viscosity at ambient pressure and oil temperature.
-    roughness_ra : float or array [m]
-        Mean of the arithmetical roughnesses Ra of both flanks.
+    load_per_width, sum_velocity, equivalent_radius, dynamic_viscosity, roughness_ra
+        State at the pitch point, each in the same unit as for :func:`schlenk`.
     pinion_diameter : float or array [m]
         Pitch diameter of the pinion.
     lubricant_factor : float or array
@@ -72,8 +63,8 @@ def niemann(
         Code ``friction-range`` where the speeds add up to more than 35 m/s, Ra exceeds 4 um or the
         coefficient 0.2.
 
-    Source: Niemann and Winter, Maschinenelemente II; Winter and Michaelis (1985); the older form as
-    listed by Xu et al. (2007).
+    No second source of the constants was found. Source: Niemann and Winter, Maschinenelemente II;
+    Winter and Michaelis (1985); the older form as listed by Xu et al. (2007).
 
     Examples
     --------
@@ -83,38 +74,23 @@ def niemann(
     require_one_of("form", form, FORMS)
     require_positive("pinion_diameter", pinion_diameter, "m")
     state = (load_per_width, sum_velocity, equivalent_radius, dynamic_viscosity, roughness_ra)
-    family = mean_friction(*state, 0.25, lubricant_factor)
-    if form == "iso-tc60":
-        # The family has the powers 0.2, -0.05 and 0.25; all are 0.25 here.
-        load, speed, radius, viscosity = (np.asarray(value, dtype=float) for value in state[:4])
-        rest = 1e-6 * load / (speed * radius)
-        bare = family / np.asarray(lubricant_factor, dtype=float)
-        coefficient = 0.12 * bare * rest**0.05 * (1e3 * viscosity) ** -0.2
-    else:
-        coefficient = 0.045 * 3.8 * family * (1e3 * np.asarray(pinion_diameter)) ** -0.25
-    coefficient = np.asarray(coefficient)[()]
-    warn_of_mean("niemann", coefficient, sum_velocity, roughness_ra)
-    return coefficient
+    size = 3.8 * (1e3 * np.asarray(pinion_diameter, dtype=float)) ** -0.25
+
+    def old(load: Array, speed: Array, radius: Array, viscosity: Array) -> Array:
+        """Powers 0.25 of all instead of the family's 0.2 and -0.05, and no factor of the oil."""
+        rest = (load / (speed * radius)) ** 0.05 * viscosity**-0.2
+        return np.asarray(0.12 * rest / np.asarray(lubricant_factor, dtype=float))
+
+    factor = old if form == "iso-tc60" else lambda *_: 0.045 * size
+    return mean_friction("niemann", state, lubricant_factor, factor)
 
 
-@LAWS.define(
+@mean_law(
     "niemann",
     source="Niemann and Winter, Maschinenelemente II (2003)",
     meaning="mean friction coefficient of a mesh, as the textbook on machine elements has it",
-    options={"form": choice("winter-michaelis", FORMS, meaning="published form"), **OPTIONS},
+    own={"form": choice("winter-michaelis", FORMS, meaning="published form")},
     papers=("niemann-winter",),
 )
-def _law(
-    contact: TribologicalContact,
-    *,
-    form: str,
-    roughness_ra: float | None,
-    lubricant_factor: float,
-) -> Array:
-    mean = niemann(
-        **pitch_state(contact, roughness_ra),
-        pinion_diameter=contact.known("pitch").pinion_pitch_diameter,
-        lubricant_factor=lubricant_factor,
-        form=form,
-    )
-    return np.full(np.shape(contact.load_per_width), mean)
+def _law(contact: object, point: PitchPoint, state: dict[str, float], form: str) -> Array:
+    return niemann(**state, pinion_diameter=point.pinion_pitch_diameter, form=form)

@@ -1,14 +1,12 @@
-"""Loads and speeds at the pitch point, and what the laws of mean friction share."""
+"""Loads and speeds at the pitch point."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import require_positive
 from tribodyn.gear import SpurPair
-from tribodyn.model import number
 
 
 @dataclass(frozen=True)
@@ -71,6 +69,7 @@ def pitch_point(pair: SpurPair, pinion_speed: float, pinion_torque: float) -> Pi
 
     Examples
     --------
+    >>> import math
     >>> from tribodyn.gear import spur_pair
     >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
     ...                  normal_pressure_angle=math.radians(20.0), pinion_face_width=50e-3)
@@ -95,33 +94,3 @@ def pitch_point(pair: SpurPair, pinion_speed: float, pinion_torque: float) -> Pi
         driving_torque=pinion_torque * turned,
         driving_speed=pinion_speed / turned,
     )
-
-
-#: Mean Ra of both flanks over their composite rms roughness, heights being Gaussian and both
-#: flanks alike: sqrt(2/pi) of the rms of one, which is composite/sqrt(2).
-RA_OF_COMPOSITE = math.sqrt(1.0 / math.pi)
-
-#: Options of every law that is fitted to Ra and knows oils by a factor.
-OPTIONS = {
-    "roughness_ra": number(
-        None,
-        1e-9,
-        1e-4,
-        "guards against a wrong unit",
-        unit="m",
-        display_unit="um",
-        symbol="Ra",
-        example='"0.3 um"',
-        meaning="mean Ra of both flanks",
-        basis="0.564 times the composite rms roughness: Gaussian heights, both flanks alike",
-    ),
-    "lubricant_factor": number(
-        1.0,
-        0.3,
-        2.0,
-        "published factors lie between 0.5 and 1.5",
-        symbol="X_L",
-        meaning="factor of the base oil: mineral 1, PAO and esters 0.8, polyglycols 0.6 to 0.7",
-        example="0.8",
-    ),
-}

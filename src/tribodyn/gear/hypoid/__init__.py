@@ -14,11 +14,13 @@
 | `misalignment` | axes that are not where they should be |
 | `exact_contact` | both surfaces brought into touch |
 | `tooth_contact` | path of contact, transmission error, contact pattern |
+| `kinematics` | how the flanks roll and slide in every cell |
 """
 
 from tribodyn.gear.hypoid.blank import HypoidBlank, hypoid_blank
 from tribodyn.gear.hypoid.ease_off import EaseOff
 from tribodyn.gear.hypoid.flank import HypoidFlanks, hypoid_flanks
+from tribodyn.gear.hypoid.kinematics import HypoidKinematics, hypoid_kinematics
 from tribodyn.gear.hypoid.misalignment import Misalignment
 from tribodyn.gear.hypoid.tooth_contact import ToothContact, tooth_contact
 
@@ -26,9 +28,11 @@ __all__ = [
     "EaseOff",
     "HypoidBlank",
     "HypoidFlanks",
+    "HypoidKinematics",
     "Misalignment",
     "ToothContact",
     "hypoid_blank",
     "hypoid_flanks",
+    "hypoid_kinematics",
     "tooth_contact",
 ]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.gear.hypoid.blank import HypoidBlank
-from tribodyn.gear.hypoid.ease_off import EaseOff
+from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap
 from tribodyn.gear.hypoid.envelope import (
     Curvature,
     Envelope,
@@ -89,7 +89,7 @@ class ConjugateFlanks:
         flank = self.wheel.at(parameters)
         contact = envelope(flank, self.axes)
         places, steps = self.wheel.projected(flank)
-        gap, slope = self.ease_off.gap(self.blank, places)
+        gap, slope = eased_gap(self.ease_off, self.blank, places)
         pinion = turned_surface(contact.pinion, self.axes.axis, -contact.rotation / self.axes.ratio)
         gap_slope = np.einsum("...i,...ij->...j", slope, steps)
         tangents = (

@@ -90,47 +90,29 @@ class EaseOff:
         require_between("center", [along, across], -1.0, 1.0, "m", remedy="2 mm is 2e-3")
         object.__setattr__(self, "center", (along, across))
 
-    @property
-    def is_zero(self) -> bool:
-        """Whether the flanks are conjugate."""
-        amounts = (self.lengthwise_crowning, self.profile_crowning, self.bias)
-        return not any((*amounts, self.tip_relief, self.root_relief))
 
-    def gap(self, blank: HypoidBlank, places: Array) -> tuple[Array, Array]:
-        """Gap and its gradient at places (along, across) the wheel's pitch cone.
-
-        Parameters
-        ----------
-        blank : HypoidBlank
-            The blanks.
-        places : array (..., 2) [m]
-            Places along and across the pitch cone.
-
-        Returns
-        -------
-        tuple of array [m], [-]
-            Of shape (...) and (..., 2).
-        """
-        working = blank.mean_addendum_pinion + blank.mean_addendum_wheel
-        middle = 0.5 * (blank.mean_addendum_wheel - blank.mean_addendum_pinion)
-        half = np.array([0.5 * blank.face_width_wheel, 0.5 * working])
-        share = (places - np.asarray(self.center or (0.0, middle))) / half
-        x, y = np.moveaxis(share, -1, 0)
-        gap = self.lengthwise_crowning * x**2 + self.profile_crowning * y**2 + self.bias * x * y
-        along = 2.0 * self.lengthwise_crowning * x + self.bias * y
-        across = 2.0 * self.profile_crowning * y + self.bias * x
-        slope = np.stack([along, across], axis=-1) / half
-        length = self.relief_length or _RELIEF * working
-        low, high = working_depth(blank, places[..., 0])
-        for amount, depth, (_, turn), sense in (
-            (self.tip_relief, high[0] - places[..., 1], high, 1.0),
-            (self.root_relief, places[..., 1] - low[0], low, -1.0),
-        ):
-            over = np.maximum(1.0 - depth / length, 0.0)
-            gap = gap + amount * over**2
-            step = 2.0 * amount * over / length * sense
-            slope = slope + np.stack([-turn * step, step], axis=-1)
-        return gap, slope
+def eased_gap(given: EaseOff, blank: HypoidBlank, places: Array) -> tuple[Array, Array]:
+    """Gap and its gradient at places (along, across) the wheel's pitch cone."""
+    working = blank.mean_addendum_pinion + blank.mean_addendum_wheel
+    middle = 0.5 * (blank.mean_addendum_wheel - blank.mean_addendum_pinion)
+    half = np.array([0.5 * blank.face_width_wheel, 0.5 * working])
+    share = (places - np.asarray(given.center or (0.0, middle))) / half
+    x, y = np.moveaxis(share, -1, 0)
+    gap = given.lengthwise_crowning * x**2 + given.profile_crowning * y**2 + given.bias * x * y
+    along = 2.0 * given.lengthwise_crowning * x + given.bias * y
+    across = 2.0 * given.profile_crowning * y + given.bias * x
+    slope = np.stack([along, across], axis=-1) / half
+    length = given.relief_length or _RELIEF * working
+    low, high = working_depth(blank, places[..., 0])
+    for amount, depth, (_, turn), sense in (
+        (given.tip_relief, high[0] - places[..., 1], high, 1.0),
+        (given.root_relief, places[..., 1] - low[0], low, -1.0),
+    ):
+        over = np.maximum(1.0 - depth / length, 0.0)
+        gap = gap + amount * over**2
+        step = 2.0 * amount * over / length * sense
+        slope = slope + np.stack([-turn * step, step], axis=-1)
+    return gap, slope
 
 
 def working_depth(blank: HypoidBlank, along: Array) -> tuple[tuple[Array, float], ...]:

@@ -10,7 +10,7 @@ from tribodyn.errors import ComputationError
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
 from tribodyn.gear.hypoid.envelope import turned
 from tribodyn.gear.hypoid.formate import hand_sense
-from tribodyn.gear.hypoid.misalignment import Misalignment
+from tribodyn.gear.hypoid.misalignment import Misalignment, pinion_motion
 from tribodyn.types import Array
 
 #: Steps of Newton's method; units of a length [m] and of a rotation [rad]; step of differences.
@@ -40,7 +40,7 @@ def exact_contact(
     """
     swing = flanks.blank.cutter_radius
     unit = np.array([_LENGTH, _LENGTH / swing, _LENGTH, _LENGTH / swing, _ROTATION])
-    turn, shift = misalignment.pinion_motion(hand_sense(flanks.blank))
+    turn, shift = pinion_motion(misalignment, hand_sense(flanks.blank))
     axes, wheel_axis = flanks.axes, np.array([0.0, 0.0, 1.0])
 
     def bodies(unknown: Array) -> tuple[Array, Array, Array, Array]:

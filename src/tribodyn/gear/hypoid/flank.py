@@ -15,9 +15,9 @@ from tribodyn.errors import Argument, InputError, require_one_of, shortened, war
 from tribodyn.files import whole
 from tribodyn.gear.hypoid.blank import HypoidBlank
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
-from tribodyn.gear.hypoid.ease_off import EaseOff, working_depth
+from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
 from tribodyn.gear.hypoid.envelope import turned
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 SIDES = ("drive", "coast")
@@ -91,6 +91,8 @@ class HypoidFlanks(Record):
     def interference_share(self) -> float:
         """Share of the active flank on which the flanks cut into each other."""
         return float(np.mean(self.relative_curvature[self.active] <= 0.0))
+
+    plot_ease_off = drawn("ease_off", "Draw the ease-off over the flank.")
 
     @cached_property
     def conjugate(self) -> ConjugateFlanks:
@@ -288,7 +290,7 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
         "wheel_normal": wheel.normal,
         "pinion_position": position,
         "pinion_normal": normal,
-        "gap": flanks.ease_off.gap(flanks.blank, places)[0],
+        "gap": eased_gap(flanks.ease_off, flanks.blank, places)[0],
         "active": np.all(flanks.margins(touch) >= 0.0, axis=-1),
         "wheel_rotation": touch.contact.rotation,
         "relative_curvature": curvature.tensor[..., 1, 1],

@@ -55,37 +55,17 @@ class Misalignment:
             require_between(each.name, value, -most, most, unit, remedy="0.1 mm is 0.1e-3")
             object.__setattr__(self, each.name, value)
 
-    def pinion_motion(self, sense: float) -> tuple[Array, Array]:
-        """Rotation of the pinion about the crossing point, and its displacement.
 
-        Parameters
-        ----------
-        sense : float
-            1 for a left-handed pinion, -1 for a right-handed one.
+def pinion_motion(given: Misalignment, sense: float) -> tuple[Array, Array]:
+    """Rotation of the pinion about the crossing point and its displacement; sense of its hand."""
+    cosine, sine = math.cos(given.shaft_angle), math.sin(given.shaft_angle)
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
+    return turn, np.array([-sense * given.offset, given.pinion_axial, 0.0])
 
-        Returns
-        -------
-        tuple of array (3, 3) [-], (3,) [m]
-        """
-        cosine, sine = math.cos(self.shaft_angle), math.sin(self.shaft_angle)
-        turn = np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
-        return turn, np.array([-sense * self.offset, self.pinion_axial, 0.0])
 
-    def gap(self, position: Array, normal: Array, sense: float) -> Array:
-        """Gap that the displacements leave where conjugate flanks would touch, to first order.
-
-        Parameters
-        ----------
-        position, normal : array (..., 3) [m]
-            Contacts in the fixed frame and unit normals (pure numbers).
-        sense : float
-            1 for a left-handed pinion, -1 for a right-handed one.
-
-        Returns
-        -------
-        array (...) [m]
-        """
-        turn, shift = self.pinion_motion(sense)
-        pinion = position @ (turn - np.eye(3)).T + shift
-        wheel = np.array([0.0, 0.0, self.wheel_axial])
-        return np.asarray(np.einsum("...i,...i->...", wheel - pinion, normal))
+def displaced_gap(given: Misalignment, position: Array, normal: Array, sense: float) -> Array:
+    """Gap that the displacements leave where conjugate flanks would touch, to first order."""
+    turn, shift = pinion_motion(given, sense)
+    pinion = position @ (turn - np.eye(3)).T + shift
+    wheel = np.array([0.0, 0.0, given.wheel_axial])
+    return np.asarray(np.einsum("...i,...i->...", wheel - pinion, normal))

@@ -11,10 +11,11 @@ from tribodyn.checks import require_flag, require_whole
 from tribodyn.errors import Argument, InputError, require_between, require_positive, shortened
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.ease_off import eased_gap
 from tribodyn.gear.hypoid.exact_contact import exact_contact
 from tribodyn.gear.hypoid.flank import HypoidFlanks
 from tribodyn.gear.hypoid.formate import hand_sense
-from tribodyn.gear.hypoid.misalignment import Misalignment
+from tribodyn.gear.hypoid.misalignment import Misalignment, displaced_gap
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 
@@ -229,9 +230,10 @@ def _analysis(
 
 def _lag(flanks: ConjugateFlanks, touch: Touch, misalignment: Misalignment) -> Array:
     """Rotation of the wheel that would close the gap at each place."""
-    gap, _ = flanks.ease_off.gap(flanks.blank, touch.places)
+    gap, _ = eased_gap(flanks.ease_off, flanks.blank, touch.places)
     wheel = touch.contact.wheel
-    gap = gap + misalignment.gap(wheel.position, wheel.normal, hand_sense(flanks.blank))
+    sense = hand_sense(flanks.blank)
+    gap = gap + displaced_gap(misalignment, wheel.position, wheel.normal, sense)
     return np.asarray(gap / touch.lever)
 
 

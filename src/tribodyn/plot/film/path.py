@@ -92,11 +92,7 @@ def _path_caption(mesh: MeshTable) -> str:
     )
 
 
-@table_drawing(
-    "path_of_contact",
-    heading="Along the path of contact",
-    caption=_path_caption,
-)
+@table_drawing("path_of_contact", heading="Along the path of contact", caption=_path_caption)
 def path_of_contact(mesh: MeshTable) -> Any:
     """Draw speeds, radii and slide-to-roll ratio over the roll angle of the driving gear."""
     path = Path(mesh)
@@ -133,12 +129,7 @@ def _frictionless(mesh: MeshTable) -> str:
     )
 
 
-@table_drawing(
-    "friction",
-    heading="Friction",
-    caption=_friction_caption,
-    missing=_frictionless,
-)
+@table_drawing("friction", heading="Friction", caption=_friction_caption, missing=_frictionless)
 def friction(mesh: MeshTable) -> Any:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle."""
     path = Path(mesh)

@@ -143,11 +143,7 @@ def _caption(mesh: MeshTable) -> str:
     return words
 
 
-@table_drawing(
-    "load_sharing",
-    heading="Load sharing",
-    caption=_caption,
-)
+@table_drawing("load_sharing", heading="Load sharing", caption=_caption)
 def load_sharing(mesh: MeshTable) -> Any:
     """Draw the load on one tooth pair over the roll angle of the driving gear."""
     pair = mesh.gear_pair

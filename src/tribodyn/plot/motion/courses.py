@@ -11,7 +11,7 @@ from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, line
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
-from tribodyn.study.pipeline import record
+from tribodyn.study.pipeline import series as record
 
 if TYPE_CHECKING:
     from tribodyn.study import Result
@@ -112,11 +112,7 @@ def _error_caption(result: Result) -> str:
     return " ".join(sentences)
 
 
-@run_drawing(
-    "transmission_error",
-    heading="Transmission error",
-    caption=_error_caption,
-)
+@run_drawing("transmission_error", heading="Transmission error", caption=_error_caption)
 def transmission_error(result: Result) -> Any:
     """Draw the dynamic transmission error and, for a steady state, the quasi-static one."""
     motion, unit = Motion(result), display_unit("dynamic_transmission_error")
@@ -152,10 +148,7 @@ def _shake_caption(result: Result) -> str:
 
 
 @run_drawing(
-    "acceleration",
-    heading="Accelerations",
-    caption=_shake_caption,
-    missing=no_translation,
+    "acceleration", heading="Accelerations", caption=_shake_caption, missing=no_translation
 )
 def acceleration(result: Result) -> Any:
     """Draw the accelerations of the gear centres."""
@@ -179,10 +172,7 @@ def _bearing_caption(result: Result) -> str:
 
 
 @run_drawing(
-    "bearing_force",
-    heading="Bearing forces",
-    caption=_bearing_caption,
-    missing=no_translation,
+    "bearing_force", heading="Bearing forces", caption=_bearing_caption, missing=no_translation
 )
 def bearing_force(result: Result) -> Any:
     """Draw the forces of both gears on their bearings."""

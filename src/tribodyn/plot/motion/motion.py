@@ -11,7 +11,7 @@ from tribodyn.plot.look.labels import axis_label, displayed, significant
 from tribodyn.plot.look.panels import event_lines
 from tribodyn.plot.look.style import button_row
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
-from tribodyn.study.pipeline import record
+from tribodyn.study.pipeline import series as record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

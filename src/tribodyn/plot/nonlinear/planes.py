@@ -116,7 +116,7 @@ def basins(plane: Basins) -> Any:
         "hovermode": "closest",
         "height": 620,
         "legend": {"orientation": "h", "x": 0.0, "y": -0.14, "yanchor": "top"},
-    }  # fmt: skip
+    }
     return figure(_basin_title(plane), traces, layout)
 
 

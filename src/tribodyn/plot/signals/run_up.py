@@ -89,8 +89,9 @@ def _apart(found: Sequence[Any]) -> list[Any]:
     """Resonances of which no stronger one of the same order stands close by."""
     kept: list[Any] = []
     for each in found:
-        close = [abs(each.speed / one.speed - 1.0) < _APART for one in kept
-                 if one.order == each.order]  # fmt: skip
+        close = [
+            abs(each.speed / one.speed - 1.0) < _APART for one in kept if one.order == each.order
+        ]
         if not any(close):
             kept.append(each)
     return kept

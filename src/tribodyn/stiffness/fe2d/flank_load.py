@@ -15,7 +15,7 @@ import numpy as np
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.ring import element_stiffness, quadratic_shapes
 from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, grid_elements
-from tribodyn.stiffness.teeth.load_point import load_point
+from tribodyn.stiffness.teeth.tooth_bending import load_point
 from tribodyn.types import Array
 
 #: Points of the quadrature over a patch.

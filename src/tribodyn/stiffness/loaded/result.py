@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import SpurGear, SpurPair, half_tooth
 from tribodyn.record import Labels, Record, drawn, fact, quantity, record
-from tribodyn.stiffness.teeth.load_point import load_point
+from tribodyn.stiffness.teeth.tooth_bending import load_point
 from tribodyn.types import Array, Index
 
 

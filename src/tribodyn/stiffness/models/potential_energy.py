@@ -15,7 +15,7 @@ from tribodyn.errors import ComputationError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.model import MODELS, MeshState, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
+from tribodyn.stiffness.teeth.tooth_bending import flank_nodes, load_point
 from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
 from tribodyn.stiffness.teeth.weber import local_terms
 from tribodyn.types import Array, Mask

@@ -10,8 +10,14 @@ import numpy as np
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import LoadPoint, flank_nodes, load_point
-from tribodyn.stiffness.teeth.tooth_bending import ToothSection, beam_to_axis, tooth_section
+from tribodyn.stiffness.teeth.tooth_bending import (
+    LoadPoint,
+    ToothSection,
+    beam_to_axis,
+    flank_nodes,
+    load_point,
+    tooth_section,
+)
 from tribodyn.stiffness.teeth.tooth_compliance import (
     LARGEST_RATIO,
     check_choice,
@@ -120,10 +126,7 @@ def _column(
 
 
 def foot_stresses(
-    load_angle: Array | float,
-    base_radius: float,
-    root_radius: float,
-    half_angle: float,
+    load_angle: Array | float, base_radius: float, root_radius: float, half_angle: float
 ) -> Array:
     """Stresses (3, K) [1/m] per load per width by which a tooth load stands on the foot.
 
@@ -253,11 +256,7 @@ def analytic_influence(
 
 
 def _body(
-    gear: SpurGear,
-    material: Material,
-    reference: str,
-    section: ToothSection,
-    load: LoadPoint,
+    gear: SpurGear, material: Material, reference: str, section: ToothSection, load: LoadPoint
 ) -> tuple[_Body, float]:
     """Ring under the teeth, and its wind-up [m^2/N] where that is to be left out."""
     root_radius, half_angle = section.root_radius, section.root_half_angle

@@ -113,10 +113,7 @@ class GearInfluence:
         return np.asarray(self._self(self._inside(curvature_radius)))
 
     def between(
-        self,
-        loaded_radius: Array | float,
-        seen_radius: Array | float,
-        neighbour: int,
+        self, loaded_radius: Array | float, seen_radius: Array | float, neighbour: int
     ) -> Array:
         """Displacement of another tooth per load.
 

@@ -8,8 +8,11 @@ import numpy as np
 
 from tribodyn.errors import InputError, ModelOption, require_positive, warn
 from tribodyn.gear import Material, SpurGear
-from tribodyn.stiffness.teeth.load_point import LoadPoint
-from tribodyn.stiffness.teeth.tooth_bending import tooth_bending_compliance, tooth_section
+from tribodyn.stiffness.teeth.tooth_bending import (
+    LoadPoint,
+    tooth_bending_compliance,
+    tooth_section,
+)
 from tribodyn.types import Array
 
 Number = TypeVar("Number", float, Array)
@@ -253,11 +256,7 @@ def check_reference(reference: str) -> None:
 
 
 def tooth_compliance(
-    gear: SpurGear,
-    load: LoadPoint,
-    face_width: float,
-    material: Material,
-    reference: str = "bore",
+    gear: SpurGear, load: LoadPoint, face_width: float, material: Material, reference: str = "bore"
 ) -> ToothCompliance:
     """Structural compliance of one gear loaded at one tooth, without the local compression.
 

@@ -11,8 +11,12 @@ from tribodyn.contact import effective_modulus
 from tribodyn.errors import ComputationError, InputError, require_between, require_positive
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.load_point import flank_nodes, load_point
-from tribodyn.stiffness.teeth.tooth_bending import beam_to_axis, tooth_section
+from tribodyn.stiffness.teeth.tooth_bending import (
+    beam_to_axis,
+    flank_nodes,
+    load_point,
+    tooth_section,
+)
 from tribodyn.stiffness.teeth.tooth_compliance import check_reference
 from tribodyn.types import Array
 
@@ -99,10 +103,7 @@ def local_terms(
 
 
 def half_plane_compliance(
-    load_angle: Array | float,
-    load_height: Array | float,
-    foot_width: float,
-    material: Material,
+    load_angle: Array | float, load_height: Array | float, foot_width: float, material: Material
 ) -> Array:
     """Compliance of the half plane under a tooth, per unit face width [m^2/N].
 

@@ -24,11 +24,7 @@ from tribodyn.gear import (
 from tribodyn.gear.modification import LARGEST_AMOUNT
 from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Labels, Record, fact, quantity, record
-from tribodyn.stiffness.loaded.contact import (
-    contact_problem,
-    contact_settings,
-    phases_of,
-)
+from tribodyn.stiffness.loaded.contact import contact_problem, contact_settings, phases_of
 from tribodyn.stiffness.loaded.problem import ContactProblem, mesh_period, slice_widths
 from tribodyn.stiffness.model import MODELS
 from tribodyn.types import Array

@@ -14,30 +14,33 @@ from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears, is_needed
 from tribodyn.study.case.given import Given, Source, plain, unsound
-from tribodyn.study.case.provenance import effective_values, provenance
-from tribodyn.study.case.section import Section, Table, choices, flat, signature_of, table
-from tribodyn.study.case.sections import (
-    Dynamics,
-    Film,
-    Friction,
-    LubricantData,
-    MaterialData,
-    Operation,
-    Solver,
-    Stiffness,
-)
-from tribodyn.study.case.stated import (
+from tribodyn.study.case.provenance import (
     Stated,
+    effective_values,
+    provenance,
     read_stated,
     reason_faults,
     settled,
     tables,
     without_records,
 )
+from tribodyn.study.case.section import Section, Table, choices, flat, signature_of, table
+from tribodyn.study.case.sections import (
+    Dynamics,
+    Film,
+    Friction,
+    Losses,
+    LubricantData,
+    MaterialData,
+    Operation,
+    Solver,
+    Stiffness,
+)
 from tribodyn.study.case.values import Plain, read_fields
 
 if TYPE_CHECKING:
     from tribodyn.gear import Material, SpurPair
+    from tribodyn.losses import Gearbox
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
 
@@ -87,6 +90,7 @@ class Case(Section, whole=True):
     stiffness: Stiffness = table(Stiffness, "stiffness of the teeth", "empty")
     friction: Friction = table(Friction, "friction of the teeth", "empty")
     dynamics: Dynamics = table(Dynamics, "the vibrating structure", "empty")
+    losses: Losses | None = table(Losses, "what loses power beside the teeth", "none")
     solver: Solver = table(Solver, "how the motion is computed", "empty")
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
@@ -215,6 +219,11 @@ class Case(Section, whole=True):
     def lubricant_properties(self) -> Lubricant | None:
         """The oil at its working temperature; None if the case has none."""
         return None if self.lubricant is None else derive.lubricant(self.lubricant)
+
+    @cached_property
+    def gearbox(self) -> Gearbox | None:
+        """Shafts, seals and oil bath; None if the case has no ``[losses]``."""
+        return None if self.losses is None else derive.gearbox(self.losses)
 
     @property
     def backlash(self) -> float:

@@ -90,6 +90,9 @@ def _mesh_table(given: Given) -> Found:
             why = "A mesh table has its films and friction coefficients as columns"
             remedy = f'Write {" or ".join(names)}, or give the gears with kind = "spur"'
             yield key, Problem(given.show(key), "", why, remedy)
+    if "losses" in given:
+        why, remedy = "A mesh table knows no gear bodies that turn in oil", "Remove the table"
+        yield "losses", Problem("[losses] is given", "", why, remedy)
     for key in given.typed:
         if is_idle(key, "table") and key.split(".")[0] in ("gears", "stiffness"):
             why = "A mesh table has the stiffness of the teeth, whatever their shape"

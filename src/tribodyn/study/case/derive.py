@@ -14,11 +14,12 @@ from tribodyn.model import Option
 from tribodyn.study.case.gears import Gear, Gears, Modification
 from tribodyn.study.case.profile_map_file import read_profile_map
 from tribodyn.study.case.section import Section, Table
-from tribodyn.study.case.sections import LubricantData, MaterialData
+from tribodyn.study.case.sections import Losses, LubricantData, MaterialData
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
     from tribodyn.gear import FlankModification, Material, ProfileMap, SpurPair
+    from tribodyn.losses import Gearbox
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
@@ -153,6 +154,31 @@ def lubricant(data: LubricantData) -> Lubricant:
         temperature=data.temperature,
         temperature_viscosity_coefficient=data.temperature_viscosity_coefficient,
         thermal_conductivity=data.thermal_conductivity,
+    )
+
+
+def gearbox(data: Losses) -> Gearbox:
+    """Build shafts, seals and oil bath."""
+    from tribodyn.losses import BEARINGS, Gearbox, ShaftParts
+
+    shafts = {}
+    for name, shaft in (("pinion", data.pinion), ("wheel", data.wheel)):
+        bearing = None if shaft.bearing is None else BEARINGS[shaft.bearing]
+        shafts[name] = ShaftParts(**{**vars(shaft), "bearing": bearing})
+    return Gearbox(**shafts, oil_volume=data.oil_volume, windage=data.windage)
+
+
+def _gearbox_losses(case: Case) -> object:
+    """Losses of the case without those of its teeth, to see whether they can be computed."""
+    from tribodyn.losses import gearbox_losses
+
+    return case.gearbox and gearbox_losses(
+        case.gear_pair,
+        case.gearbox,
+        0.0,
+        pinion_torque=case.pinion_torque,
+        pinion_speed=case.pinion_speed,
+        lubricant=case.lubricant_properties,
     )
 
 
@@ -324,6 +350,7 @@ def case_problems(case: Case) -> list[tuple[str, Problem]]:
         return _table_problems(case)
     found = _faults("gears", lambda: case.gear_pair)
     found += _faults("lubricant", lambda: case.lubricant_properties)
+    found += [] if found else _faults("losses", lambda: _gearbox_losses(case))
     return found + _bores(case)
 
 

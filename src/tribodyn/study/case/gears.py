@@ -133,7 +133,7 @@ class Gears(Section):
     )
     normal_module: float = number(
         REQUIRED, 0.05e-3, 0.1, "ISO 54 modules run from 1 to 50 mm", of="normal_module"
-    )  # fmt: skip
+    )
     normal_pressure_angle: float = number(
         REQUIRED, math.radians(10.0), math.radians(35.0), "basic racks lie between 14.5 and 30 deg",
         of="normal_pressure_angle"

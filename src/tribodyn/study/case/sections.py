@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.model import REQUIRED, choice, flag, integer, model_choice, number
-from tribodyn.study.case.section import Section
+from tribodyn.study.case.section import Section, table
 
 if TYPE_CHECKING:
     from tribodyn.model import Registry
@@ -54,6 +54,13 @@ def _lubricants() -> list[str]:
     return list(library())
 
 
+@cache
+def _bearings() -> list[str]:
+    from tribodyn.losses import BEARINGS
+
+    return list(BEARINGS)
+
+
 class MaterialData(Section):
     """The ``[material]`` table: both gears are made of it."""
 
@@ -78,9 +85,12 @@ class LubricantData(Section):
         None, 1e-10, 1e-7, "oils lie between 5 and 40 1/GPa", of="pressure_viscosity_coefficient"
     )
     temperature_viscosity_coefficient: float | None = number(
-        None, 0.001, 0.3, "gear oils lie between 0.02 and 0.07 1/K",
+        None,
+        0.001,
+        0.3,
+        "gear oils lie between 0.02 and 0.07 1/K",
         of="temperature_viscosity_coefficient",
-    )  # fmt: skip
+    )
     thermal_conductivity: float | None = number(
         None, 0.01, 2.0, "mineral oil has about 0.13 W/m/K", of="thermal_conductivity"
     )
@@ -133,11 +143,7 @@ class Friction(Section):
 class Dynamics(Section):
     """The ``[dynamics]`` table: the vibrating structure."""
 
-    model: str = model_choice(
-        "spur-6dof",
-        _structures,
-        meaning="structure that vibrates",
-    )
+    model: str = model_choice("spur-6dof", _structures, meaning="structure that vibrates")
     mesh_law: str | None = choice(
         None,
         {
@@ -158,9 +164,12 @@ class Dynamics(Section):
         meaning="load that friction coefficients and load shares belong to",
     )
     bearing_damping_ratio: float = number(
-        0.02, 0.0, 2.0, "supports lie between 0.01 and 0.1",
+        0.02,
+        0.0,
+        2.0,
+        "supports lie between 0.01 and 0.1",
         meaning="damping of each gear on its bearing over its critical value",
-    )  # fmt: skip
+    )
     mesh_damping: float | None = number(None, 0.0, 1e9, _GUARD, of="mesh_damping")
     mesh_damping_ratio: float = number(
         0.04, 0.0, 2.0, "meshes lie between 0.03 and 0.17", of="mesh_damping_ratio"
@@ -176,13 +185,21 @@ class Dynamics(Section):
         argument="backlash",
     )
     transmission_error_amplitude: float = number(
-        0.0, 0.0, 1e-3, _GUARD, of="transmission_error",
+        0.0,
+        0.0,
+        1e-3,
+        _GUARD,
+        of="transmission_error",
         meaning="amplitude of the static transmission error at mesh frequency",
-    )  # fmt: skip
+    )
     transmission_error_phase: float = number(
-        0.0, -_TWO_PI, _TWO_PI, "one turn", of="angle",
+        0.0,
+        -_TWO_PI,
+        _TWO_PI,
+        "one turn",
+        of="angle",
         meaning="phase of the static transmission error where a pair enters contact",
-    )  # fmt: skip
+    )
 
 
 class Solver(Section):
@@ -196,15 +213,20 @@ class Solver(Section):
             "half",
         },
         meaning="periodic motion, or motion from the static equilibrium",
-    )  # fmt: skip
+    )
     engine: str = model_choice(
         "runge-kutta-4", _engines, meaning="how the motion is marched over time"
     )
     steps_per_mesh_cycle: int | None = integer(
-        None, 64, 262144, "fewer do not resolve the mesh, more only cost time", example="1024",
-        meaning="integration steps per mesh cycle", argument="steps",
+        None,
+        64,
+        262144,
+        "fewer do not resolve the mesh, more only cost time",
+        example="1024",
+        meaning="integration steps per mesh cycle",
+        argument="steps",
         basis="the fastest motion of the structure, from 1024 to 65536",
-    )  # fmt: skip
+    )
     cycles: int | None = integer(
         None,
         1,
@@ -213,3 +235,71 @@ class Solver(Section):
         example="50",
         meaning="mesh cycles of a transient run",
     )
+
+
+class ShaftData(Section):
+    """The ``[losses.pinion]`` and ``[losses.wheel]`` tables: what turns with a gear and loses."""
+
+    bearing: str | None = choice(None, _bearings, meaning="bearings of the shaft, all alike")
+    bearings: int = integer(2, 1, 16, _GUARD, meaning="number of bearings, which share the load")
+    bearing_drag_factor: float = number(
+        0.0,
+        0.0,
+        0.01,
+        "diagrams of the catalogue end at 0.0012",
+        symbol="V_M",
+        meaning="drag of the oil bath on the bearings, read off the catalogue at the oil level",
+    )
+    bearing_oil_level: float = number(
+        0.0,
+        0.0,
+        1.0,
+        _GUARD,
+        unit="m",
+        display_unit="mm",
+        symbol="H",
+        example='"10 mm"',
+        meaning="oil above the lowest point of the outer raceways",
+    )
+    seal_diameter: float = number(
+        0.0,
+        0.0,
+        2.0,
+        _GUARD,
+        unit="m",
+        display_unit="mm",
+        symbol="d_sh",
+        example='"30 mm"',
+        meaning="diameter of the shaft under the lips of its seals; zero for none",
+    )
+    seals: int = integer(1, 1, 16, _GUARD, meaning="number of lips")
+    immersion: float = number(
+        0.0,
+        0.0,
+        10.0,
+        _GUARD,
+        unit="m",
+        display_unit="mm",
+        symbol="h",
+        example='"20 mm"',
+        meaning="depth of the lowest point of the pitch circle in the oil bath; zero for none",
+    )
+
+
+class Losses(Section):
+    """The ``[losses]`` table: what loses power beside the teeth."""
+
+    oil_volume: float = number(
+        0.0,
+        0.0,
+        10.0,
+        _GUARD,
+        unit="m^3",
+        display_unit="l",
+        symbol="V",
+        example='"1.2 l"',
+        meaning="oil in the sump, needed where a gear is immersed",
+    )
+    windage: bool = flag(True, meaning="count the gears in air and oil mist")
+    pinion: ShaftData = table(ShaftData, "shaft of the pinion", "empty")
+    wheel: ShaftData = table(ShaftData, "shaft of the wheel", "empty")

@@ -9,15 +9,46 @@ import operator
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from tribodyn import units
 from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.study.case.section import Choice, Section, Table, section_at
-from tribodyn.study.case.words import word
+
+
+class Word(NamedTuple):
+    """What is said of a word."""
+
+    meaning: str
+    key: str = ""  #: last part of the key, or the quantity, that is meant
+    page: str = ""  #: where the documentation says more
+
+
+@lru_cache(maxsize=1)
+def _words() -> dict[str, Word]:
+    import tomllib
+
+    text = files("tribodyn.study.case").joinpath("words.toml").read_text(encoding="utf-8")
+    entries = tomllib.loads(text).values()
+    return {word: Word(**{k: v for k, v in entry.items() if k != "words"})
+            for entry in entries for word in entry["words"]}  # fmt: skip
+
+
+def word(text: str) -> Word | None:
+    """What is said of a word, whatever its case and its underscores; None if nothing is."""
+    lowered = text.strip().lower()
+    return _words().get(lowered) or _words().get(lowered.replace("_", " ").replace("-", " "))
+
+
+def listed() -> list[str]:
+    """All words."""
+    return list(_words())
+
 
 Chosen = Mapping[str, Choice]
 Found = list[tuple[str, Problem]]

@@ -104,8 +104,12 @@ def case_toml(case: Case) -> str:
         lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key), own))
         if key == "origin" and value is not None and changed:
             lines[-1] += f"; {len(changed)} of the values have changed since: see [based_on]"
-    if case.lubricant is None:
-        lines += ["", "# [lubricant] is not given: nothing in this case needs an oil"]
+    for name, why in (
+        ("lubricant", "nothing in this case needs an oil"),
+        ("losses", "of what loses power the teeth alone are counted"),
+    ):
+        if getattr(case, name) is None:
+            lines += ["", f"# [{name}] is not given: {why}"]
     marks = {key: case.assumed.get(key, DEFAULT_MARK) for key, origin in origins.items()
              if origin != "given" and values[key] is not None}  # fmt: skip
     return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case)]) + "\n"

@@ -13,13 +13,7 @@ from tribodyn.ehl import film_load_share
 from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
 from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
-from tribodyn.study.pipeline.record import (
-    compression,
-    first_touch,
-    is_steady,
-    measured,
-    mesh_force,
-)
+from tribodyn.study.pipeline.series import compression, first_touch, is_steady, measured, mesh_force
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System

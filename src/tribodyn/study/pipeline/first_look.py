@@ -10,11 +10,11 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected
 from tribodyn.study.case.derive import chosen_options
-from tribodyn.study.pipeline.loaded_teeth import loaded_settings
+from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.gear import SpurPair
+    from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
@@ -55,12 +55,45 @@ def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> d
     if case.operation.torque_balance == "load":
         power += lost  # the driver brings up the friction
     found = {
+        "gear_power_loss": lost,
         "dynamic_factor_peak": figures["peak_mesh_force"] / static,
         "dynamic_factor_rms": figures["rms_mesh_force"] / static,
         "input_power": power,
         "efficiency": 1.0 - lost / power,
-    }
+    } | gearbox_figures(case, lost)
     return found | (standard_figures(case) if case.gears.kind != "table" else {})
+
+
+def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:
+    """Losses of the gearbox of a case whose teeth lose so much, at its own point or at others."""
+    from tribodyn.losses import Gearbox, gearbox_losses
+
+    point = {"pinion_torque": case.pinion_torque, "pinion_speed": case.pinion_speed, **point}
+    return gearbox_losses(
+        case.gear_pair,
+        case.gearbox or Gearbox(windage=False),
+        lost,
+        **point,
+        lubricant=case.lubricant_properties,
+        torque_balance=case.operation.torque_balance,
+    )
+
+
+def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
+    """Losses of shafts and oil, where the case has them, and the efficiency with them."""
+    if case.gearbox is None:
+        return {}
+    found = gearbox_losses_of(case, lost)
+    bearings = found.total_of("bearing_rolling", "bearing_sliding", "bearing_seal", "bearing_drag")
+    figures = {
+        "bearing_power_loss": bearings,
+        "seal_power_loss": found.seal,
+        "churning_power_loss": found.churning,
+        "windage_power_loss": found.windage,
+        "total_power_loss": found.total,
+        "total_efficiency": found.efficiency,
+    }
+    return {name: float(value[0, 0]) for name, value in figures.items()}
 
 
 def standard_figures(case: Case) -> dict[str, float]:
@@ -75,27 +108,23 @@ def standard_figures(case: Case) -> dict[str, float]:
         mean = iso6336_mesh_stiffness(single, pair.transverse_contact_ratio)
         figures["iso_mesh_stiffness"] = pair.common_face_width * mean
     if chosen_options(case, "stiffness").get("reference") == "bore":
-        figures["gear_body_share"] = _body_share(case, _alike(pair), force)
+        figures["gear_body_share"] = _body_share(case, force)
     return figures
 
 
-def _alike(pair: SpurPair) -> SpurPair:
-    """The pair without what makes its teeth differ from each other."""
-    even: dict[str, Any] = {
+def _body_share(case: Case, force: float) -> float:
+    from tribodyn.stiffness import loaded_contact
+
+    even: dict[str, Any] = {  # without what makes the teeth differ from each other
         "run_out": 0.0,
         "single_pitch_deviation": (),
         "cumulative_pitch_deviation": (),
     }
     pinion, wheel = (
         replace(gear, modification=replace(gear.modification, **even))
-        for gear in (pair.pinion, pair.wheel)
+        for gear in (case.gear_pair.pinion, case.gear_pair.wheel)
     )
-    return replace(pair, pinion=pinion, wheel=wheel)
-
-
-def _body_share(case: Case, pair: SpurPair, force: float) -> float:
-    from tribodyn.stiffness import loaded_contact
-
+    pair = replace(case.gear_pair, pinion=pinion, wheel=wheel)
     settings = loaded_settings(case)
     torque = force * pair.pinion.base_radius
     with collected():

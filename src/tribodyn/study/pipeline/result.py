@@ -108,9 +108,9 @@ class Result(Record):
 
     def loaded_contact(self) -> LoadedContact:
         """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ."""
-        from tribodyn.study.pipeline.loaded_teeth import loaded_contact, phases_of_turns
+        from tribodyn.study.pipeline.tooth_contact import loaded_contact, phases_of_turns
 
-        return loaded_contact(self.case, phases=phases_of_turns(self.case.gear_pair))
+        return loaded_contact(self.case, phases=phases_of_turns(self.case))
 
     @cached_property
     def natural_modes(self) -> NaturalModes:

@@ -95,9 +95,10 @@ def computed(
             table = system_of(case, mesh, damping)
             compared = motion_of(case, table, mesh.mesh_frequency, progress)
     noticed = (
-        *mesh_cautions(mesh), *motion_cautions(case, system, response),
+        *mesh_cautions(mesh),
+        *motion_cautions(case, system, response),
         *friction_cautions(friction, response),
-    )  # fmt: skip
+    )
     everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
     told = tuple({str(warning): warning for warning in everything}.values())
     return Result(case, mesh, system, response, damping, told, friction, compared)

@@ -16,7 +16,7 @@ RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.h
 _ON_REQUEST = ("response.csv",)
 #: The same of studies.
 SWEEP_FILES = ("case.toml", "sweep.csv", "sweep.nc", "report.html")
-STUDY_FILES = ("case.toml", "best.toml", "study.nc", "report.html")
+STUDY_FILES = ("case.toml", "best.toml", "study.nc", "friction.csv", "report.html")
 BIFURCATION_FILES = ("case.toml", "bifurcation.nc", "bifurcation.html")
 #: File by which a directory is known -> all that it may hold.
 _KINDS = {

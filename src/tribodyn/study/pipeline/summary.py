@@ -12,9 +12,9 @@ import numpy as np
 
 from tribodyn.model import Registry
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.first_look import load_figures, mode_figures, operating_figures
-from tribodyn.study.pipeline.geometry import geometry
-from tribodyn.study.pipeline.record import (
+from tribodyn.study.pipeline.series import (
     centre_column,
     compression,
     first_touch,

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tribodyn.errors import ComputationError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
-from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_law_of
+from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_law_of, placed
+from tribodyn.study.studies.axes import pinion_torques
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.mesh.sharing import ToothContact
+    from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
+    from tribodyn.types import Array
 
 
 #: Load over the nominal load below which friction may be missing.
@@ -51,7 +57,7 @@ def mesh_of(
 ) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle.
 
-    A rehearsal has few places and no film: only what is refused matters.
+    A rehearsal has few places and a film by formula: only what is refused matters.
     """
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
@@ -66,9 +72,14 @@ def mesh_of(
         )
     settings = contact_settings(case)
     if rehearsal:
-        settings = replace(settings, film_model="none", film_options={})
-        if LAWS[case.friction.law].needs_film:
-            settings = replace(settings, friction_law="none", friction_options={})
+        film = "none" if settings.film_model == "none" else "dowson-higginson"
+        settings = replace(settings, film_model=film, film_options={})
+        law = LAWS[case.friction.law]
+        if law.needs_film:
+            other = LAWS[law.rehearsal]
+            options = settings.friction_options.items()
+            known = {name: value for name, value in options if name in other.options}
+            settings = replace(settings, friction_law=other.name, friction_options=known)
     return mesh_table(
         case.gear_pair,
         settings,
@@ -96,3 +107,70 @@ def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
                 if load > _LIGHT:
                     raise
     return mesh_friction(tables, nominal)
+
+
+_PHASES = 64  #: phases of a mesh cycle
+
+
+def loaded_settings(case: Case) -> dict[str, Any]:
+    """Provider, its options and the material of a case, as the loaded tooth contact has them."""
+    settings = model_settings(case)
+    options = dict(settings["stiffness_options"])
+    return {
+        "provider": settings["stiffness_model"],
+        "extended_contact": bool(options.get("extended_contact", False)),
+        "material": settings["material"],
+        "options": options,
+    }
+
+
+def phases_of_turns(case: Case) -> Array:
+    """Phases until all repeats: shorter than the hunting period where one gear is even."""
+    gears = (case.gear_pair.pinion, case.gear_pair.wheel)
+    turns = math.lcm(*(gear.teeth for gear in gears if gear.modification.teeth_differ))
+    return np.arange(_PHASES * turns) / _PHASES
+
+
+def loaded_contact(
+    case: Case, *, torque: Any = None, phases: int | Array = _PHASES
+) -> LoadedContact:
+    """Find load sharing, transmission error and stiffness of a case under torques at rest.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`; its ``[stiffness]`` says how the teeth give way.
+    torque : float, str or list, optional
+        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
+        That of the case where absent.
+    phases : int or array (p,)
+        Evenly spaced phases of a mesh cycle, or the phases themselves.
+
+    Returns
+    -------
+    LoadedContact
+        Torques in it are those of the pinion; without oil film.
+
+    Raises
+    ------
+    InputError
+        If a torque is out of range.
+    ComputationError
+        If the load is beyond what the tooth contact covers.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+    >>> mesh = loaded_contact(case, torque=["90 N*m", "150 N*m"])
+    >>> mesh.peak_to_peak_transmission_error.shape
+    (2,)
+    """
+    from tribodyn.stiffness import loaded_contact as compute
+
+    values = pinion_torques(case, torque)
+    single = torque is None or isinstance(torque, int | float | str)
+    with placed(case):
+        return compute(
+            case.gear_pair, values[0] if single else values, phases=phases, **loaded_settings(case)
+        )

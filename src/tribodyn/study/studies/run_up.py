@@ -1,4 +1,4 @@
-"""Run-up and run-down of a case: its speed rises and falls as prescribed."""
+"""The speed of a case rises and falls: as prescribed, or so slowly that the motion is steady."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from tribodyn.errors import InputError, Problem, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import effective
+from tribodyn.study.studies.axes import read_axes
 from tribodyn.study.studies.grid import varied
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import RunUp, System
+    from tribodyn.dynamics import RunUp, SpeedSweep, System
     from tribodyn.study.case.case import Case
 
 
@@ -156,3 +157,69 @@ def _rotation(case: Case, system: System, per_speed: float) -> Any:
     if any(name not in turns for name in turning):
         return None
     return np.array([turns[name] if name in turning else 0.0 for name in system.names])
+
+
+def speed_sweep(
+    case: Case,
+    between: tuple[Any, Any],
+    points: int = 60,
+    *,
+    tables: int = 4,
+    progress: Progress = SILENT,
+    **options: Any,
+) -> SpeedSweep:
+    """Follow the steady motion of a case over its speed, up and down, with its jumps.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    between : tuple
+        Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
+    points : int
+        Speeds, evenly spaced, the ends included.
+    tables : int
+        Speeds, evenly spaced in the logarithm, at which the tooth contact is computed; film and
+        friction follow the speed between them in straight lines.
+    progress : Progress
+        Told how far the study has come; silent by default.
+    **options : object
+        ``directions``, ``steps``, ``periods``, ``patience`` and ``tolerance`` of
+        :func:`tribodyn.dynamics.speed_sweep`.
+
+    Returns
+    -------
+    SpeedSweep
+        Its speed is that of the gear whose speed the case gives; bearing forces are outputs.
+
+    Raises
+    ------
+    InputError
+        If a speed is out of range, or the case cannot be computed there.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+    >>> found = speed_sweep(case, ("2000 rpm", "2100 rpm"), 2, tables=1)
+    >>> (found.speed * 30 / np.pi).round(6).tolist()
+    [2000.0, 2100.0]
+    """
+    from tribodyn.dynamics import speed_sweep as compute
+
+    if int(tables) != tables or tables < 1:
+        raise InputError(f"tables = {tables}", "argument tables", "A whole number >= 1")
+    (axis,) = read_axes(case, {_SPEED: (*between, points)})
+    speeds = np.array(axis.values, dtype=float)
+    nodes = np.geomspace(speeds[0], speeds[-1], tables) if tables > 1 else [speeds.mean()]
+    with placed(case), collected():
+        systems, per_speed = speed_systems(case, nodes, progress)
+        first = next(iter(systems.values()))
+        return compute(
+            systems if tables > 1 else first,
+            per_speed * speeds,
+            teeth=round(2.0 * np.pi * per_speed),
+            outputs=supports(first),
+            progress=progress,
+            **options,
+        )

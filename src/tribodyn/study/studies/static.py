@@ -14,8 +14,7 @@ from tribodyn.stiffness import TipReliefOptimum
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.pipeline.loaded_teeth import loaded_settings
-from tribodyn.study.pipeline.tooth_contact import model_settings
+from tribodyn.study.pipeline.tooth_contact import loaded_settings, model_settings
 from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
 
 if TYPE_CHECKING:
@@ -225,11 +224,7 @@ def comprehensive_stiffness(
 
 
 def film_over_operation(
-    case: Case,
-    *,
-    torque: Any = None,
-    speed: Any = None,
-    progress: Progress = SILENT,
+    case: Case, *, torque: Any = None, speed: Any = None, progress: Progress = SILENT
 ) -> FilmOverOperation:
     """Find the films of a case along the path of contact, for every torque at every speed.
 

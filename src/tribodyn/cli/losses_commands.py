@@ -1,0 +1,348 @@
+"""``tribodyn losses`` and ``tribodyn friction-from-loss``."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.settings import check_place, read_changes, read_ranges
+from tribodyn.cli.study_commands import Flag, Found, Output, Words, begun, finish
+from tribodyn.errors import InputError, Problem, collected
+from tribodyn.model import Option, number
+from tribodyn.study.case.values import FaultError, read_value
+
+if TYPE_CHECKING:
+    from tribodyn.losses import FrictionFromLoss, GearboxLosses, PowerLossTable
+    from tribodyn.study.case.case import Case
+
+Text = str | None
+_EXAMPLES = {"torque": "50,150,300 N*m", "speed": "400..3500 rpm:8"}
+_ALONE = "Counted are the teeth alone; bearings, seals and oil are where the case has [losses]."
+
+
+def losses(
+    case: str,
+    /,
+    *,
+    torque: Text = None,
+    speed: Text = None,
+    rig: Text = None,
+    out: Output = None,
+    set_: Words = None,
+    force: Flag = False,
+    json: Flag = False,
+) -> None:
+    """Find losses and efficiency of a case over torque and speed; no motion is computed.
+
+    Parameters
+    ----------
+    case : str
+        Built-in case or path of a case file.
+    torque : str
+        "50,150,300 N*m" or "50..300 N*m:6"; by default 8 up to twice that of the case.
+    speed : str
+        "400,1400 rpm" or "400..3500 rpm:8"; by default 8 up to twice that of the case.
+    rig : str
+        Bearings of the slave gearbox of a back-to-back rig, such as "QJ 308": the power flow of the
+        rig is drawn too, at the torque and speed of the case and with its gears in both gearboxes.
+    out : Path
+        Directory to write; by default that of the case with "-losses".
+    set_ : list of str
+        Values to change, for example "losses.pinion.bearing=NJ 406".
+    force : bool
+        Replace an earlier result in that directory.
+    json : bool
+        Write losses and efficiency in SI as one JSON object to stdout.
+    """
+    from tribodyn import plot
+    from tribodyn.cli.bar import progress_bar
+    from tribodyn.losses.gearbox import PARTS
+    from tribodyn.study.studies.losses import loss_map
+
+    ready, target = begun("losses", case, out, set_, force)
+    slave = _slave(ready, rig)
+    points = {
+        name: _values(ready, name, text) for name, text in (("torque", torque), ("speed", speed))
+    }
+    with collected() as warnings:
+        with progress_bar() as progress:
+            found = loss_map(ready, **points, progress=progress)
+        figure = found.plot()
+        figures = [(plot.losses.heading, figure, plot.losses.caption_of(found))]
+        told, facts = [f"{figure.layout.title.text}.", _counted(found)], _facts(found, PARTS)
+        if slave is not None:
+            flow, drawn = _rig(ready, slave, facts)
+            figures.append((plot.power_flow.heading, drawn, plot.power_flow.caption_of(flow)))
+            told.append(f"{drawn.layout.title.text}.")
+    finish("losses", ready, target, Found(found, figures, told, *_rows(found), facts), force, json)
+    show_warnings((warning.code, warning.message) for warning in warnings)
+
+
+def _values(case: Case, name: str, text: Text) -> list[float] | None:
+    """Torques or speeds of an option, checked like the key of the case."""
+    from tribodyn.study.studies.axes import ends_of, read_axes
+
+    if text is None:
+        return None
+    key, by = f"operation.{name}", f"--{name}"
+    given = read_ranges([f"{key}={text}"])[key]
+    try:
+        if isinstance(given, list) and len(given) == 1:
+            return list(ends_of(case, key, given, by=by))
+        return list(read_axes(case, {key: given}, by=by)[0].values)
+    except InputError as error:
+        remedy = f'Write --{name} "{_EXAMPLES[name]}"'
+        told = [replace(each, where=by, remedy=remedy) for each in error.problems]
+        raise InputError(told) from None
+
+
+def _slave(case: Case, rig: Text) -> Case | None:
+    if rig is None:
+        return None
+    bearings = {f"losses.{gear}.bearing": rig for gear in ("pinion", "wheel")}
+    return case.replace(bearings, by="--rig")
+
+
+def _facts(found: GearboxLosses, parts: Iterable[str]) -> dict[str, Any]:
+    names = ("pinion_torque", "pinion_speed", *parts, "total", "gear_efficiency", "efficiency")
+    return {name: getattr(found, name).tolist() for name in names}
+
+
+def _counted(found: GearboxLosses) -> str:
+    from tribodyn.losses.gearbox import PARTS
+
+    counted = [words for part, words in PARTS.items() if getattr(found, part).any()]
+    return _ALONE if counted == ["teeth"] else f"Counted are {', '.join(counted)}."
+
+
+def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> tuple[Any, Any]:
+    """Power flow of the rig and its figure; its figures are added to the facts."""
+    from tribodyn.study.studies.losses import rig_power_flow
+
+    flow = rig_power_flow(case, slave)
+    boxes = zip(flow.gearbox, flow.loss.tolist(), strict=True)
+    facts["rig"] = {
+        "motor_power": flow.motor_power,
+        "circulating_power": flow.circulating_power,
+        **{box: dict(zip(flow.part, lost, strict=True)) for box, lost in boxes},
+    }
+    return flow, flow.plot()
+
+
+def _rows(found: GearboxLosses) -> tuple[list[str], list[list[str]]]:
+    """Efficiency over torque and speed, or all parts where one of them has one value."""
+    from tribodyn.losses.gearbox import PARTS
+    from tribodyn.units import convert
+
+    torque, speed = found.pinion_torque, found.pinion_speed * convert(1.0, "rad/s", "rpm")
+    percent = 100.0 * found.efficiency
+    if torque.size > 1 and speed.size > 1:
+        head = ["Efficiency [%]: torque of the pinion", *(f"{n:.4g} rpm" for n in speed)]
+        rows = [
+            [f"{load:.4g} N*m", *(f"{value:.5g}" for value in line)]
+            for load, line in zip(torque, percent, strict=True)
+        ]
+        return head, rows
+    parts = {words: getattr(found, part) for part, words in PARTS.items()}
+    parts = {words: lost for words, lost in parts.items() if lost.any()} | {"all": found.total}
+    head = ["Torque [N*m]", "Speed [rpm]", *(f"{words} [W]" for words in parts), "Efficiency [%]"]
+    rows = [
+        [
+            f"{torque[i]:.4g}",
+            f"{speed[j]:.4g}",
+            *(f"{lost[i, j]:.4g}" for lost in parts.values()),
+            f"{percent[i, j]:.5g}",
+        ]
+        for i in range(torque.size)
+        for j in range(speed.size)
+    ]
+    return head, rows
+
+
+_GUARD = "guards against a wrong unit"
+
+
+def _torque(default: float | None, meaning: str) -> Any:
+    shown = {"unit": "N*m", "display_unit": "N*m", "example": '"0.1 N*m"'}
+    return number(default, 0.0, 1e6, _GUARD, meaning=meaning, **shown)
+
+
+#: What --set may say of a measurement.
+_KEYS: dict[str, Option] = {
+    "gear_loss_factor": number(None, 1e-3, 2.0, "gears lie between 0.05 and 0.5", meaning="H_V"),
+    "gear_loss_factor_uncertainty": number(0.0, 0.0, 1.0, _GUARD, meaning="of H_V"),
+    "gear_sets": number(1.0, 1.0, 2.0, "test gears alone, or slave gears alike", meaning="k"),
+    "no_load_torque": _torque(5.0, "rows up to it are without load"),
+    "other_loss": _torque(0.0, "what bearings and seals lose more under load"),
+    "torque_loss_uncertainty": _torque(None, "of one reading"),
+    "torque_uncertainty": _torque(0.0, "of the torque"),
+    "other_loss_uncertainty": _torque(0.0, "of other_loss"),
+}
+
+
+def friction_from_loss(
+    file: str,
+    /,
+    *,
+    case: Text = None,
+    set_: Words = None,
+    out: Output = None,
+    force: Flag = False,
+    json: Flag = False,
+) -> None:
+    """Find friction coefficients from the torque losses of a rig, each with its uncertainty.
+
+    Parameters
+    ----------
+    file : str
+        CSV file with columns speed [rpm], torque [N*m], torque_loss [N*m] and perhaps other_loss
+        [N*m], repeats as rows of their own; or "fzg-wheel-driven", a printed table.
+    case : str
+        Case with the gears that were tested: their gear loss factor is taken.
+    set_ : list of str
+        What else is known: gear_loss_factor, gear_sets (2: slave gears alike), no_load_torque,
+        other_loss, and the standard uncertainties torque_loss_uncertainty, torque_uncertainty,
+        other_loss_uncertainty and gear_loss_factor_uncertainty, as in "no_load_torque=5 N*m".
+    out : Path
+        Directory to write; by default called like the file, with "-friction".
+    force : bool
+        Replace an earlier result in that directory.
+    json : bool
+        Write the coefficients in SI as one JSON object to stdout.
+    """
+    from tribodyn import plot
+    from tribodyn.losses import friction_from_power_loss
+    from tribodyn.report import write_study_report
+    from tribodyn.stored import write_dataset
+    from tribodyn.study.pipeline.save import new_directory
+
+    target = out if out is not None else Path(f"{Path(file).stem}-friction")
+    check_place(target, force)
+    with collected() as warnings:
+        measured = _measured(file, case, _options(set_ or []))
+        found = friction_from_power_loss(measured)
+    head, rows = _friction_rows(found)
+    figure = found.plot()
+    each = plot.friction_from_loss
+    told = [
+        f"{figure.layout.title.text}.",
+        f"H_V = {measured.gear_loss_factor:.5g}. Source: {measured.source}.",
+        *(warning.message for warning in warnings),
+    ]
+    with new_directory(target, force=force) as place:
+        write_dataset(found.to_xarray(), place / "study.nc")
+        lines = [",".join(head), *(",".join(f'"{c}"' if "," in c else c for c in r) for r in rows)]
+        (place / "friction.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        write_study_report(
+            None,
+            place / "report.html",
+            kind="friction from losses",
+            told=told,
+            figures=[(each.heading, figure, each.caption_of(found))],
+            head=head,
+            rows=rows,
+        )
+    if json:
+        say_json(_friction_facts(found, measured))
+    else:
+        say("\n".join([*told[:2], table([head, *rows])]))
+    show_warnings((warning.code, warning.message) for warning in warnings)
+    tell(f"Report: {target / 'report.html'}")
+
+
+def _options(settings: Sequence[str]) -> dict[str, Any]:
+    """Values of --set, each checked by itself."""
+    found: dict[str, Any] = {}
+    problems = []
+    for key, value in read_changes(settings).items():
+        if key not in _KEYS:
+            near = difflib.get_close_matches(key, _KEYS, n=1)
+            remedy = f'Did you mean "{near[0]}"?' if near else "Take one of these"
+            why = f"Keys: {', '.join(_KEYS)}"
+            problems.append(Problem(f'unknown key "{key}"', "--set", why, remedy))
+            continue
+        try:
+            found[key] = float(read_value(_KEYS[key], key, value))
+        except FaultError as fault:
+            problems.append(replace(fault.problem, where="--set"))
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def _measured(file: str, case: Text, options: dict[str, Any]) -> PowerLossTable:
+    """The table of the file, or that of the package with this name."""
+    from tribodyn.losses import gear_loss_factor, power_loss_table, read_power_loss_table
+    from tribodyn.losses.loss_table import TABLES
+
+    factor = options.pop("gear_loss_factor", None)
+    if factor is not None and case is not None:
+        what = f"gear_loss_factor = {factor:g} and --case {case} are both given"
+        raise InputError(what, "--set", "The gears of the case have their own", "Keep one of them")
+    if case is not None:
+        from tribodyn.cases.load import load_case
+
+        factor = gear_loss_factor(load_case(case).gear_pair)
+    if file in TABLES and not Path(file).exists():
+        known: dict[str, Any] = {} if factor is None else {"gear_loss_factor": factor}
+        return replace(power_loss_table(file), **known, **options)
+    if factor is None:
+        why = "Friction is the loss over the torque and the gear loss factor H_V"
+        remedy = 'Name the gears with --case, or write --set "gear_loss_factor=0.30"'
+        raise InputError("the gear loss factor is not known", "", why, remedy)
+    return read_power_loss_table(file, factor, **options)
+
+
+_COLUMNS = (
+    "speed",
+    "torque",
+    "friction_coefficient",
+    "standard_uncertainty",
+    "monte_carlo_uncertainty",
+    "degrees_of_freedom",
+    "low",
+    "high",
+    "sensitivity",
+)
+
+
+def _friction_facts(found: FrictionFromLoss, measured: PowerLossTable) -> dict[str, Any]:
+    """Columns in SI; endless degrees of freedom, which JSON has no number for, are null."""
+    columns = {name: getattr(found, name).tolist() for name in _COLUMNS}
+    freedom = columns["degrees_of_freedom"]
+    columns["degrees_of_freedom"] = [None if math.isinf(value) else value for value in freedom]
+    facts = {"gear_loss_factor": measured.gear_loss_factor, "source": measured.source}
+    return {**facts, **columns, "verdict": list(found.verdict)}
+
+
+def _friction_rows(found: FrictionFromLoss) -> tuple[list[str], list[list[str]]]:
+    from tribodyn.units import convert
+
+    head = [
+        "speed [rpm]",
+        "torque [N*m]",
+        "mu",
+        "u(mu)",
+        "u(mu) drawn",
+        "low 95 %",
+        "high 95 %",
+        "mu per 0.1 N*m",
+        "verdict",
+    ]
+    columns = (
+        found.speed * convert(1.0, "rad/s", "rpm"),
+        found.torque,
+        found.friction_coefficient,
+        found.standard_uncertainty,
+        found.monte_carlo_uncertainty,
+        found.low,
+        found.high,
+        0.1 * found.sensitivity,
+    )
+    rows = [[f"{value:.4g}" for value in row] for row in zip(*columns, strict=True)]
+    return head, [[*row, verdict] for row, verdict in zip(rows, found.verdict, strict=True)]

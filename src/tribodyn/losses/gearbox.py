@@ -1,0 +1,347 @@
+"""Losses of a gear stage with its shafts: teeth, bearings, seals and oil over torque and speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.checks import one_or_more
+from tribodyn.errors import Argument, InputError, require_between
+from tribodyn.gear import SpurPair
+from tribodyn.losses.bearings import RollingBearing, bearing_moments
+from tribodyn.losses.no_load import churning_loss, seal_loss, windage_loss
+from tribodyn.lubricant import Lubricant
+from tribodyn.record import Labels, Record, fact, quantity, record
+from tribodyn.types import Array
+
+#: Parts of a loss in the order in which they are told, and what the figures call them.
+PARTS = {
+    "gear": "teeth",
+    "bearing_rolling": "bearings: rolling",
+    "bearing_sliding": "bearings: sliding",
+    "bearing_seal": "bearings: seals",
+    "bearing_drag": "bearings: oil drag",
+    "seal": "shaft seals",
+    "churning": "churning",
+    "windage": "windage",
+}
+_GRID = ("torque", "speed")
+
+
+@dataclass(frozen=True)
+class ShaftParts:
+    """What turns with a gear and loses power: its bearings, shaft seals, and its oil bath.
+
+    Parameters
+    ----------
+    bearing : RollingBearing, optional
+        The bearings of the shaft, all alike; none are counted by default.
+    bearings : int
+        Number of them, which share the force of the teeth evenly.
+    bearing_drag_factor : float
+        V_M of bearings in an oil bath, see :func:`bearing_moments`.
+    bearing_oil_level : float [m]
+        H, the height of the oil above the lowest point of their outer raceway.
+    seal_diameter : float [m]
+        Diameter of the shaft under the lips of its seals; zero for no seals.
+    seals : int
+        Number of lips.
+    immersion : float [m]
+        Depth of the lowest point of the pitch circle under the oil; zero for no oil bath.
+
+    Raises
+    ------
+    InputError
+        If a value is negative or not finite.
+
+    Examples
+    --------
+    >>> from tribodyn.losses import BEARINGS
+    >>> ShaftParts(BEARINGS["NJ 406"], seal_diameter=30e-3).bearings
+    2
+    """
+
+    bearing: RollingBearing | None = None
+    bearings: int = 2
+    bearing_drag_factor: float = 0.0
+    bearing_oil_level: float = 0.0
+    seal_diameter: float = 0.0
+    seals: int = 1
+    immersion: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no shaft."""
+        require_between("bearings", self.bearings, 1, 16)
+        require_between("seals", self.seals, 1, 16)
+        require_between("bearing_drag_factor", self.bearing_drag_factor, 0.0, 0.01)
+        for name in ("bearing_oil_level", "seal_diameter", "immersion"):
+            require_between(name, getattr(self, name), 0.0, 10.0, "m")
+
+
+@dataclass(frozen=True)
+class Gearbox:
+    """Both shafts of a gear stage and the oil around them.
+
+    Parameters
+    ----------
+    pinion : ShaftParts
+        Shaft of the pinion.
+    wheel : ShaftParts
+        Shaft of the wheel.
+    oil_volume : float [m^3]
+        Oil in the sump; needed where a gear is immersed.
+    windage : bool
+        Whether the gears are taken to turn in oil mist, as well as in their bath.
+
+    Raises
+    ------
+    InputError
+        If a gear is immersed without an oil volume, or that is negative or not finite.
+
+    Examples
+    --------
+    >>> Gearbox(wheel=ShaftParts(immersion=20e-3), oil_volume=1.2e-3).pinion.immersion
+    0.0
+    """
+
+    pinion: ShaftParts = field(default_factory=ShaftParts)
+    wheel: ShaftParts = field(default_factory=ShaftParts)
+    oil_volume: float = 0.0
+    windage: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse an oil bath of no volume."""
+        require_between("oil_volume", self.oil_volume, 0.0, 100.0, "m^3")
+        if (self.pinion.immersion or self.wheel.immersion) and not self.oil_volume:
+            why, remedy = "Churning asks for the oil in the sump", "1.2 litres are 1.2e-3 m^3"
+            raise InputError("oil_volume is missing", Argument("oil_volume"), why, remedy)
+
+
+@record
+class GearboxLosses(Record):
+    """Power losses of a gear stage over torque and speed; made by :func:`gearbox_losses`.
+
+    Parameters
+    ----------
+    pinion_torque : array (t,) [N*m]
+        Torques on the pinion.
+    pinion_speed : array (s,) [rad/s]
+        Speeds of the pinion.
+    gear : array (t, s) [W]
+        Friction of the teeth.
+    bearing_rolling, bearing_sliding, bearing_seal, bearing_drag : array (t, s) [W]
+        Parts of the frictional moments of all bearings, times their speeds.
+    seal : array (t, s) [W]
+        Radial shaft seals.
+    churning : array (t, s) [W]
+        Gears in the oil bath.
+    windage : array (t, s) [W]
+        Gears in air and oil mist.
+    torque_balance : str
+        ``"load"`` where the torque is that of the load, so that the driver brings up the losses
+        besides; else it is that of the driver.
+
+    Examples
+    --------
+    >>> one = np.array([1.0])
+    >>> found = GearboxLosses(150.0 * one, 100.0 * one, *np.zeros((8, 1, 1)))
+    >>> float(found.efficiency[0, 0])
+    1.0
+    """
+
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "total": Labels(_GRID, "W"),
+        "efficiency": Labels(_GRID, "1"),
+        "gear_efficiency": Labels(_GRID, "1"),
+    }
+
+    pinion_torque: Array = quantity("torque", unit="N*m", axis=True)
+    pinion_speed: Array = quantity("speed", unit="rad/s", axis=True)
+    gear: Array = quantity(*_GRID, unit="W")
+    bearing_rolling: Array = quantity(*_GRID, unit="W")
+    bearing_sliding: Array = quantity(*_GRID, unit="W")
+    bearing_seal: Array = quantity(*_GRID, unit="W")
+    bearing_drag: Array = quantity(*_GRID, unit="W")
+    seal: Array = quantity(*_GRID, unit="W")
+    churning: Array = quantity(*_GRID, unit="W")
+    windage: Array = quantity(*_GRID, unit="W")
+    torque_balance: str = fact(default="drive")
+
+    @property
+    def total(self) -> Array:
+        """Sum of all parts (t, s) [W]."""
+        return self.total_of(*PARTS)
+
+    def total_of(self, *parts: str) -> Array:
+        """Sum of some parts by name (t, s) [W].
+
+        Parameters
+        ----------
+        *parts : str
+            Names of fields.
+
+        Returns
+        -------
+        array [W]
+        """
+        return np.asarray(sum(getattr(self, part) for part in parts))
+
+    @property
+    def transmitted_power(self) -> Array:
+        """Torque times speed (t, s) [W]."""
+        return np.outer(self.pinion_torque, self.pinion_speed)
+
+    @property
+    def efficiency(self) -> Array:
+        """Output over input power with all parts that are counted (t, s)."""
+        return self._efficiency(self.total)
+
+    @property
+    def gear_efficiency(self) -> Array:
+        """Output over input power with the friction of the teeth alone (t, s)."""
+        return self._efficiency(self.gear)
+
+    def _efficiency(self, lost: Array) -> Array:
+        power = self.transmitted_power
+        return np.asarray(
+            power / (power + lost) if self.torque_balance == "load" else 1.0 - lost / power
+        )
+
+    def __repr__(self) -> str:
+        """One line."""
+        least, most = 100.0 * self.efficiency.min(), 100.0 * self.efficiency.max()
+        shape = f"{self.pinion_torque.size} torques, {self.pinion_speed.size} speeds"
+        return f"GearboxLosses({shape}, efficiency {least:.4g} to {most:.4g} %)"
+
+
+def gearbox_losses(
+    pair: SpurPair,
+    gearbox: Gearbox,
+    gear: ArrayLike,
+    *,
+    pinion_torque: ArrayLike,
+    pinion_speed: ArrayLike,
+    lubricant: Lubricant | None = None,
+    torque_balance: str = "drive",
+) -> GearboxLosses:
+    """Losses of a gear stage for every torque at every speed.
+
+    Parameters
+    ----------
+    pair : SpurPair
+        The gears.
+    gearbox : Gearbox
+        Shafts, seals and oil.
+    gear : float or array (t, s) [W]
+        Power lost by the friction of the teeth.
+    pinion_torque : float or array (t,) [N*m]
+        Torques on the pinion.
+    pinion_speed : float or array (s,) [rad/s]
+        Speeds of the pinion.
+    lubricant : Lubricant, optional
+        The oil, which bearings, an oil bath and mist ask for; without one there is no mist.
+    torque_balance : str
+        ``"load"`` where the torque is that of the load; else it is that of the driver.
+
+    Raises
+    ------
+    InputError
+        If bearings or an oil bath lack the oil, a gear is immersed to more than its pitch radius,
+        or ``gear`` is of another shape.
+
+    Warns
+    -----
+    ModelWarning
+        Code ``windage-range`` beyond 200 m/s at the pitch circle.
+
+    Notes
+    -----
+    Bearings carry the force of the nominal torque along the line of action; weights and friction
+    of the teeth are left out. Source: the single laws, each named in its function.
+
+    Examples
+    --------
+    >>> import math
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
+    ...                  normal_pressure_angle=math.radians(20.0), pinion_face_width=50e-3)
+    >>> box = Gearbox(pinion=ShaftParts(seal_diameter=30e-3), windage=False)
+    >>> found = gearbox_losses(pair, box, 25.0, pinion_torque=100.0, pinion_speed=146.6)
+    >>> round(float(found.seal[0, 0]), 2), round(float(found.efficiency[0, 0]), 5)
+    (9.69, 0.99763)
+    """
+    torque, speed = one_or_more(pinion_torque=pinion_torque, pinion_speed=pinion_speed)
+    shape = (torque.size, speed.size)
+    teeth = np.asarray(gear, dtype=float)
+    if teeth.size not in (1, torque.size * speed.size) or not np.all(teeth >= 0.0):
+        why = "It is one power for each torque and speed, not negative"
+        raise InputError(f"gear has the shape {teeth.shape}", Argument("gear"), why)
+    lost: dict[str, Array] = {part: np.zeros(shape) for part in PARTS}
+    lost["gear"] = np.array(np.broadcast_to(teeth, shape))
+    for name, turns in (("pinion", 1.0), ("wheel", 1.0 / pair.ratio)):
+        _require_oil(getattr(gearbox, name), lubricant, name)
+        for row, column in np.ndindex(shape):
+            turning, force = (
+                turns * float(speed[column]),
+                float(torque[row]) / pair.pinion.base_radius,
+            )
+            parts = _shaft_losses(getattr(gearbox, name), turning, force, lubricant)
+            parts |= _oil_losses(pair, gearbox, name, turning, lubricant)
+            for part, power in parts.items():
+                lost[part][row, column] += power
+    return GearboxLosses(torque, speed, **lost, torque_balance=torque_balance)
+
+
+def _require_oil(shaft: ShaftParts, lubricant: Lubricant | None, gear: str) -> None:
+    for name in ("bearing", "immersion"):
+        if lubricant is None and getattr(shaft, name):
+            why = "Bearings and an oil bath lose by the viscosity of the oil"
+            raise InputError("there is no oil", Argument(name, gear), why, "Give the oil")
+
+
+def _shaft_losses(
+    shaft: ShaftParts, speed: float, load: float, lubricant: Lubricant | None
+) -> dict[str, float]:
+    """Power of bearings and seals [W] at a speed [rad/s] under the force of the teeth [N]."""
+    found = {}
+    if shaft.seal_diameter:
+        found["seal"] = shaft.seals * float(seal_loss(shaft.seal_diameter, speed))
+    if shaft.bearing is not None and lubricant is not None:
+        viscosity, bath = lubricant.kinematic_viscosity, shaft.bearing_oil_level
+        moments = bearing_moments(
+            shaft.bearing,
+            speed,
+            viscosity,
+            load / shaft.bearings,
+            drag_factor=shaft.bearing_drag_factor,
+            oil_level=bath,
+        )
+        power = shaft.bearings * speed
+        found |= {f"bearing_{part}": power * moment for part, moment in vars(moments).items()}
+    return found
+
+
+def _oil_losses(
+    pair: SpurPair, gearbox: Gearbox, name: str, speed: float, lubricant: Lubricant | None
+) -> dict[str, float]:
+    """Churning and windage of one gear [W]."""
+    depth, found = getattr(gearbox, name).immersion, {}
+    # The operating pitch circle: that is where the two gears roll on each other.
+    radius = pair.center_distance / (1.0 + pair.ratio) * (1.0 if name == "pinion" else pair.ratio)
+    width = getattr(pair, name).face_width
+    if depth > radius:
+        why = f"The gear is immersed to at most its pitch radius, {1e3 * radius:.4g} mm"
+        what, where = f"immersion = {1e3 * depth:.4g} mm", Argument("immersion", name)
+        raise InputError(what, where, why, "Give the depth of the lowest point of its pitch circle")
+    if depth and lubricant is not None:
+        module, volume = pair.pinion.normal_module, gearbox.oil_volume
+        oil = (volume, lubricant.density, lubricant.kinematic_viscosity)
+        found["churning"] = churning_loss(radius, width, module, depth, speed, *oil)
+    if gearbox.windage:
+        mist = lubricant.dynamic_viscosity if lubricant else 0.0
+        found["windage"] = windage_loss(radius, width, speed, mist)
+    return found

@@ -1,0 +1,199 @@
+"""A hypoid pair in space, and the topography of its ease-off."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.errors import quiet
+from tribodyn.gear import hypoid_flanks
+from tribodyn.plot.look.style import INK, MUTED, PINION, WHEEL, Trace, figure
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.gear import HypoidFlanks
+
+#: Points of a flank along the face and over the depth; points round a blank.
+_POINTS, _ROUND = 11, 121
+_MADE_BY = "tribodyn.gear.hypoid_flanks makes one."
+#: Axis of each gear in the frame of its points.
+_AXES = {"pinion": 1, "wheel": 2}
+
+
+def _spun(points: Array, axis: int, angle: Array) -> Array:
+    """Points (..., 3) turned about a coordinate axis."""
+    one, other = (axis + 1) % 3, (axis + 2) % 3
+    cosine, sine = np.cos(angle), np.sin(angle)
+    found = np.array(np.broadcast_to(points, (*np.broadcast(cosine, points[..., 0]).shape, 3)))
+    found[..., one] = cosine * points[..., one] - sine * points[..., other]
+    found[..., other] = sine * points[..., one] + cosine * points[..., other]
+    return found
+
+
+def _tooth(sides: list[HypoidFlanks], gear: str) -> Array:
+    """Skin (length, points, 3) of one tooth from root to root over its tip."""
+    blank, axis = sides[0].blank, _AXES[gear]
+    middle = len(sides[0].along) // 2
+    position, outward = (each[middle, middle] for each in sides[0].points(gear))
+    thickness = getattr(blank, f"mean_normal_thickness_{gear}")
+    spiral, diameter = (
+        getattr(blank, f"{name}_{gear}") for name in ("mean_spiral_angle", "mean_pitch_diameter")
+    )
+    angle = 2.0 * thickness / (math.cos(spiral) * diameter)
+    # The other side of the tooth lies against the outward normal of this one.
+    turning = np.cross(np.eye(3)[axis], position) @ outward
+    back = _spun(sides[1].points(gear)[0], axis, np.array(-math.copysign(angle, turning)))
+    front = sides[0].points(gear)[0]
+    if gear == "pinion":  # It has its tip where the wheel has its root.
+        front, back = front[:, ::-1], back[:, ::-1]
+    return np.concatenate([front, back[:, ::-1]], axis=1)
+
+
+def _teeth(sides: list[HypoidFlanks], gear: str, color: str) -> Trace:
+    """All teeth of a gear as one mesh of triangles, in mm."""
+    skin, count = _tooth(sides, gear), getattr(sides[0].blank, f"teeth_{gear}")
+    angles = 2.0 * np.pi / count * np.arange(count)
+    points = 1e3 * _spun(skin[None], _AXES[gear], angles[:, None, None])
+    numbers = np.arange(points[..., 0].size).reshape(points.shape[:-1])
+    a, b = numbers[:, :-1, :-1].ravel(), numbers[:, 1:, :-1].ravel()
+    c, d = numbers[:, 1:, 1:].ravel(), numbers[:, :-1, 1:].ravel()
+    i, j, k = np.hstack([[a, b, c], [a, c, d]])
+    if _faces_inwards(skin):
+        j, k = k, j
+    x, y, z = points.reshape(-1, 3).T
+    x = x + _origin(sides[0], gear)
+    light = {"ambient": 0.6, "diffuse": 0.7, "specular": 0.1}
+    light |= {"facenormalsepsilon": 0.0, "vertexnormalsepsilon": 0.0}
+    lamp = {"x": -1e4, "y": 2e4, "z": -3e4}
+    return {
+        "type": "mesh3d", "x": x, "y": y, "z": z, "i": i, "j": j, "k": k, "color": color,
+        "flatshading": False, "name": gear, "showlegend": True, "hoverinfo": "name",
+        "lighting": light, "lightposition": lamp,
+    }  # fmt: skip
+
+
+def _faces_inwards(skin: Array) -> bool:
+    """Whether the triangles of a tooth face the gear: lamps shine on outer faces only."""
+    middle = skin.shape[0] // 2
+    top = skin[middle : middle + 2, skin.shape[1] // 2 - 1 : skin.shape[1] // 2 + 1]
+    facing = np.cross(top[1, 0] - top[0, 0], top[1, 1] - top[0, 0])
+    out = skin[middle, skin.shape[1] // 2] - skin[middle, 0]
+    return bool(facing @ out < 0.0)
+
+
+def _origin(flanks: HypoidFlanks, gear: str) -> float:
+    """Place of the gear's axis along the common perpendicular [mm]."""
+    return 1e3 * float(flanks.conjugate.axes.origin[0]) if gear == "pinion" else 0.0
+
+
+def _body(flanks: HypoidFlanks, gear: str) -> Trace:
+    """Body of a gear within its root cone."""
+    blank, axis = flanks.blank, _AXES[gear]
+    angle, apex = (getattr(blank, f"root_{name}_{gear}") for name in ("angle", "apex"))
+    # The pinion is solid, the wheel a ring.
+    ends = [("inner", 0.0), ("inner", 1.0), ("outer", 1.0), ("outer", 0.0)]
+    rows = []
+    for end, share in ends if gear == "pinion" else ends[1:3]:
+        along = getattr(blank, f"{end}_cone_distance_{gear}") * math.cos(angle)
+        place = np.zeros(3)
+        place[axis], place[(axis + 1) % 3] = along - apex, share * along * math.tan(angle)
+        rows.append(_spun(place, axis, np.linspace(0.0, 2.0 * np.pi, _ROUND)))
+    x, y, z = 1e3 * np.moveaxis(np.array(rows), -1, 0)
+    return {
+        "type": "surface", "x": x + _origin(flanks, gear), "y": y, "z": z, "showscale": False,
+        "colorscale": [[0.0, MUTED], [1.0, MUTED]], "hoverinfo": "skip",
+    }  # fmt: skip
+
+
+def _scene(eye: tuple[float, float, float], **axes: str) -> dict[str, Any]:
+    labels = {f"{name}axis": {"title": {"text": text}} for name, text in axes.items()}
+    return {"camera": {"eye": dict(zip("xyz", eye, strict=True))}, **labels}
+
+
+@drawing(
+    "hypoid_pair",
+    heading="The pair in space",
+    caption="Both gears in mesh at the calculation point, to scale, on their root cones. Turn it "
+    "with the mouse.",
+    of="HypoidFlanks",
+    made_by=_MADE_BY,
+)
+def hypoid_pair(flanks: HypoidFlanks) -> Any:
+    """Draw both gears in mesh.
+
+    Parameters
+    ----------
+    flanks : HypoidFlanks
+        One side of the pair; the other is made with the same ease-off.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    order = (flanks.side, "coast" if flanks.side == "drive" else "drive")
+    with quiet():
+        sides = [
+            hypoid_flanks(flanks.blank, side, flanks.ease_off, points=_POINTS) for side in order
+        ]
+    traces = []
+    for gear, color in (("pinion", PINION), ("wheel", WHEEL)):
+        traces += [_teeth(sides, gear, color), _body(flanks, gear)]
+    blank = flanks.blank
+    title = (
+        f"{blank.teeth_pinion} teeth against {blank.teeth_wheel}, "
+        f"offset {blank.offset * 1e3:g} mm, pinion {blank.hand_pinion}-handed"
+    )
+    # The teeth of the wheel face against its axis: they are seen from below.
+    scene = _scene((-1.4, 1.1, -1.25), x="x [mm]", y="y [mm]", z="z [mm]")
+    scene["camera"] |= {"up": {"x": 0.0, "y": 0.0, "z": -1.0}}
+    layout = {"scene": {**scene, "aspectmode": "data"}, "height": 680, "hovermode": "closest"}
+    return figure(title, traces, layout)
+
+
+@drawing(
+    "ease_off",
+    heading="Ease-off",
+    caption="What the pinion's flank has less than the one that would touch everywhere, over the "
+    "flank of the wheel: along its pitch cone towards the heel, across it towards the tip. Dots "
+    "lie on both flanks; zero is where the flanks touch first.",
+    of="HypoidFlanks",
+    made_by=_MADE_BY,
+)
+def ease_off(flanks: HypoidFlanks) -> Any:
+    """Draw the ease-off over the flank.
+
+    Parameters
+    ----------
+    flanks : HypoidFlanks
+        One side of the pair.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    x = np.broadcast_to(flanks.along[:, None], flanks.across.shape) * 1e3
+    y, gap = flanks.across * 1e3, flanks.gap * 1e6
+    colors = [[0.0, "#f2f6fa"], [1.0, PINION]]
+    hover = "along %{x:.4g} mm, across %{y:.4g} mm: %{z:.4g} µm<extra></extra>"
+    surface: Trace = {
+        "type": "surface", "x": x, "y": y, "z": gap, "colorscale": colors, "hovertemplate": hover,
+        "colorbar": {"title": {"text": "Gap [µm]"}, "thickness": 14}, "name": "ease-off",
+    }  # fmt: skip
+    inside = flanks.active
+    dots: Trace = {
+        "type": "scatter3d", "mode": "markers", "x": x[inside], "y": y[inside], "z": gap[inside],
+        "marker": {"size": 1.6, "color": INK}, "name": "on both flanks", "hoverinfo": "skip",
+    }  # fmt: skip
+    most = float(np.max(gap[inside], initial=0.0))
+    title = f"The pinion lacks up to {most:.3g} µm on the {flanks.side} flank"
+    scene = _scene(
+        (-1.3, -1.5, 0.9),
+        x="Along [mm]",
+        y="Across [mm]",
+        z="Gap [µm]",
+    )
+    scene |= {"aspectmode": "manual", "aspectratio": {"x": 1.5, "y": 0.9, "z": 0.6}}
+    return figure(title, [surface, dots], {"scene": scene, "height": 620, "hovermode": "closest"})

@@ -1,0 +1,293 @@
+"""Losses of a gearbox, the power flow of a rig, and friction from measured losses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.losses.gearbox import PARTS
+from tribodyn.plot.look.labels import axis_label, displayed, engineering, significant
+from tribodyn.plot.look.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.look.style import (
+    FONT,
+    GRID,
+    INK,
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    WHEEL,
+    Trace,
+    figure,
+    line,
+)
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.losses import FrictionFromLoss, GearboxLosses, RigPowerFlow
+
+#: From little to much efficiency.
+_SCALE = [[0.0, "#fde0c5"], [0.5, "#f7fbff"], [1.0, "#6baed6"]]
+#: Colours of the parts, in the order of PARTS: teeth, bearings, seals, oil.
+_COLORS = (PINION, "#E69F00", "#F0C55C", "#F5DB9D", "#C98A00", "#CC79A7", "#009E73", "#56B4E9")
+_SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x")
+
+
+def _watts(power: float) -> str:
+    number, unit = engineering(power, "W", 4)
+    return f"{number} {unit}"
+
+
+def _percent(share: float) -> str:
+    return f"{significant(100.0 * share, 3)} %"
+
+
+def _efficiency(found: GearboxLosses) -> Row:
+    """Efficiency over torque and speed, or over the one of them that varies."""
+    speed, torque = (displayed(n, getattr(found, f"pinion_{n}")) for n in ("speed", "torque"))
+    over, along = (
+        axis_label("speed", "Speed of the pinion"),
+        axis_label("torque", "Torque on the pinion"),
+    )
+    values = 100.0 * found.efficiency
+    if torque.size > 1 and speed.size > 1:
+        surface = {
+            "type": "contour",
+            "x": speed,
+            "y": torque,
+            "z": values,
+            "colorscale": _SCALE,
+            "ncontours": 16,
+            "contours": {"showlabels": True, "labelfont": {"size": 10, "color": INK}},
+            "line": {"width": 0.6, "color": MUTED},
+            "showlegend": False,
+            "colorbar": {
+                "title": {"text": "[%]"},
+                "thickness": 14,
+                "x": 1.01,
+                "xanchor": "left",
+                "len": 0.45,
+                "y": 1.0,
+                "yanchor": "top",
+            },
+            "hovertemplate": "%{x:.4g} rpm, %{y:.4g} N·m: %{z:.5g} %<extra></extra>",
+        }
+        return Row(over, Panel(along, [surface], height=1.4))
+    x, label = (torque, along) if torque.size > 1 else (speed, over)
+    curve = {**line(x, values.ravel(), "efficiency", INK, unit="%"), "mode": "lines+markers"}
+    return Row(label, Panel("Efficiency [%]", [curve]))
+
+
+def _stacked(found: GearboxLosses) -> Row:
+    """Parts of the loss upon each other: over the speed under the greatest torque, or over it."""
+    fast = found.pinion_speed.size > 1
+    name = "speed" if fast else "torque"
+    x = displayed(name, getattr(found, f"pinion_{name}"))
+    traces: list[Trace] = []
+    for (part, words), color in zip(PARTS.items(), _COLORS, strict=True):
+        power: Array = getattr(found, part)
+        values = power[-1] if fast else power[:, -1]
+        if np.any(values):
+            curve = line(x, values, words, color, unit="W", width=1.0)
+            traces.append({**curve, "stackgroup": "loss", "fillcolor": color})
+    held = f"{displayed('torque', found.pinion_torque)[-1]:.4g} N·m"
+    label = axis_label(name, "Speed of the pinion" if fast else "Torque on the pinion")
+    words = f"Loss under {held} [W]" if fast else "Loss [W]"
+    return Row(
+        label, Panel(words, traces, {"rangemode": "tozero"}, 1.2), {"range": [x.min(), x.max()]}
+    )
+
+
+def _bars(found: GearboxLosses) -> Any:
+    """The parts at one point."""
+    shown = {part: float(getattr(found, part).item()) for part in PARTS}
+    rows = [
+        (words, shown[part], color)
+        for (part, words), color in zip(PARTS.items(), _COLORS, strict=True)
+        if shown[part]
+    ]
+    names, power, colors = zip(*rows[::-1], strict=True) if rows else ((), (), ())
+    bar = {
+        "type": "bar",
+        "orientation": "h",
+        "y": names,
+        "x": power,
+        "marker": {"color": colors},
+        "text": [_watts(value) for value in power],
+        "hoverinfo": "skip",
+    }
+    title = f"Efficiency {_percent(found.efficiency.item())}, loss {_watts(found.total.item())}"
+    x_axis = {"title": {"text": axis_label("power", "Loss")}, "rangemode": "tozero"}
+    return figure(
+        title, [bar], {"height": 160 + 40 * len(rows), "hovermode": False, "xaxis": x_axis}
+    )
+
+
+@drawing(
+    "losses",
+    heading="Losses and efficiency",
+    caption="Above, the efficiency with all parts that the case counts; below, the parts of the "
+    "loss upon each other. Friction of the teeth grows with torque and speed, seals and oil with "
+    "the speed alone: a gearbox under little load loses mostly by them.",
+    of="GearboxLosses",
+    made_by="Call tribodyn.loss_map(case) and its plot method.",
+)
+def losses(found: GearboxLosses) -> Any:
+    """Draw the efficiency over torque and speed, and the parts of the loss.
+
+    Parameters
+    ----------
+    found : GearboxLosses
+        What :func:`tribodyn.loss_map` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    if found.total.size == 1:
+        return _bars(found)
+    counted = [words for part, words in PARTS.items() if np.any(getattr(found, part))]
+    of = "teeth alone" if counted == ["teeth"] else "gearbox"
+    least, most = _percent(found.efficiency.min()), _percent(found.efficiency.max())
+    return stack_rows(
+        f"Efficiency of the {of}: {least} to {most}", [_efficiency(found), _stacked(found)]
+    )
+
+
+#: Where power goes in the end: name, parts of it, colour.
+_SINKS = (
+    ("Teeth", ("gear",), PINION),
+    ("Bearings", tuple(part for part in PARTS if part.startswith("bearing")), "#E69F00"),
+    ("Shaft seals", ("seal",), "#CC79A7"),
+    ("Oil", ("churning", "windage"), "#009E73"),
+)
+
+
+@drawing(
+    "power_flow",
+    heading="Power flow of the rig",
+    caption="What the motor brings up, from the left to the right: first to the two gearboxes, "
+    "then to what loses it. The power that goes round in the loop is many times as much and is not "
+    "drawn.",
+    of="RigPowerFlow",
+    made_by="Call tribodyn.rig_power_flow(case) and its plot method.",
+)
+def power_flow(found: RigPowerFlow) -> Any:
+    """Draw where the power of the motor goes, as bands as wide as it.
+
+    Parameters
+    ----------
+    found : RigPowerFlow
+        What :func:`tribodyn.rig_power_flow` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    place = {part: number for number, part in enumerate(found.part)}
+    lost = np.array(
+        [found.loss[:, [place[part] for part in parts]].sum(axis=1) for _, parts, _ in _SINKS]
+    )
+    names = ["Motor", "Test gearbox", "Slave gearbox", *(name for name, _, _ in _SINKS)]
+    power = [found.motor_power, *found.loss.sum(axis=1), *lost.sum(axis=1)]
+    colors = [INK, MUTED, MUTED, *(color for _, _, color in _SINKS)]
+    links = [(0, 1 + box, power[1 + box], GRID) for box in (0, 1)]
+    links += [
+        (1 + box, 3 + sink, lost[sink, box], _pale(colors[3 + sink]))
+        for sink in range(len(_SINKS))
+        for box in (0, 1)
+        if lost[sink, box] > 0.0
+    ]
+    source, target, value, shades = zip(*links, strict=True)
+    told = [
+        f"{name}<br>{_watts(p)} ({_percent(p / found.motor_power)})"
+        for name, p in zip(names, power, strict=True)
+    ]
+    drawn = sorted({*source, *target})
+    number = {node: place for place, node in enumerate(drawn)}
+    trace = {
+        "type": "sankey",
+        "arrangement": "snap",
+        "textfont": {"size": 13, "color": INK, "family": FONT},
+        "node": {
+            "label": [told[k] for k in drawn],
+            "color": [colors[k] for k in drawn],
+            "pad": 34,
+            "thickness": 16,
+            "line": {"width": 0},
+            "hovertemplate": "%{label}<extra></extra>",
+        },
+        "link": {
+            "source": [number[k] for k in source],
+            "target": [number[k] for k in target],
+            "value": value,
+            "color": shades,
+            "hovertemplate": "%{value:.5g} W<extra></extra>",
+        },
+    }
+    title = (
+        f"The motor brings up {_watts(found.motor_power)}; "
+        f"{_watts(found.circulating_power)} go round in the loop"
+    )
+    return figure(title, [trace], {"height": 460, "margin": {"l": 24, "r": 24, "t": 74, "b": 24}})
+
+
+def _pale(color: str) -> str:
+    """The colour at little opacity, for a band that others may cross."""
+    red, green, blue = (int(color[place : place + 2], 16) for place in (1, 3, 5))
+    return f"rgba({red}, {green}, {blue}, 0.35)"
+
+
+@drawing(
+    "friction_from_loss",
+    heading="Friction from measured losses",
+    caption="Each point with the band that holds it with 95 %. The small difference of two losses "
+    "makes it wide under little torque; open marks are points that are not sound.",
+    of="FrictionFromLoss",
+    made_by="Call tribodyn.losses.friction_from_power_loss(table) and its plot method.",
+)
+def friction_from_loss(found: FrictionFromLoss) -> Any:
+    """Draw friction coefficients with their bands over the torque, one curve for each speed.
+
+    Parameters
+    ----------
+    found : FrictionFromLoss
+        What :func:`tribodyn.losses.friction_from_power_loss` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    turns = np.round(displayed("speed", found.speed), 1)
+    torque, traces = displayed("torque", found.torque), []
+    sound = np.array([verdict == "sound" for verdict in found.verdict])
+    speeds = np.unique(turns)
+    for number, speed in enumerate(speeds):
+        rows = np.flatnonzero(turns == speed)
+        rows = rows[np.argsort(torque[rows], kind="stable")]
+        color = (PINION, WHEEL, *PAIR_COLORS)[number % 6]
+        mu, symbol = found.friction_coefficient[rows], _SYMBOLS[number % len(_SYMBOLS)]
+        curve = line(torque[rows], mu, f"{speed:g} rpm", color, width=1.2)
+        shapes = [symbol if good else f"{symbol}-open" for good in sound[rows]]
+        reach = found.high[rows] - mu
+        traces.append(
+            {
+                **curve,
+                "mode": "lines+markers",
+                "customdata": [found.verdict[row] for row in rows],
+                "marker": {"size": 9, "symbol": shapes, "color": color},
+                "error_y": {
+                    "type": "data",
+                    "array": reach,
+                    "color": color,
+                    "thickness": 1.4,
+                    "width": 5,
+                },
+                "hovertemplate": f"{speed:g} rpm: %{{y:.4g}}, %{{customdata}}<extra></extra>",
+            }
+        )
+    good = int(sound.sum())
+    panel = Panel(axis_label("friction_coefficient", "Friction coefficient"), traces, height=1.8)
+    label = axis_label("torque", "Torque")
+    return stack(f"{good} of {sound.size} points are sound", label, [panel])
