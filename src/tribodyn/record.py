@@ -139,7 +139,8 @@ class Record:
             if value is None:
                 continue
             if not labels.dims:
-                parts.attributes[exported] = value
+                # netCDF has no truth values.
+                parts.attributes[exported] = int(value) if isinstance(value, bool) else value
             else:
                 place = parts.coordinates if labels.axis else parts.variables
                 # xarray takes a tuple for one value.

@@ -112,3 +112,38 @@ def test_two_results_are_compared(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "Operating point" in shown
     assert call(["compare", places[0], places[0]]) == 0
     assert "equal" in capsys.readouterr().out
+
+
+def test_a_result_beside_a_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A recording made from the result with half its motion and some noise: all is found again."""
+    result = td.run(td.load_case("fzg-roughness").replace({"stiffness.model": "analytic"}))
+    result.save(tmp_path / "result")
+    data = result.to_xarray()
+    size, mesh = data["acceleration_loa_pinion_spectrum"].values, data.attrs["mesh_frequency"]
+    time = np.arange(102_400) / 51_200.0
+    wave = sum(
+        0.5 * a * np.cos(2.0 * np.pi * k * mesh * time + k)
+        for k, a in zip(data["order"].values, size, strict=True)
+        if 0 < k * mesh < 25_000.0
+    )
+    volts = wave / 9.80665 * 0.1
+    file = tmp_path / "rig.csv"
+    np.savetxt(file, np.c_[time, volts], "%.9g", ",", header="time [s],acc [V]", comments="")
+    words = ("compare", str(tmp_path / "result"), str(file), "--channel",
+             "acc=acceleration_loa_pinion, 100 mV/g")  # fmt: skip
+    found = _told(capsys, *words, "--gain", "0.5", "--out", str(tmp_path / "report"))
+    assert found["gains"] == {"acc": 0.5}
+    for row in found["rows"]:
+        if row["measure"] != "rms":
+            assert row["error"] == pytest.approx(0.0, abs=2e-3), row
+    assert "Computed and measured" in (tmp_path / "report" / "report.html").read_text()
+    fitted = _told(capsys, *words, "--gain", "fit")
+    assert fitted["fitted"]
+    assert fitted["gains"]["acc"] == pytest.approx(0.5, rel=1e-3)
+    for wrong, told in (
+        (("--channel", "acc"), "names no pair"),
+        (("--channel", "acc=force"), "It has acceleration_loa_pinion"),
+        (("--gain", "much"), "--gain"),
+    ):
+        assert call([*words, *wrong]) == 2
+        assert told in capsys.readouterr().err

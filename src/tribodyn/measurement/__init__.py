@@ -6,9 +6,11 @@
 | ``tacho`` | how far the shaft has turned at each sample |
 | ``orders`` | how strong each order is, over a whole record and over the speed |
 | ``vold_kalman`` | how single orders change with time |
+| ``comparison`` | how far a computed motion is from a measured one |
 | ``synthetic`` | a run-up whose orders are known |
 """
 
+from tribodyn.measurement.comparison import Comparison, compare
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, read
 from tribodyn.measurement.synthetic import synthetic_run_up
@@ -16,9 +18,11 @@ from tribodyn.measurement.tacho import shaft_angle
 from tribodyn.measurement.vold_kalman import TrackedOrders, track_orders
 
 __all__ = [
+    "Comparison",
     "OrderSpectrum",
     "Recording",
     "TrackedOrders",
+    "compare",
     "order_map",
     "order_spectrum",
     "read",

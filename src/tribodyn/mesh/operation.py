@@ -21,7 +21,7 @@ from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.record import Parts, Record, drawn, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 #: Positions for the models that have no such option.
@@ -74,6 +74,10 @@ class FilmOverOperation(Record):
     film_ratio: Array | None = quantity("torque", "speed", "position", default=None)
     film_pressure: Array | None = quantity("torque", "speed", "position", default=None)
     film_stiffness: Array | None = quantity("torque", "speed", "position", default=None)
+
+    plot_lubrication_map = drawn(
+        "lubrication_map", "Draw the lubrication regime over speed and torque."
+    )
 
     def _parts(self) -> Parts:
         """With coordinates of the dimensions, by which frames and selections find values."""

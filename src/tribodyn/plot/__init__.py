@@ -37,7 +37,12 @@ from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
-from tribodyn.plot.signals.recorded import order_spectrum, recording, tracked_orders
+from tribodyn.plot.signals.recorded import (
+    comparison,
+    order_spectrum,
+    recording,
+    tracked_orders,
+)
 from tribodyn.plot.signals.run_up import run_up, run_up_map
 
 __all__ = [
@@ -50,6 +55,7 @@ __all__ = [
     "bifurcation",
     "campbell",
     "compare_line_contacts",
+    "comparison",
     "comprehensive_stiffness",
     "continuation",
     "drawing",

@@ -47,6 +47,34 @@ def test_a_jump_where_no_event_is(height, place):
         assert _orbit(stiffness=jumping, events=(0.0, place)).converged
 
 
+@pytest.mark.parametrize("name", ["stiffness", "error"])
+@pytest.mark.parametrize("place", [0.0, 0.3])
+def test_a_jump_at_the_phase_zero_costs_no_order(name, place):
+    """Mesh cycles begin at an event: a jump there needs none, and errors fall with dt^4."""
+
+    def state(place, steps):
+        base = {"stiffness": 1.0, "error": 0.0}
+        given = {**base, name: lambda phase: base[name] + 0.3 * ((phase - place) % 1.0)}
+        contact = Contact([1.0], damping=0.05, events=(place,) if place else (), **given)
+        system = System([[1.0]], [[0.05]], [[0.0]], [0.3], [contact])
+        found = steady_state(system, 0.11, steps=steps)
+        row = int(np.argmin(np.abs(found.phase - place)))
+        return np.append(found.position[row], found.velocity[row])
+
+    errors = [np.abs(state(place, steps) - state(0.0, 2048)).max() for steps in (32, 64, 128)]
+    assert errors[0] < 1e-4
+    assert errors[1] < errors[0] / 11.0
+    assert errors[2] < errors[1] / 11.0
+
+
+def test_a_jump_too_small_to_be_refused_does_nothing():
+    smooth, small = (
+        _orbit(stiffness=lambda phase, h=h: SMOOTH["steep"](phase) + np.where(phase < 0.37, 0.0, h))
+        for h in (0.0, 5e-8)
+    )
+    assert np.abs(small.position - smooth.position).max() < 1e-7 * np.abs(smooth.position).max()
+
+
 @pytest.mark.parametrize("name", ["stiffness", "damping", "error", "gap", "direction", "friction"])
 def test_every_entry_is_looked_at(name):
     def jumping(phase):

@@ -23,6 +23,7 @@ NAMES = (
     "force_law",
     "friction",
     "film",
+    "lubrication",
     "film_stiffness",
     "mesh_force",
     "transmission_error",
@@ -40,6 +41,7 @@ UNITLESS = {
     "Friction coefficient",
     "Film ratio",
     "Load share of a pair",
+    "Part of the load",
 }
 
 

@@ -108,7 +108,14 @@ def test_every_drawn_figure_has_its_place_and_its_data(page: str, outline: Outli
     found = re.search(r"const figures = (\{.*?\n\});", page, re.DOTALL)
     assert found
     figures = json.loads(found.group(1))
-    missing = {"campbell", "film", "film_pressure", "film_stiffness", "flank_modification"}
+    missing = {
+        "campbell",
+        "film",
+        "film_pressure",
+        "film_stiffness",
+        "flank_modification",
+        "lubrication",
+    }
     assert set(figures) == set(SECTIONS) - missing
     for name, figure in figures.items():
         assert f"figure-{name}" in outline.ids

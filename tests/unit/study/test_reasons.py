@@ -360,3 +360,13 @@ def test_a_file_of_before_names_what_its_user_changed(tmp_path: Path) -> None:
     assert provenance(case)["dynamics.shaft1_damping"] == "given"
     assert provenance(case)["dynamics.shaft2_damping"].startswith("assumed: about 2 %")
     assert "Based on: Study of the transmission error of FZG A10 gears" in cite(case)
+
+
+@pytest.mark.parametrize("law", ["none", "constant", "xu-2007", "mixed"])
+def test_only_options_of_the_chosen_law_are_listed(law: str) -> None:
+    options = {"friction.law": law, "friction.coefficient": 0.05 if law == "constant" else None}
+    case = td.load_case("fzg-roughness").replace({"friction.variant": None, **options})
+    listed = {each.key for each in assumptions(case) if each.key.startswith("friction.")}
+    own = {f"friction.{name}" for name in case.friction.chosen.options}
+    assert listed - {"friction.law"} <= own
+    assert ("friction.summit_density" in listed) == (law == "mixed")

@@ -20,7 +20,7 @@ def anderson(
     limit: int,
     depth: int = 8,
 ) -> tuple[Array, Array, int]:
-    """Fixed point of a function by type II of Fang and Saad (2009), (24); residual; evaluations."""
+    """Fixed point, residual, evaluations. Type II of Fang and Saad (2009), equation (24)."""
     y = start.copy()
     points: list[Array] = []
     residuals: list[Array] = []

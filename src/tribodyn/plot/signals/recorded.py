@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.measurement import OrderSpectrum, Recording, TrackedOrders
+from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOrders
 from tribodyn.plot.look.labels import readable, significant
 from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, Trace, line, marked
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.types import Array
 
@@ -138,3 +138,57 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
         [Panel(amplitude_label(tracked.unit), curves, {"rangemode": "tozero"}, 1.4),
          Panel("Speed [rpm]", [speed], {"rangemode": "tozero"}, 0.8)],
     )  # fmt: skip
+
+
+@drawing(
+    "comparison",
+    heading="Computed and measured",
+    caption="Spectra of the measured channels, and on them the computed mesh harmonics, each times "
+    "the gain of its channel. What stands between the harmonics has other sources than the mesh.",
+    of="Comparison",
+    made_by="Call tribodyn.measurement.compare(result, recording, channels) and its plot method.",
+)
+def comparison(comparison: Comparison) -> Any:
+    """Draw the measured spectra with the computed mesh harmonics on them.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What :func:`tribodyn.measurement.compare` returns.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    panels, ends = [], []
+    for name, lines in comparison.lines.items():
+        unit = str(comparison.unit[comparison.channel == name][0])
+        rows = (comparison.channel == name) & np.char.startswith(comparison.measure, "mesh harm")
+        top = (int(rows.sum()) + 0.5) * comparison.mesh_frequency
+        shown = (lines.measured[0] > 0.1 * comparison.mesh_frequency) & (lines.measured[0] < top)
+        frequency, size = _outline(*(each[shown] for each in lines.measured))
+        inside = (lines.computed[0] > 0.0) & (lines.computed[0] < top)
+        told = f", gain {comparison.gains[name]:.4g}{' fitted' if comparison.fitted else ''}"
+        at, made = (each[inside] for each in lines.computed)
+        panels.append(
+            Panel(
+                f"{name} [{readable(unit)}]",
+                [
+                    line(frequency, size, "measured", MUTED, unit=unit, width=1.2),
+                    marked(at, made, f"computed{told}", PINION, size=9, symbol="circle-open",
+                           unit=unit),
+                ],
+                {"rangemode": "tozero"},
+                1.2,
+            )
+        )  # fmt: skip
+        ends.append(top)
+    harmonics = np.char.startswith(comparison.measure, "mesh harm")
+    worst = int(np.argmax(np.where(harmonics, np.abs(comparison.error), -1.0)))
+    return stack(
+        f"Largest error of a harmonic: {100.0 * comparison.error[worst]:+.3g} % of the "
+        f"{comparison.base} value, {comparison.measure[worst]} of {comparison.channel[worst]}",
+        "Frequency [Hz]",
+        panels,
+        {"xaxis": {"range": [0.0, max(ends)]}, "hovermode": "closest"},
+    )

@@ -212,13 +212,14 @@ def _argument(problem: Problem) -> Argument | None:
 @lru_cache(maxsize=1)
 def _argument_keys() -> dict[str, str]:
     """Keys of the case file by the argument of the physics that they become."""
-    return {o.argument: key for key, o in _options(Section.whole, "") if o.argument}
+    return {o.argument: key for key, o in options_of(Section.whole, "") if o.argument}
 
 
-def _options(section: type[Section], prefix: str) -> Iterator[tuple[str, Option]]:
+def options_of(section: type[Section], prefix: str) -> Iterator[tuple[str, Option]]:
+    """Options of a table and of the tables in it, by their keys; those of models are left out."""
     for name, field in section.fields.items():
         if isinstance(field, Table):
-            yield from _options(field.kind, f"{prefix}{name}.")
+            yield from options_of(field.kind, f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}", field
 

@@ -285,7 +285,7 @@ def _model_of(case: Case, path: list[str]) -> Model | None:
 
 def _bored(case: Case, default: Any) -> Any:
     """Body against which deflection is measured; one without a bore has no shaft seat."""
-    if case.stiffness.reference is not None or case.gears.kind == "table":
+    if case.gears.kind == "table":
         return default
     bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
     return "rim" if default == "bore" and not all(bores) else default
@@ -298,7 +298,8 @@ def effective_values(case: Case) -> dict[str, Any]:
     if kind == "table":
         values |= {key: None for key in values if is_idle(key, kind)}
         values["film.model"] = "none"
-    values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
+    if case.stiffness.reference is None:
+        values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
     for name in ("mesh_damping", "bearing_damping"):
         if values[f"dynamics.{name}"] is not None:
             values[f"dynamics.{name}_ratio"] = None
@@ -364,6 +365,14 @@ def _derived_from(case: Case, key: str) -> str:
     return spec.basis if spec else ""
 
 
+def _unused(case: Case, key: str) -> bool:
+    """Whether a key does nothing in this case: of another kind of gears, or of another model."""
+    *path, name = key.split(".")
+    model, section = _model_of(case, path), section_at(tuple(path))
+    chosen = model is None or section is None or name in {*section.fields, *model.options}
+    return is_idle(key, case.gears.kind) or not chosen
+
+
 def provenance(case: Case) -> dict[str, str]:
     """Tell the origin of every value in force."""
     origins, changed, given = {}, changed_keys(case), case.given
@@ -372,7 +381,7 @@ def provenance(case: Case) -> dict[str, str]:
             origins[key] = _marked(case, key, value, changed)
         elif key in given:
             origins[key] = "given"
-        elif value is not None or (_derived_from(case, key) and not is_idle(key, case.gears.kind)):
+        elif value is not None or (_derived_from(case, key) and not _unused(case, key)):
             origins[key] = DEFAULT_MARK
     return origins
 

@@ -10,9 +10,12 @@ from typing import Any
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
+from tribodyn.model import Option
 from tribodyn.stored import read_bytes
 from tribodyn.study.case.case import Case
+from tribodyn.study.case.derive import options_of
 from tribodyn.study.case.given import Source
+from tribodyn.study.case.section import Table
 
 _SPACE = " \t\r"
 
@@ -194,16 +197,19 @@ normal_pressure_angle, driver, pinion, wheel.
 
 def _place_files(data: dict[str, Any], folder: Path) -> None:
     """Let the paths of a case begin at its own folder."""
-    gears = data.get("gears")
-    if isinstance(gears, dict) and isinstance(gears.get("table"), str):
-        gears["table"] = str((folder / gears["table"]).absolute())
-    for gear in ("pinion", "wheel"):
-        table = _at(data, "gears", gear, "modification")
-        if isinstance(table, dict) and isinstance(table.get("profile_map"), str):
-            table["profile_map"] = str((folder / table["profile_map"]).absolute())
-        mark = _at(data, "assumed", f"gears.{gear}.modification.profile_map")
-        if isinstance(mark, dict) and isinstance(mark.get("value"), str):
-            mark["value"] = str((folder / mark["value"]).absolute())
+    files = [key for key, option in options_of(Case, "") if option.kind == "file"]
+    for table, field in Case.fields.items():
+        known = field.kind.known().keys if isinstance(field, Table) else {}
+        files += [
+            f"{table}.{name}"
+            for name, option in known.items()
+            if isinstance(option, Option) and option.kind == "file"
+        ]
+    marks = [("assumed", key, "value") for key in files]
+    for *tables, name in [key.split(".") for key in files] + marks:
+        table = _at(data, *tables)
+        if isinstance(table, dict) and isinstance(table.get(name), str):
+            table[name] = str((folder / table[name]).absolute())
 
 
 def _at(data: Any, *keys: str) -> Any:
