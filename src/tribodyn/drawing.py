@@ -131,14 +131,14 @@ class Drawing:
         """
         return self.caption if isinstance(self.caption, str) else self.caption(self.subject(result))
 
-    def __call__(self, result: Any, **options: Any) -> Any:
+    def __call__(self, result: Any, *arguments: Any, **options: Any) -> Any:
         """Draw the figure of a result.
 
         Parameters
         ----------
         result : object
             One of the classes in ``of``.
-        **options
+        *arguments, **options
             Of the figure function, where it has any.
 
         Returns
@@ -153,7 +153,7 @@ class Drawing:
         reason = self.missing(result)
         if reason:
             raise InputError(Problem(what=reason))
-        return self.draw(self.subject(result), **options)
+        return self.draw(self.subject(result), *arguments, **options)
 
 
 def figure_text(text: str, argument: str, kinds: Iterable[str] = ()) -> str:
@@ -236,17 +236,17 @@ def figures_of(result: Any) -> list[str]:
     ]
 
 
-def draw(result: Any, name: str = "", **options: Any) -> Any:
+def draw(result: Any, name: str = "", *arguments: Any, **options: Any) -> Any:
     """Draw a result: the figure of that name, or the first that draws its class itself."""
     load_figures()
     if name:
-        return FIGURES[name](result, **options)
+        return FIGURES[name](result, *arguments, **options)
     kinds = [kind.__name__ for kind in type(result).__mro__]
     for kind in kinds:
         for each in FIGURES:
             figure = FIGURES[each]
             if isinstance(figure, Drawing) and kind in figure.of:
-                return figure(result, **options)
+                return figure(result, *arguments, **options)
     raise InputError(
         Problem(
             what=f"no figure draws a {kinds[0]}",

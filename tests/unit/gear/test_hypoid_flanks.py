@@ -277,6 +277,19 @@ def test_points_and_triangles_are_written(tmp_path, gear):
     assert np.all(facets[: len(facets) // teeth] @ normal.mean((0, 1)) > 0.0)
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_flank_without_a_conjugate_is_refused_and_told_why():
+    blank = hypoid_blank(10, 11, 0.0561, 0.821, 0.0833, 0.643, 0.317, addendum_factor_wheel=0.587)
+    refused = []
+    for side in SIDES:
+        try:
+            hypoid_flanks(blank, side, points=9)
+        except InputError as error:
+            refused.append(str(error))
+    assert refused
+    assert all("never touches a pinion" in each or "out of the cutter" in each for each in refused)
+
+
 def test_wrong_arguments_are_refused(tmp_path):
     blank = h1043()
     for change in ({"blank": None}, {"side": "left"}, {"ease_off": 3.0}, {"points": 4}):

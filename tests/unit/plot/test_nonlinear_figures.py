@@ -10,6 +10,7 @@ from tribodyn.analysis import basins, lyapunov_exponents, parameter_map, phase_p
 from tribodyn.dynamics import simulate, steady_state
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES
+from tribodyn.record import Record
 
 BEAT = 0.88 / (2.0 * np.pi)
 
@@ -46,7 +47,9 @@ def test_map_shows_period_rms_and_loss():
 
 
 def test_section_of_an_orbit_is_one_point():
-    figure = poincare(hysteresis_system(), BEAT, steps=64).plot("q0")
+    section = poincare(hysteresis_system(), BEAT, steps=64)
+    figure = section.plot("q0")
+    assert Record.plot(section, "q0") == figure
     (points,) = figure.data
     assert len(points.x) == 1
     assert figure.layout.title.text == "The motion repeats with the mesh: one point"

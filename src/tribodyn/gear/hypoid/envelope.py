@@ -158,7 +158,7 @@ def relative_curvature(contact: Envelope) -> Curvature:
     shapes, areas = [], []
     for surface in (pinion, wheel):
         steps = basis @ surface.tangents
-        areas.append(np.linalg.det(steps))
+        areas.append(steps[..., 0, 0] * steps[..., 1, 1] - steps[..., 0, 1] * steps[..., 1, 0])
         shapes.append(basis @ surface.turns @ _inverse(steps, areas[-1]))
     inverse = _inverse(basis @ wheel.tangents, areas[1])
     gradient = np.einsum("...i,...i->...", slope, inverse[..., 1])

@@ -280,11 +280,17 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
     curvature = touch.curvature
     parameters = flanks.wheel.parameters(places)
     wheel, (position, normal) = flanks.wheel.at(parameters), flanks.pinion_at(parameters)
-    if not np.all(np.isfinite(position)):
+    if not np.all(np.isfinite(parameters)):
         radius = flanks.blank.cutter_radius * 1e3
         what, where = f"cutter_radius = {radius:.6g} mm", Argument("blank.cutter_radius")
-        why = "Part of the wheel's flank is out of the cutter's reach or never touches a pinion"
+        why = "Part of the wheel's flank is out of the cutter's reach"
         raise InputError(what, where, why, "Choose a larger cutter or a smaller face width")
+    lost = float(np.mean(~np.isfinite(touch.contact.rotation)))
+    if lost > 0.0:
+        what, where = f"{lost:.1%} of the wheel's flank never touches a pinion", Argument("blank")
+        why = "Its normals pass the pinion's axis at every rotation"
+        remedy = "Give a smaller face width, offset or depth, or a smaller spiral angle"
+        raise InputError(what, where, why, remedy)
     return {
         "wheel_position": wheel.position,
         "wheel_normal": wheel.normal,

@@ -11,7 +11,7 @@ from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, line
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
-from tribodyn.study.pipeline import series as record
+from tribodyn.study.pipeline import series
 
 if TYPE_CHECKING:
     from tribodyn.study import Result
@@ -47,11 +47,11 @@ def _motion_panels(motion: Motion, quantity: str) -> list[Panel]:
 def _below_zero(result: Result) -> str:
     """Explain a negative force, which the driving flanks alone could not bear."""
     fine = result.response.fine
-    if np.min(record.mesh_force(fine)) >= 0.0:
+    if np.min(series.mesh_force(fine)) >= 0.0:
         return ""
     if result.half_backlash == 0.0:
         return "Where it is negative, a mesh with play would part: this case has no backlash."
-    if np.any(record.compression(fine) < -record.first_touch(result.system, fine)):
+    if np.any(series.compression(fine) < -series.first_touch(result.system, fine)):
         return "Where it is negative, the play is used up and the back flanks touch."
     return "Where it is negative, the damping of the contact pulls just before the flanks part."
 

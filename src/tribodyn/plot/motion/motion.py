@@ -11,7 +11,7 @@ from tribodyn.plot.look.labels import axis_label, displayed, significant
 from tribodyn.plot.look.panels import event_lines
 from tribodyn.plot.look.style import button_row
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
-from tribodyn.study.pipeline import series as record
+from tribodyn.study.pipeline import series
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ _JUMP = 1e-6
 
 def no_translation(result: Result) -> str:
     """Tell why a result has no motion of the gear centres."""
-    if record.centre_column(result.response.names, "pinion", "y") is not None:
+    if series.centre_column(result.response.names, "pinion", "y") is not None:
         return ""
     return (
         "The model turns the gears only: their centres stay in place and no bearing is loaded. "
@@ -66,12 +66,12 @@ class Motion:
         self._response = result.response
         self._mesh = result.mesh
         #: A steady state; the error of a transient has no meaning.
-        self.periodic = record.is_steady(result.response)
+        self.periodic = series.is_steady(result.response)
         words = "Mesh cycles"
         self.label = axis_label("mesh_phase", words) if self.periodic else axis_label("time")
         #: Mesh cycles drawn of a steady state.
         self.shown = max(CYCLES, self._response.periods)
-        self._measured = len(record.measured(self._response).phase)
+        self._measured = len(series.measured(self._response).phase)
         periods = self._response.periods
         counted = round(periods * self._measured / len(self._response.fine.phase))
         self.window = "" if self.periodic else f" in the last {counted} of {periods} mesh cycles"
@@ -79,19 +79,19 @@ class Motion:
     @property
     def mesh_force(self) -> Array:
         """Dynamic force along the line of action, all ramps of a force law together."""
-        return record.mesh_force(self._response.fine)
+        return series.mesh_force(self._response.fine)
 
     @property
     def transmission_error(self) -> Array:
         """Dynamic transmission error, counted from first contact of the driving flank."""
-        return record.transmission_error(self._result, self._response.fine)
+        return series.transmission_error(self._result, self._response.fine)
 
     def of_gear(self, quantity: str, gear: str, axis: str) -> Array:
         """Acceleration of a gear's centre, or ``"bearing_force"``, its force on its support."""
-        column = record.centre_column(self._response.names, gear, axis)
+        column = series.centre_column(self._response.names, gear, axis)
         if quantity == "acceleration":
             return np.asarray(self._response.fine.acceleration[:, column])
-        return record.support_forces(self._result.system, self._response.fine)[:, column]
+        return series.support_forces(self._result.system, self._response.fine)[:, column]
 
     def measured(self, values: Array) -> Array:
         """Keep the part of a signal over which the figures of a summary are taken."""

@@ -112,7 +112,7 @@ def _carried_to_tip(rho: Array, support: Array, self_compliance: Array, near: Ma
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
     (".", "flank_load provider ring tooth_mesh"),
-    ("../teeth", "load_point tooth_compliance"),
+    ("../teeth", "tooth_bending tooth_compliance"),
     ("../../gear", "curves tooth_form"),
 )
 

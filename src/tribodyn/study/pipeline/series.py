@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.record import Parts
-from tribodyn.study.pipeline import series as record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -100,7 +99,7 @@ def _told(unit: str, words: str) -> dict[str, str]:
 
 def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals that figures draw, on the samples: values, unit and meaning by name."""
-    force = record.mesh_force(samples)
+    force = mesh_force(samples)
     phase = np.asarray(samples.phase)
     if result.friction is None:
         rubbing = result.mesh.functions().friction_sum(phase) * force
@@ -110,17 +109,17 @@ def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     found = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
         "dynamic_transmission_error": (
-            record.transmission_error(result, samples),
+            transmission_error(result, samples),
             "m",
             "lag of the driven gear on the line of action, from first contact of the flanks",
         ),
         "static_transmission_error": (static, "m", "the same at rest under the nominal load"),
         "friction_force": (rubbing, "N", "friction force of all tooth pairs"),
     }
-    forces = record.support_forces(result.system, samples)
+    forces = support_forces(result.system, samples)
     for gear in ("pinion", "wheel"):
         for direction, (axis, words) in _DIRECTIONS.items():
-            column = record.centre_column(result.response.names, gear, axis)
+            column = centre_column(result.response.names, gear, axis)
             if column is not None:
                 told = f"force of the {gear} on its bearing {words}"
                 found[f"bearing_force_{direction}_{gear}"] = (forces[:, column], "N", told)
@@ -152,7 +151,7 @@ def parts_of(result: Result) -> Parts:
     for name, (values, unit, words) in signals(result, response).items():
         if not name.startswith("acceleration_"):  # they stand under acceleration
             variables[name] = ("time", values, _told(unit, words))
-    if record.is_steady(response):
+    if is_steady(response):
         variables |= _spectra(result)
         coordinates["order"] = ("order", variables.pop("order"), _told("1", "mesh harmonic"))
     variables |= _ends(result)
