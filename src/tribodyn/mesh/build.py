@@ -174,8 +174,7 @@ class LoadedMesh:
 
     @cached_property
     def _reported(self) -> Films:
-        least = self.teeth.least_share * self.teeth.load_per_width
-        return reported_films(self.films, self.loads, least)
+        return reported_films(self.films, self.loads, self.teeth.least_load)
 
     @cached_property
     def _load_columns(self) -> dict[str, Any]:
@@ -221,16 +220,21 @@ def loaded_mesh(
     *,
     steps: int | None = None,
     force_law: bool = False,
+    loading: Array | None = None,
     progress: Progress = SILENT,
 ) -> LoadedMesh:
-    """Share the load at a speed and a torque of the pinion among the pairs; find their films."""
+    """Share the load at a speed and a torque of the pinion among the pairs; find their films.
+
+    ``loading`` is the force of all pairs at each knot over that of the torque alone.
+    """
     pinion_speed, pinion_torque = operation
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
     cycle = mesh_cycle(path_of_contact(pair), steps or _steps(pair, settings.stiffness_model))
     normal_force = pinion_torque / pair.pinion.base_radius
     places = (cycle.grid.phase, cycle.path, cycle.in_contact)
-    teeth = teeth_of(cycle.contact, places, settings, normal_force)
+    over = 1.0 if loading is None else loading[:, None]
+    teeth = teeth_of(cycle.contact, places, settings, normal_force, over)
     motion = cycle.motion(pinion_speed)
     pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
     loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)

@@ -50,11 +50,12 @@ def quasi_static_loads(
     springs = None
     if settings.film_in_series:
         shared, film_at = in_series(teeth, solve, cycle.named)
-        springs = _springs(teeth, np.maximum(shared.share, teeth.least_share), film_at)
+        load = np.maximum(teeth.load_per_width * shared.share, teeth.least_load)
+        springs = _springs(teeth, load, film_at)
     else:
         shared = teeth.shared_load()
         film_at = solve(teeth.load_per_width * shared.share, ALL)
-    load = teeth.load_per_width * shared.share[cycle.in_contact]
+    load = (teeth.load_per_width * shared.share)[cycle.in_contact]
     return Loads(shared, load, np.maximum(load, film.least_load), film_at, springs)
 
 
@@ -183,7 +184,7 @@ def _settle(
     earlier = [share]
     loaded = teeth.in_contact & (share > _LOST)
     for _ in range(_STEPS):
-        shared = teeth.shared_load(_springs(teeth, share, film_at))
+        shared = teeth.shared_load(_springs(teeth, teeth.load_per_width * share, film_at))
         share = shared.share
         change = np.abs(share - earlier[-1])
         if change.max() < _SETTLED:
@@ -203,8 +204,10 @@ def _settle_distances(
     teeth: Teeth, film_at: FilmAt, share: Array, where: Callable[[int, int], str]
 ) -> SharedLoad:
     """The same for films that keep a distance: Newton's method, as each spring is a tangent."""
+    least = LEAST_SHARE * teeth.normal_force / float(teeth.problem.widths.sum())
     for _ in range(_STEPS):
-        shared = teeth.shared_load(_springs(teeth, np.maximum(share, LEAST_SHARE), film_at))
+        load = np.maximum(teeth.load_per_width * share, least)
+        shared = teeth.shared_load(_springs(teeth, load, film_at))
         step, share = np.abs(shared.share - share), shared.share
         if step.max() < _SETTLED_TOGETHER:
             return shared
@@ -222,7 +225,8 @@ def _settle_together(
     before, step = share, np.zeros(share.shape)
     slope = np.ones(share.shape)
     for _ in range(_STEPS):
-        shared = teeth.shared_load(_springs(teeth, np.maximum(share, teeth.least_share), film_at))
+        load = np.maximum(teeth.load_per_width * share, teeth.least_load)
+        shared = teeth.shared_load(_springs(teeth, load, film_at))
         earlier, step = step, shared.share - share
         if np.abs(step).max() < max(enough, _SETTLED_TOGETHER):
             return shared
@@ -246,19 +250,19 @@ def _still_moving(change: Array, where: Callable[[int, int], str]) -> Computatio
     )
 
 
-def _springs(teeth: Teeth, share: Array, film_at: FilmAt) -> FilmSprings:
-    """Films of the pairs under their shares of the load."""
+def _springs(teeth: Teeth, load_per_width: Array, film_at: FilmAt) -> FilmSprings:
+    """Films of the pairs under their loads."""
     on_path = teeth.in_contact
-    load = teeth.load_per_width * share[on_path]
+    load = load_per_width[on_path]
     with quiet():
         # What a formula has to say, it says of the load share that is found.
         film = film_at(load)
-    stiffness, lead = np.zeros((2, *share.shape))
+    stiffness, lead = np.zeros((2, *on_path.shape))
     stiffness[on_path] = np.asarray(film.film_stiffness)
     if not film_at.keeps_distance:
         return FilmSprings(stiffness, None)
     # The straight line with this slope through distance and load of the film.
-    force = teeth.normal_force * share[on_path]
+    force = load * float(teeth.problem.widths.sum())
     lead[on_path] = np.asarray(film.film_distance) + force / stiffness[on_path]
     return FilmSprings(stiffness, lead)
 

@@ -106,6 +106,8 @@ class Teeth:
     in_contact: Mask  #: which pairs are on the path of contact
     normal_force: float  #: of all pairs together [N]
     problem: ContactProblem  #: the loaded tooth contact at the same phases
+    #: Load of all pairs at each phase (n, 1) over ``normal_force``.
+    loading: Array | float = field(default=1.0, kw_only=True)
 
     coupled = True
     #: Part of the load for which film and friction of a pair are found at least.
@@ -114,7 +116,7 @@ class Teeth:
     def shared_load(self, film: FilmSprings | None = None) -> SharedLoad:
         """Share the load among the pairs, each with its film in series."""
         problem = self.with_film(film)
-        solved = problem.at_loads(np.array([self.normal_force]))
+        solved = problem.at_loads(self._totals)
         force = np.einsum("s,psn->pn", problem.widths, solved.load[0])
         inner = force[:, 1:-1] if self._extended else force
         on_path = np.where(self.in_contact, inner, 0.0)
@@ -126,8 +128,8 @@ class Teeth:
         corner = [np.where(side, corners, 0.0).sum(axis=1) for side in (early, ~early)]
         return SharedLoad(
             stiffness=on_path / deflection[:, None],
-            share=on_path / self.normal_force,
-            corner_share=np.stack(corner, axis=1) / self.normal_force,
+            share=on_path / self.force,
+            corner_share=np.stack(corner, axis=1) / self.force,
             transmission_error=solved.approach[0],
             tangent=solved.tangent[0],
         )
@@ -164,14 +166,28 @@ class Teeth:
         return (0, 0), (int(np.flatnonzero(self.in_contact[:, last])[-1]), last)
 
     @property
-    def load_per_width(self) -> float:
-        """Load of all pairs together per face width [N/m]."""
-        return self.normal_force / float(self.problem.widths.sum())
+    def force(self) -> Array | float:
+        """Force of all pairs together, at each phase where it differs (n, 1) [N]."""
+        return self.normal_force * self.loading
+
+    @property
+    def _totals(self) -> Array:
+        return np.reshape(self.force, (1, -1))
+
+    @property
+    def load_per_width(self) -> Array | float:
+        """That force per face width [N/m]."""
+        return self.force / float(self.problem.widths.sum())
+
+    @property
+    def least_load(self) -> float:
+        """Load for which film and friction of a pair are found at least [N/m]."""
+        return self.least_share * self.normal_force / float(self.problem.widths.sum())
 
     @property
     def bends(self) -> tuple[float, ...]:
         """Mesh phases, no events, at which a pair begins or ceases to carry."""
-        carries = self.problem.at_loads(np.array([self.normal_force])).load[0].any(axis=1)
+        carries = self.problem.at_loads(self._totals).load[0].any(axis=1)
         phase = self.problem.places.phase
         turns = (carries[1:] != carries[:-1]).any(axis=1) & (np.diff(phase) > 0.0)
         return tuple(float(bend) for bend in 0.5 * (phase[1:] + phase[:-1])[turns])
@@ -203,15 +219,15 @@ class SpringTeeth(Teeth):
             touch = self.in_contact
             each[touch] = 1.0 / (1.0 / self.stiffness[touch] + 1.0 / film.stiffness[touch])
         gap = problem.gaps[:, 0, 1:-1] if self._extended else problem.gaps[:, 0]
-        carries = self.in_contact
+        carries, total = self.in_contact, np.ravel(self.force)
         while True:
             springs = np.where(carries, each, 0.0)
-            deflection = (self.normal_force + (springs * gap).sum(axis=1)) / springs.sum(axis=1)
+            deflection = (total + (springs * gap).sum(axis=1)) / springs.sum(axis=1)
             force = springs * (deflection[:, None] - gap)
             if np.all(force >= 0.0):
                 break
             carries = carries & (force >= 0.0)
-        share = force / self.normal_force
+        share = force / self.force
         load = force / problem.widths.sum()
         no_corners = np.zeros((deflection.size, 2))
         return SharedLoad(each, share, no_corners, deflection, problem.tangent_at(load))
@@ -223,7 +239,7 @@ class SpringTeeth(Teeth):
         if fitted:
             return super().ramps(shared, film, fitted=True)
         whole = shared.stiffness.sum(axis=1)
-        first = shared.transmission_error - self.normal_force / whole
+        first = shared.transmission_error - np.ravel(self.force) / whole
         return first[:, None], whole[:, None]
 
     @property
@@ -237,8 +253,9 @@ def teeth_of(
     places: tuple[Array, Array, Mask],
     settings: ToothContact,
     normal_force: float,
+    loading: Array | float = 1.0,
 ) -> Teeth:
-    """Teeth of a mesh by the stiffness model of the settings."""
+    """Teeth of a mesh by the stiffness model of the settings, whose stiffness is that at 1."""
     model, options = settings.stiffness_model, settings.stiffness_options
     chosen, pair = MODELS[model], contact.pair
     phase, path, in_contact = places
@@ -253,14 +270,14 @@ def teeth_of(
         options=options,
     )
     if chosen.coupled or pair.has_modification:
-        return Teeth(in_contact, normal_force, problem)
+        return Teeth(in_contact, normal_force, problem, loading=loading)
     if chosen.influence is None:
         bending = np.diagonal(problem.compliance.structure, axis1=1, axis2=2)
         stiffness = np.where(in_contact, pair.common_face_width / bending, 0.0)
     else:
         each = chosen(pair, settings.material, path, in_contact, phase, normal_force, **options)
         stiffness = usable_stiffness(each, in_contact, model)
-    return SpringTeeth(in_contact, normal_force, problem, stiffness)
+    return SpringTeeth(in_contact, normal_force, problem, stiffness, loading=loading)
 
 
 def shared_load_columns(
@@ -279,7 +296,7 @@ def shared_load_columns(
         "ramp_deflection": ramps[0],
         "ramp_stiffness": ramps[1],
         "load_share": shared.share,
-        "normal_force": teeth.normal_force * shared.share,
+        "normal_force": teeth.force * shared.share,
     }
 
 

@@ -19,6 +19,7 @@ from tribodyn.plot.gear.hypoid_contact import hypoid_contact
 from tribodyn.plot.gear.hypoid_flanks import ease_off, hypoid_pair
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
+from tribodyn.plot.mesh.coupling import coupling
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
 from tribodyn.plot.mesh.table import (
@@ -58,6 +59,7 @@ __all__ = [
     "comparison",
     "comprehensive_stiffness",
     "continuation",
+    "coupling",
     "drawing",
     "ease_off",
     "film",

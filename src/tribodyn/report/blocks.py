@@ -95,5 +95,6 @@ def _joined(blocks: Iterable[Block]) -> list[Block]:
 
 def figure_blocks(result: Any) -> list[Block]:
     """Draw every figure of the report; what lacks for one reason is told once."""
-    figures = (FIGURES[name] for name in SECTIONS)
+    names = [*SECTIONS, *(["coupling"] if result.coupling is not None else [])]
+    figures = (FIGURES[name] for name in names)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

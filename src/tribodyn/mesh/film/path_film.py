@@ -277,9 +277,8 @@ def film_of(
     progress: Progress,
 ) -> FormulaFilm | PathFilm:
     """Film of the settings: a formula, or solutions at positions along the path of contact."""
-    least_load = teeth.least_share * teeth.load_per_width
     if not FILM_MODELS[settings.film_model].method:
-        return FormulaFilm(settings, pairs, least_load)
+        return FormulaFilm(settings, pairs, teeth.least_load)
     contact, side = cycle.contact, cycle.side
     places = path_positions(contact, settings.film["positions"], teeth.bends)
     path = contact.A + contact.direction * places.age * contact.pair.base_pitch
@@ -296,7 +295,7 @@ def film_of(
         settings=settings,
         grid=cycle.grid,
         in_contact=cycle.in_contact,
-        least_load=least_load,
+        least_load=teeth.least_load,
         progress=progress,
         places=places,
         first_angle=float(angle[0]),

@@ -247,11 +247,11 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         for p in range(A.shape[0]):
             f[:] = 0.0
             start = -np.inf
-            for t in range(totals.size):
+            for t in range(totals.shape[0]):
                 if flag[0] != 0:
                     return STOPPED
                 start, status = _approach(
-                    C[p], A[p], B, gaps[p], width, totals[t], start, f, a, b, place, sums
+                    C[p], A[p], B, gaps[p], width, totals[t, p], start, f, a, b, place, sums
                 )
                 if status != 0:
                     return status

@@ -280,7 +280,7 @@ class ContactProblem:
 
         Parameters
         ----------
-        totals : array (t,) [N]
+        totals : array (t,) or (t, p) [N]
             Normal forces of all pairs together, positive; solved fastest in increasing order.
 
         Raises
@@ -291,14 +291,15 @@ class ContactProblem:
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
         phases, slices, pairs = self.gaps.shape
+        count = len(totals)
         equilibrium = Equilibrium(
-            np.empty((totals.size, phases)),
-            np.empty((totals.size, phases, slices, pairs)),
-            np.empty((totals.size, phases)),
+            np.empty((count, phases)),
+            np.empty((count, phases, slices, pairs)),
+            np.empty((count, phases)),
         )
-        self._call(
-            solve_loads, totals.size, self.widths, np.asarray(totals, dtype=float), *equilibrium
-        )
+        given = np.asarray(totals, dtype=float).reshape(count, -1)
+        each = np.ascontiguousarray(np.broadcast_to(given, (count, phases)))
+        self._call(solve_loads, count, self.widths, each, *equilibrium)
         return equilibrium
 
     def at_approach(self, approach: Array) -> tuple[Array, Array]:

@@ -193,6 +193,23 @@ def _solver(given: Given) -> Found:
         yield "solver.cycles", Problem(what, "", why, 'Remove it, or choose "transient"')
 
 
+def _coupling(given: Given) -> Found:
+    key = "solver.coupling"
+    kind = given.get(key, "none")
+    if kind == "none":
+        return
+    clashes = {
+        "gears.kind": ("table", "The teeth of another program have no film here"),
+        "dynamics.friction_load": ("dynamic", "The coupling already lets friction follow the load"),
+    }
+    if kind == "dynamic":
+        clashes["solver.method"] = ("transient", "It asks for the load of the steady motion")
+    for other, (value, why) in clashes.items():
+        if given.get(other) == value:
+            what = f"{given.show(key)} and {given.show(other)}"
+            yield key, Problem(what, "", why, "Leave one of them out")
+
+
 def _assumed(given: Given, faulty: set[str]) -> Found:
     marks = given.get("assumed", {})
     for key, reason in marks.items() if isinstance(marks, Mapping) else ():
@@ -370,7 +387,7 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
     _mesh_table, _roughness, _face_width, _size, _lubricant, _dampings,
-    _friction_load, _solver,
+    _friction_load, _solver, _coupling,
 )  # fmt: skip
 
 

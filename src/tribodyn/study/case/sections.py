@@ -227,6 +227,23 @@ class Solver(Section):
         argument="steps",
         basis="the fastest motion of the structure, from 1024 to 65536",
     )
+    coupling: str = choice(
+        "none",
+        {
+            "none": "film, friction and stiffness belong to the load of the torque alone",
+            "static": "load, film, friction and stiffness agree at rest, friction in the balance "
+            "of the torques",
+            "dynamic": "they agree with the load of the steady motion at every mesh phase",
+        },
+        meaning="load that film, friction and stiffness belong to",
+    )
+    coupling_tolerance: float = number(
+        1e-6,
+        1e-12,
+        1e-2,
+        "a hundredth is no agreement",
+        meaning="change that counts as agreement",
+    )
     cycles: int | None = integer(
         None,
         1,

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
+    from tribodyn.study.coupling import Coupling
     from tribodyn.study.pipeline.assembly import Damping
 
 
@@ -54,6 +55,8 @@ class Result(Record):
         Friction over the load, where it follows the dynamic load of the teeth.
     nominal_friction_response : Response, optional
         The motion with the friction of the nominal load, to compare with.
+    coupling : Coupling, optional
+        How load, film, friction and stiffness came to agree, where ``solver.coupling`` asks for it.
     """
 
     case: Case
@@ -64,6 +67,7 @@ class Result(Record):
     warnings: tuple[ModelWarning, ...]
     friction: MeshFriction | None = None
     nominal_friction_response: Response | None = None
+    coupling: Coupling | None = None
 
     @cached_property
     def _summary(self) -> dict[str, float]:

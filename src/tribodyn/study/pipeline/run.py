@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from tribodyn.errors import collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
+from tribodyn.study.coupling import Follow, coupled
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
@@ -27,7 +28,9 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
-def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Result:
+def run(
+    case: Case, progress: Progress = SILENT, *, stacklevel: int = 2, follow: Follow | None = None
+) -> Result:
     """Compute a case.
 
     Parameters
@@ -38,6 +41,9 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
         Told how far the run has come; silent by default.
     stacklevel : int
         Frames to skip in warnings, as in :func:`warnings.warn`.
+    follow : callable, optional
+        Takes the case and its mesh in every pass of ``solver.coupling``, and returns the case with
+        what follows from them, such as oil at another temperature.
 
     Raises
     ------
@@ -57,7 +63,7 @@ def run(case: Case, progress: Progress = SILENT, *, stacklevel: int = 2) -> Resu
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> result = run(case)  # doctest: +SKIP
     """
-    result = computed(case, progress)
+    result = computed(case, progress, follow=follow)
     for warning in result.warnings:
         warnings.warn(warning, stacklevel=stacklevel)
     return result
@@ -75,7 +81,10 @@ def rehearse(case: Case) -> None:
 
 
 def computed(
-    case: Case, progress: Progress = SILENT, known: Callable[[], MeshTable] | None = None
+    case: Case,
+    progress: Progress = SILENT,
+    known: Callable[[], MeshTable] | None = None,
+    follow: Follow | None = None,
 ) -> Result:
     """Compute a case; what the models said is kept in the result alone.
 
@@ -83,7 +92,11 @@ def computed(
     """
     with placed(case), collected() as found:
         progress.start("Tooth contact")
-        mesh = mesh_of(case, progress) if known is None else known()
+        coupling = None
+        if case.solver.coupling != "none":
+            case, mesh, coupling = coupled(case, progress, follow)
+        else:
+            mesh = mesh_of(case, progress) if known is None else known()
         friction = load_friction_of(case, mesh)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
@@ -101,4 +114,4 @@ def computed(
     )
     everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
     told = tuple({str(warning): warning for warning in everything}.values())
-    return Result(case, mesh, system, response, damping, told, friction, compared)
+    return Result(case, mesh, system, response, damping, told, friction, compared, coupling)
