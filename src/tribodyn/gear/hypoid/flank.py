@@ -305,14 +305,14 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
 
 
 def _warn(flanks: HypoidFlanks) -> None:
-    for code, share, told in (
-        ("hypoid-undercut", flanks.undercut_share, "the pinion is undercut"),
-        ("hypoid-interference", flanks.interference_share, "the flanks cut into each other"),
-    ):
-        if share > 0.0:
-            warn(
-                code,
-                f"{told} on {share:.1%} of the active {flanks.side} flank; give the pinion more "
-                "teeth, a larger spiral angle or a smaller working depth",
-                stacklevel=3,
-            )
+    rest = (
+        f"of the active {flanks.side} flank; give the pinion more teeth, a larger spiral angle or "
+        "a smaller working depth"
+    )
+    undercut, cutting = flanks.undercut_share, flanks.interference_share
+    if undercut > 0.0:
+        told = f"the pinion is undercut on {undercut:.1%} {rest}"
+        warn("hypoid-undercut", told, stacklevel=3)
+    if cutting > 0.0:
+        told = f"the flanks cut into each other on {cutting:.1%} {rest}"
+        warn("hypoid-interference", told, stacklevel=3)
