@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import LineContactSolution, solve_line_contact, solve_line_contact_moes
+from tribodyn.ehl.stiffness.film_stiffness import film_distance
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.lubricant import Lubricant
 
@@ -52,8 +53,9 @@ def test_rigid_isoviscous_film_falls_as_one_over_the_load() -> None:
     assert solution.film_stiffness(LENGTH) == pytest.approx(expected, rel=0.02)
 
 
+@pytest.mark.parametrize("kind", ["approach", "tangent"])
 @pytest.mark.parametrize("load", [147802.0, 295604.0])
-def test_series_rule_of_hertz_and_film(load: float) -> None:
+def test_series_rule_of_hertz_and_film(load: float, kind: str) -> None:
     """``1/K_total = 1/K_Hertz + 1/K_film``, the deflections counted from 10 mm."""
     depth = 10e-3
     approach = []
@@ -66,9 +68,54 @@ def test_series_rule_of_hertz_and_film(load: float) -> None:
     solution = contact(load)
     # dry contact: dv(0)/dw = (4/(pi E')) ln(2 d/b)
     hertz = 4.0 / (np.pi * MODULUS * LENGTH) * np.log(2.0 * depth / solution.half_width)
-    series = hertz + 1.0 / solution.film_stiffness(LENGTH)
+    series = hertz + 1.0 / solution.film_stiffness(LENGTH, kind)
     assert total == pytest.approx(series, rel=3e-3)
     assert total > 1.01 * hertz
+
+
+@pytest.mark.parametrize("moes_load", [0.3, 1.0, 3.0, 20.0, 100.0, 300.0])
+@pytest.mark.parametrize("moes_viscosity", [0.0, 5.0, 20.0])
+def test_the_bodies_come_nearer_under_every_load(moes_load: float, moes_viscosity: float) -> None:
+    """Also where the central film hardly changes, or rises: at M = 1, L = 20 it does."""
+    solution = solve_line_contact_moes(
+        moes_load, moes_viscosity, nodes=4097, inlet="flooded", domain="auto"
+    )
+    stiffness = solution.film_stiffness(1.0, "approach")
+    load_over_film = 0.5 * np.pi / solution.central_film
+    assert stiffness > 0.5 * load_over_film
+    assert stiffness < 40.0 * load_over_film
+
+
+@pytest.mark.parametrize(("moes_load", "moes_viscosity"), [(0.3, 0.0), (5.0, 10.0), (20.0, 5.0)])
+def test_stiffness_of_the_approach_is_its_slope(moes_load: float, moes_viscosity: float) -> None:
+    """Two loads on the same bodies, at one speed of one oil: M moves, L stays."""
+    step, distance = 0.04, []
+    for change in (-step, step):
+        solution = solve_line_contact_moes(
+            moes_load * np.exp(change), moes_viscosity, nodes=4097, inlet="flooded",
+            domain="auto", tolerance=1e-7, flux_tolerance=1e-6, compressible=False,
+        )  # fmt: skip
+        # b^2/R goes with the load
+        distance.append(film_distance(solution) * np.exp(change))
+    middle = solve_line_contact_moes(
+        moes_load, moes_viscosity, nodes=4097, inlet="flooded", domain="auto", tolerance=1e-7,
+        flux_tolerance=1e-6, compressible=False,
+    )  # fmt: skip
+    slope = (distance[1] - distance[0]) / (2.0 * step)
+    # the tangent holds the node of the outlet, which costs a per cent or two
+    assert middle.film_stiffness(1.0, "approach") == pytest.approx(-0.5 * np.pi / slope, rel=0.02)
+
+
+def test_distance_of_a_rigid_and_of_a_hertzian_contact() -> None:
+    """Rigid bodies: the film of Martin less the approach of Hertz; great loads: the film itself."""
+    ratios = []
+    for moes_load in (20.0, 100.0, 300.0):
+        solution = solve_line_contact_moes(
+            moes_load, 10.0, nodes=4097, inlet="flooded", domain="auto"
+        )
+        ratios.append(film_distance(solution) / solution.central_film - 1.0)
+    assert np.all(np.diff(ratios) < 0.0)
+    assert 0.0 < ratios[-1] < 0.07
 
 
 def test_printed_sum_is_a_length_that_doubles_with_the_grid() -> None:
@@ -97,5 +144,5 @@ def test_refusals() -> None:
     solution = contact(147802.0, 257)
     with pytest.raises(InputError, match="length"):
         solution.film_stiffness(0.0)
-    with pytest.raises(InputError, match="Known: tangent, secant, seed"):
+    with pytest.raises(InputError, match="Known: approach, tangent, secant, seed"):
         solution.film_stiffness(1.0, "slope")

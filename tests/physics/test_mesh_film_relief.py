@@ -63,8 +63,8 @@ def table(gears: SpurPair, torque: float = 120.0, rpm: float = 2500.0, **changes
 
 
 @cache
-def relieved() -> Any:
-    return table(pair(tip_relief=10e-6))
+def relieved(kind: str = "approach") -> Any:
+    return table(pair(tip_relief=10e-6), film_options={"stiffness": kind})
 
 
 def contact(mesh: Any, place: tuple[Any, Any]) -> tuple[Any, Any, Any, float]:
@@ -91,8 +91,9 @@ def deviations(mesh: Any, places: np.ndarray) -> dict[str, np.ndarray]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         films = solve_line_contacts(
-            load, radius, speed, OIL, modulus, nodes=513, length=30e-3, keep_solutions=True
-        )
+            load, radius, speed, OIL, modulus, nodes=513, length=30e-3, keep_solutions=True,
+            stiffness="tangent" if mesh.film_stiffness_kind == "tangent" else "approach",
+        )  # fmt: skip
     pressure = np.array([solution.pressure.max() for solution in films.solutions])
     solved = (films.central_film, films.minimum_film, pressure, films.film_stiffness)
     found = {}
@@ -138,7 +139,7 @@ def test_positions_follow_the_load_without_a_warning(recwarn: pytest.WarningsRec
 
 
 def test_pairs_that_do_not_touch_have_no_film() -> None:
-    mesh = relieved()
+    mesh = relieved("none")
     apart = mesh.in_contact & (mesh.load_share < 1e-3)
     assert apart.sum() > 100
     for name in (*NAMES, "film_ratio"):
@@ -149,7 +150,7 @@ def test_pairs_that_do_not_touch_have_no_film() -> None:
 
 
 def test_figures_leave_out_pairs_that_do_not_touch() -> None:
-    mesh = relieved()
+    mesh = relieved("none")
     for name in ("film", "film_pressure", "film_stiffness"):
         figure = FIGURES[name](mesh)
         assert "nan" not in figure.layout.title.text
@@ -175,12 +176,49 @@ def test_too_few_places_leave_films_out_and_are_told(monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(refinement, "MOST_ADDED", 40)
     with pytest.warns(ModelWarning, match=r"film-positions.*at \d+ of \d+ contacts.*film") as told:
-        mesh = table(pair(tip_relief=10e-6), film_options={"positions": 8})
+        mesh = table(pair(tip_relief=10e-6), film_options={"stiffness": "none", "positions": 8})
     assert sum("film-positions" in str(one.message) for one in told) == 1
     left_out = np.isnan(mesh.film_stiffness) & (mesh.load_share > 1e-3)
     assert left_out.any()
     known = touching(mesh)[::9]
     assert np.abs(deviations(mesh, known)["film_pressure"]).max() < 0.02
+
+
+def test_flanks_that_relief_keeps_apart_are_carried_by_their_film() -> None:
+    """A film as thick as the gap carries what keeps it there, at every place of the path."""
+    mesh, dry = relieved(), relieved("none")
+    apart = mesh.in_contact & (dry.load_share == 0.0)
+    assert apart.sum() > 100
+    assert np.all((mesh.load_share[apart] > 1e-3) & (mesh.load_share[apart] < 0.06))
+    assert mesh.central_film[apart].max() < 10e-6
+    assert np.all(mesh.film_stiffness[apart] > 0.0)
+
+
+@pytest.mark.parametrize("positions", [30, 60])
+def test_the_approach_is_smooth_whatever_the_positions(positions: int) -> None:
+    """No kink beyond those of the dry flanks, and no warning."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ModelWarning)
+        mesh = table(
+            pair(tip_relief=10e-6), film_options={"positions": positions},
+            stiffness_model="analytic",
+        )  # fmt: skip
+    dry = table(pair(tip_relief=10e-6), film_model="none", stiffness_model="analytic")
+    error, rigid = mesh.static_transmission_error, dry.static_transmission_error
+    assert np.ptp(error) == pytest.approx(np.ptp(relieved_analytic()), rel=1e-3)
+    assert np.ptp(error) == pytest.approx(np.ptp(rigid), rel=0.05)
+    assert np.abs(np.diff(error)).max() < 1.2 * np.abs(np.diff(rigid)).max()
+    # at A and E a tip corner takes over what the pair on the path carried
+    inside = np.diff(mesh.phase) > 0.0
+    steps = [np.abs(np.diff(each.load_share, axis=0)[inside]).max() for each in (mesh, dry)]
+    assert steps[0] < 1.2 * steps[1]
+
+
+@cache
+def relieved_analytic() -> Any:
+    options = {"positions": 120}
+    mesh = table(pair(tip_relief=10e-6), film_options=options, stiffness_model="analytic")
+    return mesh.static_transmission_error
 
 
 @pytest.mark.slow

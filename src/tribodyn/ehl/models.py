@@ -29,6 +29,8 @@ FilmFormula = Callable[..., Array]
 
 #: What the stiffnesses of a film are.
 _KINDS = {
+    "approach": "film stiffness as the slope of the load over the approach of the bodies less "
+    "Hertz's; each film keeps its distance in the load sharing",
     "none": "the film is rigid",
     "tangent": "film stiffness as the slope of the load over the central film; of the mesh force, "
     "linear about the load",
@@ -36,14 +38,22 @@ _KINDS = {
     "seed": "film stiffness as one source prints it, a length that doubles with every grid: shown, "
     "not in series",
 }
-_STIFFNESS = choice(
-    "none",
-    _KINDS,
-    meaning="stiffness of the oil film; tangent and secant are in series with the teeth",
-)
+
+
+def _stiffness(default: str) -> Any:
+    meaning = "stiffness of the oil film; approach, tangent and secant are in series with the teeth"
+    return choice(
+        default,
+        _KINDS,
+        meaning=meaning,
+        example='"approach"',
+        basis="the film model: approach where the contact is solved, none for a formula",
+    )
+
+
 #: Options of the solved films.
 _SOLVED: Mapping[str, Any] = {
-    "stiffness": _STIFFNESS,
+    "stiffness": _stiffness("approach"),
     "nodes": integer(
         513, 65, 16385, "a power of two plus one", example="513",
         meaning="nodes of each solved contact",
@@ -114,14 +124,32 @@ class FilmModel(Model):
 
     def __post_init__(self) -> None:
         """Keep options and defaults apart."""
-        self.declare({**(_SOLVED if self.method else {"stiffness": _STIFFNESS}), **self.options})
+        common = _SOLVED if self.method else {"stiffness": _stiffness("none")}
+        self.declare({**common, **self.options})
 
     @property
     def stiffness_kinds(self) -> tuple[str, ...]:
         """Stiffnesses of the film that the model can put in series with the teeth."""
         if self.method:
-            return ("none", "tangent", "secant", "seed")
+            return tuple(_KINDS)
         return ("none",) if self.load_exponent is None else ("none", "tangent")
+
+    def why_not(self, kind: str) -> str:
+        """Tell why the film has no stiffness of some kind.
+
+        Parameters
+        ----------
+        kind : str
+            The stiffness asked for.
+
+        Returns
+        -------
+        str
+        """
+        known = f"Its film has: {', '.join(self.stiffness_kinds)}"
+        if kind != "approach" or self.central is None:
+            return known
+        return f"{known}. A formula gives the film and not how near the bodies come"
 
     def complete(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options with the defaults filled in.
@@ -147,13 +175,13 @@ class FilmModel(Model):
         """
         given = {name: value for name, value in options.items() if value is not None}
         problems = [self._unknown(name) for name in given if name not in self.options]
-        kind = given.get("stiffness", "none")
+        kind = given.get("stiffness", self.options["stiffness"])
         if kind not in self.stiffness_kinds:
             problems.append(
                 Problem(
                     what=f'stiffness = "{kind}"',
                     where=f'film model "{self.name}"',
-                    why=f"Its film has: {', '.join(self.stiffness_kinds)}",
+                    why=self.why_not(kind),
                     remedy='Choose one of these, or the film model "newton"',
                 )
             )
@@ -200,8 +228,9 @@ class FilmModel(Model):
         Returns
         -------
         Films
-            Of the common shape of the arguments; ``None`` where the model gives nothing. The film
-            stiffness is the tangent one where ``stiffness`` is ``"none"``.
+            Of the common shape of the arguments; ``None`` where the model gives nothing. Where
+            ``stiffness`` is ``"none"`` the film stiffness is that of the approach, of a formula the
+            tangent one.
 
         Raises
         ------

@@ -178,9 +178,8 @@ class LoadedMesh:
 
     @cached_property
     def _load_columns(self) -> dict[str, Any]:
-        in_series = self.films.film_stiffness if self.settings.film_in_series else None
-        fitted = self.force_law
-        return shared_load_columns(self.teeth, self.loads.shared, in_series, force_law=fitted)
+        loads, fitted = self.loads, self.force_law
+        return shared_load_columns(self.teeth, loads.shared, loads.springs, force_law=fitted)
 
     def table(self, settings: ToothContact) -> MeshTable:
         """Mesh table with the friction law and the roughness of some settings."""

@@ -74,8 +74,8 @@ class MeshColumns(Record):
     film_pressure : array (n, pairs) [Pa] or None
         Greatest pressure in the film, where it is solved.
     film_stiffness : array (n, pairs) [N/m] or None
-        Stiffness of the film of the pair, of the kind asked for; the tangent one if none is. A
-        film that does not fall with the load counts as rigid: its stiffness has a bound.
+        Stiffness of the film of the pair, of the kind asked for. A film that does not fall with
+        the load counts as rigid: its stiffness has a bound.
     maximum_single_pair_stiffness : float [N/m]
         Greatest stiffness of one pair that carries the whole load alone.
     gear_pair : Gears
@@ -90,7 +90,7 @@ class MeshColumns(Record):
     stiffness_model, friction_law, film_model : str
         Which models made the table.
     film_stiffness_kind : str
-        Film stiffness asked for: ``"tangent"`` and ``"secant"`` are in series with the teeth,
+        Film stiffness asked for: all but ``"none"`` and ``"seed"`` are in series with the teeth,
         ``"none"`` and ``"seed"`` are not.
     mesh_order : int
         Mesh cycles in one turn of the pinion; by default its number of teeth.

@@ -16,7 +16,7 @@ from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
 from tribodyn.mesh.film.path_film import FilmAt, film_of
-from tribodyn.mesh.sharing import SharedLoad, Teeth, ToothContact
+from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, SharedLoad, Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Mask
 
@@ -29,6 +29,7 @@ class Loads:
     load_per_width: Array  #: of the pairs in contact [N/m]
     tribological: Array  #: the same, no less than a film needs [N/m]
     film_at: FilmAt  #: films of the pairs in contact as a function of their loads per width
+    springs: FilmSprings | None  #: films in series with the teeth
 
 
 def quasi_static_loads(
@@ -46,13 +47,16 @@ def quasi_static_loads(
         raised = np.maximum(loads, film.least_load)
         return film.solve(np.where(cycle.in_contact, raised, 0.0), checked)
 
+    springs = None
     if settings.film_in_series:
         shared, film_at = in_series(teeth, solve, cycle.named)
+        load = np.maximum(teeth.load_per_width * shared.share, teeth.least_load)
+        springs = _springs(teeth, load, film_at)
     else:
         shared = teeth.shared_load()
         film_at = solve(teeth.load_per_width * shared.share, ALL)
     load = (teeth.load_per_width * shared.share)[cycle.in_contact]
-    return Loads(shared, load, np.maximum(load, film.least_load), film_at)
+    return Loads(shared, load, np.maximum(load, film.least_load), film_at, springs)
 
 
 def reported_films(films: Films, loads: Loads, least_load: float) -> Films:
@@ -112,6 +116,9 @@ SolveFilm = Callable[[Array, tuple[int, ...]], FilmAt]
 _TOLERANCE = 1e-6
 #: Where pairs are solved together one may be about to lose its load to its film: there it is this.
 _TOLERANCE_TOGETHER = 1e-5
+#: Part of its share by which that of a film with a distance may move: the square of it is the part
+#: of the distance by which a film that is solved anew would differ, but for rounding.
+_MOVED = 2e-3
 _PASSES = 60
 #: What is checked between the positions, first and whenever the shares have settled. At last the
 #: stiffness stays as it is, so that an end is reached where a pair is about to lose its load.
@@ -149,9 +156,14 @@ def in_series(
         shared = _settle(teeth, film_at, share, where, enough)
         earlier, step = step, shared.share - share
         change = float(np.max(np.abs(step)))
-        if change < tolerance and PRESSURE in checked:
+        free = _MOVED * share if film_at.keeps_distance else 0.0
+        settled = bool(np.all(np.abs(step) < tolerance + free))
+        if settled and PRESSURE in checked:
             return shared, film_at
-        checked = stages.pop(0) if change < tolerance and stages else ()
+        checked = stages.pop(0) if settled and stages else ()
+        if film_at.keeps_distance:
+            share = shared.share
+            continue
         slope = _secant(share - before, step - earlier, slope, _FALLS_OF_PASSES)
         before, share = share, np.clip(share + step / slope, 0.0, 1.0)
     raise _unsettled(f"the load share still moves by {change:.2g} after {_PASSES} solutions")
@@ -165,14 +177,14 @@ def _settle(
     enough: float,
 ) -> SharedLoad:
     """Find the fixed point of share and stiffness with the films as a function of their load."""
+    if film_at.keeps_distance:
+        return _settle_distances(teeth, film_at, share, where)
     if teeth.coupled:
         return _settle_together(teeth, film_at, share, where, enough)
     earlier = [share]
     loaded = teeth.in_contact & (share > _LOST)
     for _ in range(_STEPS):
-        shared = teeth.shared_load(
-            _film_stiffness(teeth.in_contact, teeth.load_per_width * share, film_at)
-        )
+        shared = teeth.shared_load(_springs(teeth, teeth.load_per_width * share, film_at))
         share = shared.share
         change = np.abs(share - earlier[-1])
         if change.max() < _SETTLED:
@@ -188,6 +200,20 @@ def _settle(
     raise _still_moving(change, where)
 
 
+def _settle_distances(
+    teeth: Teeth, film_at: FilmAt, share: Array, where: Callable[[int, int], str]
+) -> SharedLoad:
+    """The same for films that keep a distance: Newton's method, as each spring is a tangent."""
+    least = LEAST_SHARE * teeth.normal_force / float(teeth.problem.widths.sum())
+    for _ in range(_STEPS):
+        load = np.maximum(teeth.load_per_width * share, least)
+        shared = teeth.shared_load(_springs(teeth, load, film_at))
+        step, share = np.abs(shared.share - share), shared.share
+        if step.max() < _SETTLED_TOGETHER:
+            return shared
+    raise _still_moving(step, where)
+
+
 def _settle_together(
     teeth: Teeth,
     film_at: FilmAt,
@@ -200,7 +226,7 @@ def _settle_together(
     slope = np.ones(share.shape)
     for _ in range(_STEPS):
         load = np.maximum(teeth.load_per_width * share, teeth.least_load)
-        shared = teeth.shared_load(_film_stiffness(teeth.in_contact, load, film_at))
+        shared = teeth.shared_load(_springs(teeth, load, film_at))
         earlier, step = step, shared.share - share
         if np.abs(step).max() < max(enough, _SETTLED_TOGETHER):
             return shared
@@ -224,14 +250,21 @@ def _still_moving(change: Array, where: Callable[[int, int], str]) -> Computatio
     )
 
 
-def _film_stiffness(in_contact: Mask, load_per_width: Array, film_at: FilmAt) -> Array:
-    """Stiffness of the films, zero where the pair is not in contact."""
+def _springs(teeth: Teeth, load_per_width: Array, film_at: FilmAt) -> FilmSprings:
+    """Films of the pairs under their loads."""
+    on_path = teeth.in_contact
+    load = load_per_width[on_path]
     with quiet():
         # What a formula has to say, it says of the load share that is found.
-        film = film_at(load_per_width[in_contact]).film_stiffness
-    stiffness = np.zeros(load_per_width.shape)
-    stiffness[in_contact] = np.asarray(film)
-    return stiffness
+        film = film_at(load)
+    stiffness, lead = np.zeros((2, *on_path.shape))
+    stiffness[on_path] = np.asarray(film.film_stiffness)
+    if not film_at.keeps_distance:
+        return FilmSprings(stiffness, None)
+    # The straight line with this slope through distance and load of the film.
+    force = load * float(teeth.problem.widths.sum())
+    lead[on_path] = np.asarray(film.film_distance) + force / stiffness[on_path]
+    return FilmSprings(stiffness, lead)
 
 
 def _extrapolated(earlier: list[Array], in_contact: Mask) -> Array:

@@ -233,7 +233,7 @@ class ComprehensiveStiffness(Record):
     gear_pair : SpurPair
         Both gears in their working position.
     kind : str
-        ``"tangent"``, ``"secant"`` or ``"seed"``.
+        ``"approach"``, ``"tangent"``, ``"secant"`` or ``"seed"``.
     stiffness_model, film_model : str
         Models of the teeth and of the film.
     pinion_torque : array (t,) [N*m]
@@ -341,9 +341,9 @@ def comprehensive_stiffness(
     film_options : mapping
         Options of the film model; ``kind`` replaces its ``stiffness``.
     kind : str
-        ``"tangent"`` or ``"secant"``: the film of each pair in series with its teeth, at the load
-        that it then carries. ``"seed"``: as "Prediction of Vibration Characteristics in Spur Gear
-        Drives Considering Elastohydrodynamic Lubrication" prints it.
+        ``"approach"``, ``"tangent"`` or ``"secant"``: the film of each pair in series with its
+        teeth, at the load that it then carries. ``"seed"``: as "Prediction of Vibration
+        Characteristics in Spur Gear Drives Considering Elastohydrodynamic Lubrication" prints it.
     pinion_speed : float or array (s,) [rad/s]
         Speeds of the pinion in the running sense.
     pinion_torque : float or array (t,) [N*m]
@@ -455,5 +455,5 @@ def _check_kind(film_model: str, kind: str) -> None:
             "no oil film" if film_model == "none" else 'kind = "none"',
             where="argument film_model" if film_model == "none" else "argument kind",
             why="The comprehensive stiffness is that of teeth and film",
-            remedy='Take film_model = "newton" and kind = "tangent"',
+            remedy='Take film_model = "newton" and kind = "approach"',
         )

@@ -27,7 +27,7 @@ from tribodyn.types import Array, Mask
 #: Largest composite roughness that is a roughness and not a slip of the unit [m].
 _LARGEST_ROUGHNESS = 1e-4
 #: Kinds of film stiffness that are springs; the printed sum of one source has the unit of a length.
-_IN_SERIES = ("tangent", "secant")
+IN_SERIES = ("approach", "tangent", "secant")
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class ToothContact:
     @property
     def film_in_series(self) -> bool:
         """Whether the film of each pair is a spring in series with its teeth."""
-        return self.film["stiffness"] in _IN_SERIES
+        return self.film["stiffness"] in IN_SERIES
 
 
 #: A pair that is kept apart has the film and the friction of this part of the load of all.
@@ -80,6 +80,13 @@ _MOST = 30
 _SAME = 1e-9
 #: Stiffness of a ramp over the whole one that is rounding.
 _FAINT = 1e-9
+
+
+class FilmSprings(NamedTuple):
+    """Films of the pairs on the path of contact (n, pairs), linear about their loads."""
+
+    stiffness: Array  #: zero where a pair is not in contact [N/m]
+    lead: Array | None  #: distance of the flanks at which each begins to carry [m]
 
 
 class SharedLoad(NamedTuple):
@@ -106,9 +113,9 @@ class Teeth:
     #: Part of the load for which film and friction of a pair are found at least.
     least_share = LEAST_SHARE
 
-    def shared_load(self, film_stiffness: Array | None = None) -> SharedLoad:
+    def shared_load(self, film: FilmSprings | None = None) -> SharedLoad:
         """Share the load among the pairs, each with its film in series."""
-        problem = self.with_film(film_stiffness)
+        problem = self.with_film(film)
         solved = problem.at_loads(self._totals)
         force = np.einsum("s,psn->pn", problem.widths, solved.load[0])
         inner = force[:, 1:-1] if self._extended else force
@@ -128,21 +135,26 @@ class Teeth:
         )
 
     def ramps(
-        self, shared: SharedLoad, film_stiffness: Array | None, *, fitted: bool
+        self, shared: SharedLoad, film: FilmSprings | None, *, fitted: bool
     ) -> tuple[Array, Array]:
         """Force law as ramps: where each begins [m], and its stiffness [N/m]."""
-        return force_ramps(self.with_film(film_stiffness), self.normal_force)
+        return force_ramps(self.with_film(film), self.normal_force)
 
-    def with_film(self, film_stiffness: Array | None) -> ContactProblem:
+    def with_film(self, film: FilmSprings | None) -> ContactProblem:
         """Put the films in series with the teeth."""
-        if film_stiffness is None:
+        if film is None:
             return self.problem
+        lead = None if film.lead is None else self._of_all(film.lead)
+        return self.problem.with_film(self._of_all(film.stiffness), lead)
+
+    def _of_all(self, on_path: Array) -> Array:
+        """Values of the pairs on the path, and those of its ends for pairs beyond them."""
         entering, leaving = self._ends()
-        film = np.where(self.in_contact, film_stiffness, film_stiffness[leaving])
-        if self._extended:
-            first = np.full((film.shape[0], 1), film_stiffness[entering])
-            film = np.concatenate([first, film, np.full_like(first, film_stiffness[leaving])], 1)
-        return self.problem.with_film(film)
+        values = np.where(self.in_contact, on_path, on_path[leaving])
+        if not self._extended:
+            return values
+        first = np.full((values.shape[0], 1), on_path[entering])
+        return np.concatenate([first, values, np.full_like(first, on_path[leaving])], axis=1)
 
     @property
     def _extended(self) -> bool:
@@ -199,29 +211,36 @@ class SpringTeeth(Teeth):
     coupled = False
     least_share = 0.0
 
-    def shared_load(self, film_stiffness: Array | None = None) -> SharedLoad:
-        """Share the load in proportion to the stiffness of teeth and film."""
-        each = self.stiffness
-        if film_stiffness is not None:
+    def shared_load(self, film: FilmSprings | None = None) -> SharedLoad:
+        """Share the load among springs of teeth and film; each begins where its film does."""
+        each, problem = self.stiffness, self.with_film(film)
+        if film is not None:
             each = np.zeros(self.stiffness.shape)
             touch = self.in_contact
-            each[touch] = 1.0 / (1.0 / self.stiffness[touch] + 1.0 / film_stiffness[touch])
-        whole = each.sum(axis=1)
-        share = each / whole[:, None]
-        problem = self.with_film(film_stiffness)
-        load = share * self.load_per_width
-        no_corners = np.zeros((whole.size, 2))
-        deflection = np.ravel(self.force) / whole
+            each[touch] = 1.0 / (1.0 / self.stiffness[touch] + 1.0 / film.stiffness[touch])
+        gap = problem.gaps[:, 0, 1:-1] if self._extended else problem.gaps[:, 0]
+        carries, total = self.in_contact, np.ravel(self.force)
+        while True:
+            springs = np.where(carries, each, 0.0)
+            deflection = (total + (springs * gap).sum(axis=1)) / springs.sum(axis=1)
+            force = springs * (deflection[:, None] - gap)
+            if np.all(force >= 0.0):
+                break
+            carries = carries & (force >= 0.0)
+        share = force / self.force
+        load = force / problem.widths.sum()
+        no_corners = np.zeros((deflection.size, 2))
         return SharedLoad(each, share, no_corners, deflection, problem.tangent_at(load))
 
     def ramps(
-        self, shared: SharedLoad, film_stiffness: Array | None, *, fitted: bool
+        self, shared: SharedLoad, film: FilmSprings | None, *, fitted: bool
     ) -> tuple[Array, Array]:
         """Force law as ramps; one with the stiffness of all pairs unless it is to be fitted."""
         if fitted:
-            return super().ramps(shared, film_stiffness, fitted=True)
-        whole = shared.stiffness.sum(axis=1)[:, None]
-        return np.zeros_like(whole), whole
+            return super().ramps(shared, film, fitted=True)
+        whole = shared.stiffness.sum(axis=1)
+        first = shared.transmission_error - np.ravel(self.force) / whole
+        return first[:, None], whole[:, None]
 
     @property
     def bends(self) -> tuple[float, ...]:
@@ -262,13 +281,9 @@ def teeth_of(
 
 
 def shared_load_columns(
-    teeth: Teeth, shared: SharedLoad, film_stiffness: Array | None, *, force_law: bool
+    teeth: Teeth, shared: SharedLoad, film: FilmSprings | None, *, force_law: bool
 ) -> dict[str, Any]:
     """Columns of the mesh table that follow from teeth and films under load."""
-    film = None
-    if film_stiffness is not None:
-        film = np.zeros(teeth.in_contact.shape)
-        film[teeth.in_contact] = film_stiffness
     ramps = teeth.ramps(shared, film, fitted=force_law)
     without_film = shared if film is None else teeth.shared_load()
     return {

@@ -68,8 +68,9 @@ def test_what_a_formula_does_not_know_is_none():
         ("moes", {"nodes": 513}, ("nodes", "stiffness", "moes")),
         ("newton", {"node": 513}, ('"node"', 'Did you mean "nodes"?')),
         ("moes", {"stiffness": "secant"}, ("secant", "none, tangent", '"newton"')),
+        ("moes", {"stiffness": "approach"}, ("none, tangent", "how near the bodies come")),
         ("none", {"stiffness": "tangent"}, ('stiffness = "tangent"', '"none"')),
-        ("newton", {"stiffness": "chord"}, ("chord", "none, tangent, secant, seed")),
+        ("newton", {"stiffness": "chord"}, ("chord", "approach, none, tangent, secant, seed")),
     ],
 )
 def test_foreign_options_are_refused(name, option, says):
@@ -81,7 +82,7 @@ def test_foreign_options_are_refused(name, option, says):
 
 def test_options_are_completed():
     assert FILM_MODELS["newton"].complete({"nodes": 257, "domain": None}) == {
-        "stiffness": "none",
+        "stiffness": "approach",
         "nodes": 257,
         "positions": 30,
         "inlet": "flooded",

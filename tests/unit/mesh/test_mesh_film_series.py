@@ -157,9 +157,20 @@ def test_a_table_of_the_earlier_format_is_read(fzg, tmp_path):
     )
 
 
-def _film(stiffness_of):
-    """A film that is solved for any load, with a stiffness that follows from it."""
-    return lambda *_: lambda load: types.SimpleNamespace(film_stiffness=stiffness_of(load))
+class Film:
+    """A film that is solved for any load, with what follows from it."""
+
+    def __init__(self, stiffness_of, distance_of=None):
+        self.stiffness_of, self.distance_of = stiffness_of, distance_of
+        self.keeps_distance = distance_of is not None
+
+    def __call__(self, load):
+        distance = self.distance_of(load) if self.keeps_distance else None
+        return types.SimpleNamespace(film_stiffness=self.stiffness_of(load), film_distance=distance)
+
+
+def _film(stiffness_of, distance_of=None):
+    return lambda *_: Film(stiffness_of, distance_of)
 
 
 def springs(*stiffness):
@@ -205,7 +216,7 @@ def test_a_film_that_is_never_the_same_is_refused():
 
     def restless(*_):
         factor = 1.0 + 0.1 * (next(films) % 2)
-        return lambda load: types.SimpleNamespace(film_stiffness=np.array([factor, 1.0]) * 1e8)
+        return Film(lambda load: np.array([factor, 1.0]) * 1e8)
 
     with pytest.raises(ComputationError, match="still moves by"):
         solved(springs(3e8, 1e8), restless)
@@ -215,3 +226,36 @@ def test_one_pair_alone_keeps_its_load():
     stiffness, share = solved(springs(2e8, 0.0), _film(lambda load: np.array([2e8])))
     assert stiffness.tolist() == [[pytest.approx(1e8), 0.0]]
     assert share.tolist() == [[1.0, 0.0]]
+
+
+def power_film(distance, power):
+    """Distances that fall with a power of the load per width, and their slopes."""
+    kept = lambda load: distance * (load / 1e5) ** -power  # noqa: E731
+    return _film(lambda load: load / (power * kept(load)), kept)
+
+
+@pytest.mark.parametrize("power", [0.03, 0.1, 1.0])
+@pytest.mark.parametrize("distance", [1e-6, 3e-5, 1e-3])
+def test_films_that_keep_a_distance_share_by_their_approach(distance, power):
+    """Both pairs come nearer by ``F/k - h(F)``, whatever their film; found here by bisection."""
+    from scipy.optimize import brentq
+
+    pairs = springs(3e8, 1e8)
+
+    def approach(force, stiffness):
+        return force / stiffness - distance * (force / 1e5) ** -power
+
+    alone = brentq(lambda f: approach(f, 3e8) - approach(1e5 - f, 1e8), 1e-9, 1e5 - 1e-9, xtol=1e-9)
+    carried, _ = in_series(pairs, power_film(distance, power), named)
+    assert carried.share[0] == pytest.approx([alone / 1e5, 1.0 - alone / 1e5], abs=1e-8)
+    # the approach counts from where the first film begins to carry, on the straight lines
+    force = 1e5 * carried.share[0]
+    lead = (1.0 + power) * distance * (force / 1e5) ** -power
+    expected = approach(force, np.array([3e8, 1e8])) + lead.max()
+    assert carried.transmission_error[0] == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_film_without_distance_leaves_the_teeth_alone():
+    carried, _ = in_series(springs(3e8, 1e8), power_film(1e-15, 0.1), named)
+    assert carried.share[0] == pytest.approx([0.75, 0.25], abs=1e-9)
+    assert carried.transmission_error[0] == pytest.approx(1e5 / 4e8, rel=1e-9)

@@ -134,8 +134,8 @@ def _build_tangent(digest: str) -> Any:
     def tangent_of_film(
         n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float,
         load: float, P: Array, H: Array,
-    ) -> tuple[float, int]:  # fmt: skip
-        """Slope ``dH_c/d ln(w)`` of the central film over the load, bodies and oil held."""
+    ) -> tuple[float, float, int]:  # fmt: skip
+        """Slopes over ``ln(w)`` of the central film and of the offset, bodies and oil held."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         grid, f, work = make_grid(n, dx), make_fields(n), linear_work(n)
         K, cH, cP = grid.influence, work.by_film, work.by_pressure
@@ -143,7 +143,7 @@ def _build_tangent(digest: str) -> Any:
         fill_oil(n, lam, oil, P, H, f)
         fill_tangent(n, dx, 1.0, 0.0, P, H, f, cH, cP)
         if not prepare(grid, k, True, work):
-            return 0.0, -1
+            return 0.0, 0.0, -1
         # The pressure of the first node is given: its column of the tangent goes to the right.
         for i in range(1, k + 1):
             for s in range(4):
@@ -156,7 +156,7 @@ def _build_tangent(digest: str) -> Any:
         film_change(grid, k, tail, x, work)
         for i in range(n + 1):
             work.film[i] += x[k]
-        return central(n, start, dx, work.film), products
+        return central(n, start, dx, work.film), x[k], products
 
     return tangent_of_film
 

@@ -12,11 +12,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.checks import require_flag, require_number
+from tribodyn.checks import require_number
 from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
-from tribodyn.ehl.stiffness.film_stiffness import central_film_slope
+from tribodyn.ehl.stiffness.film_stiffness import FilmSlopes, film_distance, film_slopes
 from tribodyn.errors import (
     Argument,
     InputError,
@@ -24,6 +24,7 @@ from tribodyn.errors import (
     TribodynError,
     quiet,
     real_numbers,
+    require_one_of,
     require_positive,
     warn,
 )
@@ -47,7 +48,7 @@ class LineContactBatch:
     central_film, minimum_film : array [m]
         Film at position zero, and least film.
     film_stiffness : array [N/m]
-        Tangent stiffness of the film over the length that was asked for; empty if none was.
+        Stiffness of the film over the length that was asked for; empty if none was.
     hertz_pressure : array [Pa]
         Maximum pressure of the dry contact.
     half_width : array [m]
@@ -97,7 +98,7 @@ def solve_line_contacts(
     tolerance: float = 1e-4,
     flux_tolerance: float = 3e-4,
     film_tolerance: float = 5e-4,
-    stiffness: bool = True,
+    stiffness: bool | str = True,
     length: float = 1.0,
     keep_solutions: bool = False,
     threads: int | None = None,
@@ -115,8 +116,9 @@ def solve_line_contacts(
         As for :func:`solve_line_contact`; the domain in half widths of each contact [-].
     tolerance, flux_tolerance, film_tolerance
         As there.
-    stiffness : bool
-        Whether to compute the film stiffness, one or two linear solves a contact.
+    stiffness : bool or {"approach", "tangent"}
+        Film stiffness to compute, by one linear solve a contact: of the approach of the bodies, or
+        of the central film, which ``True`` means too.
     length : float [m]
         Length of the contact line, for the stiffness.
     keep_solutions : bool
@@ -145,7 +147,8 @@ def solve_line_contacts(
     """
     options = SolverOptions.among(locals())
     require_number("length", length)
-    require_flag("stiffness", stiffness)
+    if not isinstance(stiffness, (bool, np.bool_)):
+        require_one_of("stiffness", stiffness, ("approach", "tangent"))
     require_positive("length", length, "m")
     shape, columns = _broadcast(load_per_width, equivalent_radius, entrainment_speed)
 
@@ -174,7 +177,7 @@ def solve_line_contacts(
     table[2] = -length * columns[0] / table[2]
     if stiffness:
         _warn_negative(table[2], shape)
-    return _gather(table, solutions if keep_solutions else solutions[:0], shape, stiffness)
+    return _gather(table, solutions if keep_solutions else solutions[:0], shape, bool(stiffness))
 
 
 def _gather(
@@ -210,11 +213,12 @@ def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
     return arrays[0].shape, [np.ascontiguousarray(array).reshape(-1) for array in arrays]
 
 
-def _row(solution: LineContactSolution, stiffness: bool) -> list[float]:
+def _row(solution: LineContactSolution, stiffness: bool | str) -> list[float]:
+    slopes = film_slopes(solution) if stiffness else FilmSlopes(1.0, 1.0)
     return [
         solution.central_film,
         solution.minimum_film,
-        central_film_slope(solution) if stiffness else 1.0,
+        slopes.distance if stiffness == "approach" else slopes.central,
         solution.hertz_pressure,
         solution.half_width,
         solution.outlet,
@@ -292,6 +296,8 @@ class Films:
     minimum_film: Array | None  #: [m]
     film_pressure: Array | None  #: greatest pressure in the film [Pa]
     film_stiffness: Array | None  #: stiffness of the film over the length of the contact line [N/m]
+    #: distance of the bodies beyond that of Hertz's dry contact [m]
+    film_distance: Array | None = None
     solutions: tuple[Any, ...] = field(default=(), repr=False)
 
 
@@ -311,7 +317,7 @@ def solved_films(
     progress: Progress = SILENT,
 ) -> Films:
     """Solve many contacts in threads."""
-    tangent = stiffness in ("none", "tangent")
+    sums = stiffness in ("secant", "seed")
     with quiet("film-stiffness"):
         # Whoever uses the stiffness says what a negative one means for it.
         batch = solve_line_contacts(
@@ -324,22 +330,22 @@ def solved_films(
             method=method,
             inlet=inlet,
             domain="auto" if domain is None else domain,
-            stiffness=tangent,
+            stiffness=False if sums else "tangent" if stiffness == "tangent" else "approach",
             keep_solutions=True,
             progress=progress,
         )
     solutions = tuple(np.ravel(batch.solutions))
     pressures = np.array([solution.pressure.max() for solution in solutions])
-    if tangent:
-        film_stiffness = length * batch.film_stiffness
-    else:
+    if sums:
         film_stiffness = _sums(solutions, length, stiffness).reshape(batch.central_film.shape)
+    else:
+        film_stiffness = length * batch.film_stiffness
     if stiffness == "seed":
         warn(
             "seed-film-stiffness",
             "the film stiffness is the sum as one source prints it: a length, which doubles when "
             f"the {nodes} nodes are doubled. It is shown, and is no spring. "
-            'Take film.stiffness = "tangent", or "secant" for a sum that is sound',
+            'Take film.stiffness = "approach", or "secant" for a sum that is sound',
             stacklevel=4,
         )
     return Films(
@@ -347,6 +353,7 @@ def solved_films(
         minimum_film=batch.minimum_film,
         film_pressure=pressures.reshape(batch.central_film.shape),
         film_stiffness=film_stiffness,
+        film_distance=np.array([film_distance(s) for s in solutions]).reshape(pressures.shape),
         solutions=solutions,
     )
 

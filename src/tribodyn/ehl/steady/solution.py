@@ -154,9 +154,9 @@ class LineContactSolution(Record):
         ----------
         length : float [m]
             Length of the contact line.
-        kind : {"tangent", "secant", "seed"}
-            Slope of the load over the central film; sum of the nodal forces over their films;
-            that sum as one source prints it.
+        kind : {"tangent", "approach", "secant", "seed"}
+            Slope of the load over the central film; over the approach of the bodies less Hertz's;
+            sum of the nodal forces over their films; that sum as one source prints it.
 
         Returns
         -------

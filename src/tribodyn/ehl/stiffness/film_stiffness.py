@@ -1,4 +1,9 @@
-"""Stiffness of the oil film: tangent, secant, and a sum as one source prints it."""
+"""Stiffness of the oil film: of its approach, tangent, secant, and a sum as one source prints it.
+
+The bodies of a lubricated contact are further apart than those of a dry one under the same load:
+by the distance that :func:`film_distance` finds. Its fall with the load is the compliance that the
+film has in series with Hertz's.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +18,9 @@ from tribodyn.errors import ComputationError, require_one_of, require_positive, 
 
 #: Change of ln(w) for the slope of the estimated film.
 _STEP = 1e-4
+#: Offset of a dry contact in b^2/R, ``(ln(1/2) - 1/2)/2`` by the logarithmic potential of Hertz's
+#: pressure in its middle, and its slope over ln(w), bodies held.
+_DRY_OFFSET, _DRY_SLOPE = -0.5 * (math.log(2.0) + 0.5), -0.5 * math.log(2.0)
 
 
 class InletChange(NamedTuple):
@@ -51,12 +59,19 @@ def inlet_change(solution: SolvedContact) -> InletChange:
     )
 
 
-def central_film_slope(solution: SolvedContact) -> float:
-    """Slope ``d h_c / d ln(w)`` of the central film over the logarithm of the load."""
+class FilmSlopes(NamedTuple):
+    """Slopes over ``ln(w)`` [m], bodies, speed and oil held."""
+
+    central: float  #: of the central film
+    distance: float  #: of the distance that the film keeps, see :func:`film_distance`
+
+
+def film_slopes(solution: SolvedContact) -> FilmSlopes:
+    """How central film and distance follow the load, by one linear solve with the tangent."""
     from tribodyn.ehl._kernel.steady import tangent_of_film
 
     grid, inlet = solution._grid, inlet_change(solution)
-    slope, products = tangent_of_film(
+    central, offset, products = tangent_of_film(
         grid.n,
         float(grid.X[0]),
         grid.dx,
@@ -74,21 +89,43 @@ def central_film_slope(solution: SolvedContact) -> float:
             why=f"the solution has {grid.n + 1} nodes and M = {solution.moes_load:.4g}",
             remedy="Take another number of nodes, or two solutions at 0.1 % more and less load",
         )
-    return float(slope) * solution.film_unit
+    unit = solution.film_unit
+    change = float(offset) - _DRY_SLOPE + _by_inlet(solution, inlet.load)
+    return FilmSlopes(float(central) * unit, change * unit)
+
+
+def film_distance(solution: SolvedContact) -> float:
+    """Distance that the film keeps between the bodies: Hertz's approach less theirs [m]."""
+    grid = solution._grid
+    before = _by_inlet(solution, 0.5 * np.pi - grid.load)
+    return (grid.H0 - _DRY_OFFSET + before) * solution.film_unit
+
+
+def _by_inlet(solution: SolvedContact, load: float) -> float:
+    """Offset that a load before the first node adds: there the pressure falls as 1/x^3."""
+    return load / math.pi * (math.log(-float(solution._grid.X[0])) + 0.5)
+
+
+def approach_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
+    """Slope of the load over the approach of the bodies less Hertz's."""
+    return _stiffness(solution, film_slopes(solution).distance, length)
 
 
 def tangent_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Slope of the load over the central film, ``K = -l dw/dh_c``."""
-    require_positive("length", length, "m")
-    slope = central_film_slope(solution)
-    load = 0.5 * np.pi * solution.hertz_pressure * solution.half_width
+    slope = film_slopes(solution).central
     if slope >= 0.0:
         warn(
             "film-stiffness",
             f"The central film rises with the load by {slope:.3g} m per unit of ln(w), so that "
             f"its tangent stiffness is negative. {_reason(solution)}",
         )
-    return -load * length / slope
+    return _stiffness(solution, slope, length)
+
+
+def _stiffness(solution: SolvedContact, slope: float, length: float) -> float:
+    require_positive("length", length, "m")
+    return -0.5 * np.pi * solution.hertz_pressure * solution.half_width * length / slope
 
 
 def _reason(solution: SolvedContact) -> str:
@@ -96,7 +133,7 @@ def _reason(solution: SolvedContact) -> str:
     if solution.inlet == "flooded":
         return (
             f"With M = {solution.moes_load:.3g} the contact turns from rigid to elastic: there the "
-            "film hardly depends on the load and counts as rigid in a series of springs"
+            'film hardly depends on the load. Take kind = "approach", which has no pole there'
         )
     return (
         f"The inlet at X = {solution._grid.X[0]:.3g} starves it: take the flooded inlet or an "
@@ -124,13 +161,18 @@ def seed_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
         "seed-film-stiffness",
         f"The sum as printed gives {value:.4g} m, which is a length and doubles when the "
         f"{grid.n + 1} nodes are doubled: it counts the nodes twice and has no pressure in "
-        'it. Take kind = "tangent", or "secant" for a sum that is sound',
+        'it. Take kind = "approach", or "secant" for a sum that is sound',
     )
     return value
 
 
 #: What the stiffness of a film can be.
-KINDS = {"tangent": tangent_stiffness, "secant": secant_stiffness, "seed": seed_stiffness}
+KINDS = {
+    "approach": approach_stiffness,
+    "tangent": tangent_stiffness,
+    "secant": secant_stiffness,
+    "seed": seed_stiffness,
+}
 
 
 def film_stiffness(solution: SolvedContact, length: float, kind: str) -> float:

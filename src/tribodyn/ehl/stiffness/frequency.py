@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, SolvedContact
 from tribodyn.ehl.steady.rescue import solve_problem
-from tribodyn.ehl.stiffness.film_stiffness import InletChange, central_film_slope, inlet_change
+from tribodyn.ehl.stiffness.film_stiffness import InletChange, film_slopes, inlet_change
 from tribodyn.errors import require_between, require_one_of, require_positive
 from tribodyn.types import Array, ComplexArray
 
@@ -60,7 +60,7 @@ def film_compliance(
     unit, rate = _units(solution, length)
     linear = _linearize(_on_coarse_grid(solution), inlet_change(solution))
     central, offset = linear.answer(0.0, None)
-    at_rest = -central_film_slope(solution) / solution.film_unit
+    at_rest = -film_slopes(solution).central / solution.film_unit
     result = np.empty(values.size, dtype=complex)
     for i, frequency in enumerate(values.reshape(-1)):
         film, rigid = linear.answer(2.0 * np.pi * frequency / rate, central)

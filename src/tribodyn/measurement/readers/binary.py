@@ -10,8 +10,13 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.measurement.readers.content import Content, equal_steps, in_seconds, is_time
-from tribodyn.measurement.readers.matlab import from_arrays
+from tribodyn.measurement.readers.content import (
+    Content,
+    equal_steps,
+    from_arrays,
+    in_seconds,
+    is_time,
+)
 from tribodyn.stored import read_dataset
 from tribodyn.types import Array
 

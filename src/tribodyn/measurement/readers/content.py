@@ -1,9 +1,10 @@
-"""What a reader finds in a file, and whether its times are evenly spaced."""
+"""What a reader finds in a file, what its arrays are, and whether times are evenly spaced."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,10 @@ _UNITS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1
           "min": 60.0}  # fmt: skip
 #: Distance of a time from its even place, in steps: rounding of what was written is below it.
 _UNEVEN = 0.3
+
+#: Names of single numbers that tell the sampling rate, or the time between two samples.
+_RATES = {"fs", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "rate"}
+_STEPS = {"dt", "ts", "sample_time", "step"}
 
 
 @dataclass
@@ -65,3 +70,33 @@ def equal_steps(time: Array, path: Any) -> float:
             remedy="Cut the record there, or fill the gap by interpolation",
         )
     return float(1.0 / step)
+
+
+def from_arrays(named: dict[str, Any], path: Path, units: dict[str, str] | None = None) -> Content:
+    """Channels, times and rate among arrays with names."""
+    channels: dict[str, Array] = {}
+    rates: list[float] = []
+    time: Array | None = None
+    for name, value in named.items():
+        array, last = np.asarray(value), name.rsplit(".", 1)[-1].rsplit("/", 1)[-1].lower()
+        if array.dtype.kind not in "biuf":
+            continue
+        array = array.astype(float).squeeze()
+        if array.ndim == 0:
+            rates += [float(array)] if last in _RATES else [1.0 / float(array)] * (last in _STEPS)
+        elif array.ndim == 1 and is_time(last):
+            time = array
+        elif array.ndim == 1:
+            channels[name] = array
+        elif array.ndim == 2:
+            tall = array if array.shape[0] >= array.shape[1] else array.T
+            channels |= {f"{name} {1 + n}": column for n, column in enumerate(tall.T)}
+    if not channels:
+        raise InputError(
+            "holds no vector of numbers",
+            where=str(path),
+            why=f"It holds {', '.join(map(str, named)) or 'nothing'}",
+            remedy="Save each channel as a vector, and the rate as fs",
+        )
+    each = dict.fromkeys(channels, rates[0]) if rates and rates[0] > 0.0 else {}
+    return Content(channels, units or {}, each, time)

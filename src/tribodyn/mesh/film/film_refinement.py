@@ -55,6 +55,12 @@ class Places(NamedTuple):
     peak_drop: Array
     yielding: Mask  #: whether the stiffness of the film is taken from here too
     solution: Solutions  #: of each of them
+    distance: Array  #: logarithm of the distance that the film keeps, over the scale of films
+
+    @property
+    def yielding_ones(self) -> Places:
+        """Those from which the stiffness of the film is taken."""
+        return Places(**{n: getattr(self, n)[..., self.yielding] for n in self._fields})
 
     def joined(self, others: Places) -> Places:
         """Both together."""
@@ -90,7 +96,8 @@ def places_of(
     nodes = node.astype(np.int64)
     radius, speed, found = pairs.equivalent_radius, pairs.entrainment_speed, np.stack(values)
     where = pairs.age, zone, radius, speed, load
-    return Places(*where, found, nodes, drop, yielding, solution)
+    distance = np.log(np.asarray(films.film_distance) / scales["central_film"])
+    return Places(*where, found, nodes, drop, yielding, solution, distance)
 
 
 def _peak(pressure: Array) -> tuple[int, float]:

@@ -9,7 +9,7 @@ formula follows every change of load, radius and speed.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Protocol
 
 import numpy as np
@@ -68,6 +68,10 @@ class FilmAt(Protocol):
         """Films under these loads."""
 
     @property
+    def keeps_distance(self) -> bool:
+        """Whether each film is a spring about the distance that it keeps between the flanks."""
+
+    @property
     def rigid_share(self) -> float:
         """Part of the contacts whose film does not fall with the load."""
 
@@ -92,6 +96,7 @@ class FormulaFilm:
     pairs: PairsInContact
     least_load: float  #: load for which the film of a pair is found at least [N/m]
 
+    keeps_distance = False
     rigid_share = 0.0
     doubtful = np.zeros((len(QUANTITIES), 1), dtype=bool)
 
@@ -165,7 +170,7 @@ class PathFilm:
             factors=np.exp(values[:STIFFNESS]),
             yielding=values[STIFFNESS],
             doubtful=refinement.doubtful,
-            scored=loads.scored,
+            loads=loads,
         )
 
     def _solve_more(self, loads: PathLoads, contacts: Index) -> Places:
@@ -192,7 +197,30 @@ class SolvedPath:
     factors: Array
     yielding: Array  #: compliance of their films over its scale
     doubtful: Mask  #: quantities (4, contacts) that may be further from a solution than promised
-    scored: Mask  #: contacts that carry enough for a film of their own
+    loads: PathLoads  #: loads that the films were solved for
+
+    @property
+    def scored(self) -> Mask:
+        """Contacts that carry enough for a film of their own."""
+        return self.loads.scored
+
+    @property
+    def keeps_distance(self) -> bool:
+        """Whether each film is a spring about the distance that it keeps between the flanks."""
+        return bool(self.path.settings.film["stiffness"] == "approach")
+
+    @cached_property
+    def _distance(self) -> tuple[Array, Array]:
+        """Distance under the solved loads, and the power of the load by which it falls."""
+        path, zones, places = self.path, self.path.zone, self.places.yielding_ones
+        factors = np.empty(zones.size)
+        for zone in range(len(path.places.counts)):
+            here, curve = zones == zone, path.memory.curves.get((zone, STIFFNESS), False)
+            known, age = places.distance[places.zone == zone], path.pairs.age[here]
+            factors[here] = joined_over_age(path.places, places, known, age, zone, curve=curve)
+        factors = np.exp(factors)
+        film = path.pairs.scales(self.loads.of_contacts)["central_film"]
+        return film * factors, np.clip(self.yielding / factors, RIGID, 1.0)
 
     @property
     def rigid_share(self) -> float:
@@ -203,8 +231,13 @@ class SolvedPath:
         """Films of all contacts of the mesh table."""
         *scales, stiffness = self.path.pairs.scales(load_per_width).values()
         central, minimum, pressure = np.stack(scales) * self.factors
-        film_stiffness = stiffness / np.maximum(self.yielding, RIGID)
-        return Films(central, minimum, pressure, film_stiffness)
+        if not self.keeps_distance:
+            film_stiffness = stiffness / np.maximum(self.yielding, RIGID)
+            return Films(central, minimum, pressure, film_stiffness)
+        solved, power = self._distance
+        distance = solved * (load_per_width / self.loads.of_contacts) ** -power
+        film_stiffness = self.path.pairs.common_face_width * load_per_width / (power * distance)
+        return Films(central, minimum, pressure, film_stiffness, film_distance=distance)
 
     def warn_of_doubt(self) -> None:
         """Say at how many contacts which quantities are not told."""

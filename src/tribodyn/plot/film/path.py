@@ -47,8 +47,6 @@ _TEETH: Rows = (("tooth_stiffness", "teeth", PAIR_COLORS[0], "dash"),)
 _BOTH: Rows = (("stiffness", "teeth and film", TOTAL, "solid"),)
 #: The quantity of a column that is called differently.
 _QUANTITIES = {"stiffness": "pair_stiffness"}
-#: Kinds of film stiffness that are in series with the teeth.
-_SPRINGS = ("tangent", "secant")
 #: Axes that begin at zero, and that mark their zero.
 _FROM_ZERO, _ZERO = {"rangemode": "tozero"}, {"zeroline": True}
 _LOGARITHMIC = {"type": "log", "dtick": 1}
@@ -228,15 +226,21 @@ def film_pressure(mesh: MeshTable) -> Any:
     )
 
 
+def _in_series(mesh: MeshTable) -> bool:
+    from tribodyn.mesh.sharing import IN_SERIES
+
+    return mesh.film_stiffness_kind in IN_SERIES
+
+
 def _stiffness_caption(mesh: MeshTable) -> str:
     kind = mesh.film_stiffness_kind
-    if kind not in _SPRINGS:
+    if not _in_series(mesh):
         sum_of_source = "The film stiffness is the sum as one source prints it. "
         return (
             "Stiffness of the oil film of one tooth pair and of its teeth, on a logarithmic scale. "
             + (sum_of_source if kind == "seed" else "")
             + "In this case the film does not yield: the mesh has the stiffness of the teeth "
-            'alone. Choose film.stiffness = "tangent" to put both in series.'
+            'alone. Choose film.stiffness = "approach" to put both in series.'
         )
     return (
         f"Stiffness of the oil film of one tooth pair ({kind}) and of its teeth, on a logarithmic "
@@ -264,7 +268,7 @@ def film_stiffness(mesh: MeshTable) -> Any:
     path = Path(mesh)
     label = axis_label("film_stiffness", "Stiffness")
     panels = [Panel(label, path.curves((*_OIL, *_TEETH)), _LOGARITHMIC)]
-    if mesh.film_stiffness_kind in _SPRINGS:
+    if _in_series(mesh):
         panels.append(Panel(axis_label("pair_stiffness"), path.curves((*_TEETH, *_BOTH))))
     oil, teeth = path.life("film_stiffness"), path.life("tooth_stiffness")
     # Relieved flanks leave a pair without load where it comes in and where it leaves.

@@ -250,18 +250,25 @@ class ContactProblem:
     gaps: Array
     widths: Array
 
-    def with_film(self, film_stiffness: Array) -> ContactProblem:
+    def with_film(self, film_stiffness: Array, lead: Array | None = None) -> ContactProblem:
         """Put an oil film in series with each pair.
 
         Parameters
         ----------
         film_stiffness : array (p, n) [N/m]
             Stiffness of the film of each pair over the whole face width; infinite without film.
+        lead : array (p, n) [m], optional
+            Distance before its flanks meet at which the film of each pair begins to carry. The
+            approach is then counted from where the first film of all phases does.
         """
         structure = self.compliance.structure.copy()
         pairs = np.arange(structure.shape[1])
         structure[:, pairs, pairs] += self.widths.sum() / film_stiffness
-        return replace(self, compliance=replace(self.compliance, structure=structure))
+        gaps = self.gaps
+        if lead is not None:
+            gaps = gaps - lead[:, None]
+            gaps += self.gaps.min() - gaps.min()
+        return replace(self, compliance=replace(self.compliance, structure=structure), gaps=gaps)
 
     @property
     def least_gap(self) -> Array:

@@ -305,7 +305,7 @@ def _film(given: Given, model: FilmModel, faulty: set[str]) -> Found:
     """Check the options of the film model."""
     key, name = "film.stiffness", model.name
     if key in given and given[key] not in model.stiffness_kinds:
-        why = f"It has: {', '.join(model.stiffness_kinds)}"
+        why = model.why_not(given[key])
         remedy = 'Choose one of these, or model = "newton", which has all'
         what = f'{given.show(key)} does not belong to model = "{name}"'
         yield key, Problem(what, "", why, remedy)

@@ -123,8 +123,9 @@ class Film(Section):
 
     @property
     def stiffness(self) -> str:
-        """Stiffness of the film in the mesh; ``"none"`` where nothing else was chosen."""
-        return vars(self).get("stiffness") or "none"
+        """Stiffness of the film in the mesh; that of the film model where nothing was chosen."""
+        model = self.chosen
+        return vars(self).get("stiffness") or (str(model.options["stiffness"]) if model else "none")
 
 
 class Stiffness(Section):

@@ -178,8 +178,8 @@ def comprehensive_stiffness(
     speed : float, str or list, optional
         Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
     kind : str, optional
-        ``"tangent"``, ``"secant"`` or ``"seed"``; by default ``film.stiffness`` of the case, or
-        ``"tangent"`` where that is ``"none"``.
+        ``"approach"``, ``"tangent"``, ``"secant"`` or ``"seed"``; by default ``film.stiffness`` of
+        the case. Where that is ``"none"``, the first of these that the film model has.
     steps : int
         Phase intervals of a mesh cycle.
     progress : Progress
@@ -205,17 +205,18 @@ def comprehensive_stiffness(
     >>> bool(found.mean_mesh_stiffness[0, 0] < found.mean_mesh_stiffness[1, 0])
     True
     """
+    from tribodyn.ehl import FILM_MODELS
     from tribodyn.mesh import comprehensive_stiffness as compute
 
     settings = model_settings(case)
     settings.pop("composite_roughness")
-    asked = settings["film_options"].get("stiffness", "none")
+    kinds = [case.film.stiffness, *FILM_MODELS[case.film.model].stiffness_kinds]
     with placed(case):
         return compute(
             case.gear_pair,
             pinion_torque=pinion_torques(case, torque),
             pinion_speed=pinion_speeds(case, speed),
-            kind=kind or ("tangent" if asked == "none" else asked),
+            kind=kind or next((each for each in kinds if each != "none"), "none"),
             steps=steps,
             progress=progress,
             **settings,
