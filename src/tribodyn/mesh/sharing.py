@@ -220,7 +220,7 @@ class SpringTeeth(Teeth):
             each[touch] = 1.0 / (1.0 / self.stiffness[touch] + 1.0 / film.stiffness[touch])
         gap = problem.gaps[:, 0, 1:-1] if self._extended else problem.gaps[:, 0]
         carries, total = self.in_contact, np.ravel(self.force)
-        while True:
+        for _ in range(each.shape[1] + 1):  # each time a pair less carries, and one always does
             springs = np.where(carries, each, 0.0)
             deflection = (total + (springs * gap).sum(axis=1)) / springs.sum(axis=1)
             force = springs * (deflection[:, None] - gap)
