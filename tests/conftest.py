@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import signal
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,6 +16,9 @@ def pytest_configure() -> None:
     """Share one folder among all workers."""
     folder = Path(tempfile.gettempdir()) / "tribodyn-tests"
     os.environ.setdefault("TRIBODYN_CACHE_DIR", str(folder))
+    # A job in the background of a shell may begin with Ctrl-C ignored, and so would all it starts.
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
