@@ -111,6 +111,7 @@ def drawable() -> Any:
         case = load_case("fzg-roughness").replace({"gears.driver": driver, **(changes or {})})
         mesh = mesh_of(case, film_model)
         return Result(
+            coupling=None,
             case=case,
             mesh=mesh,
             response=response_of(mesh, names, periods=periods, steady=steady),
