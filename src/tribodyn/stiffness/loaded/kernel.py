@@ -330,7 +330,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
 
     kernels = solve_loads, solve_deflections, pickups
     names = (f"the {what} of tooth pairs" for what in ("loads", "forces", "first touch"))
-    loads, forces, touch = map(announced, kernels, names, ["some seconds"] * 3)
+    loads, forces, touch = map(announced, kernels, names, ["ten seconds"] * 3)
     return loads, forces, touch
 
 
