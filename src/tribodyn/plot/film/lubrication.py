@@ -140,10 +140,10 @@ def _bands(low: float, high: float) -> list[dict[str, Any]]:
 
 
 def _names(low: float, high: float) -> list[dict[str, Any]]:
-    """Name the regimes beside the first panel."""
-    common = {"xref": "paper", "x": 1.01, "xanchor": "left", "yref": "y", "showarrow": False}
+    """Name the regimes at the end of the first panel, where narrow screens show them too."""
+    common = {"xref": "paper", "x": 0.995, "xanchor": "right", "yref": "y", "showarrow": False}
     return [
         {**common, "y": 0.5 * float(np.log10(bottom) + np.log10(top)), "text": name}
-        | {"font": {"size": 12, "color": MUTED}}
+        | {"font": {"size": 12, "color": MUTED}, "bgcolor": "rgba(255, 255, 255, 0.6)"}
         for (bottom, top), name in zip(_edges(low, high), REGIMES, strict=True)
     ]
