@@ -89,6 +89,6 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(tmp_path: Path) 
                           check=True, timeout=600)  # fmt: skip
     assert f"{kept} finished parts" in done.stderr
     again = (tmp_path / "part" / "sweep.csv").read_text().splitlines()[1:]
-    assert again[: len(rows)] == rows
+    assert set(rows) <= set(again)
     assert len(again) == 204
     assert sorted(os.listdir(tmp_path)) == ["part"]

@@ -71,7 +71,7 @@ def torques(count: int) -> list[str]:
 
 
 START = ([1.8], [0.0])
-SLOW = np.linspace(0.1, 0.2, 400)
+SLOW = np.linspace(0.1, 0.2, 20_000)
 
 #: A call of each kind: of a small size, which compiles it, and of one that takes long.
 CALLS: dict[str, tuple[Callable[[int], Any], int, int]] = {
@@ -98,14 +98,14 @@ CALLS: dict[str, tuple[Callable[[int], Any], int, int]] = {
         lambda n: steady_state(reference_system(0.05), MESH_FREQUENCY, steps=n), 512, 2_000_000,
     ),
     "speed sweep": (
-        lambda n: speed_sweep(hysteresis_system(), SLOW[::n], steps=4096), 200, 1,
+        lambda n: speed_sweep(hysteresis_system(), SLOW[::n], steps=4096), 10_000, 1,
     ),
     "continuation": (
         lambda n: continuation(hysteresis_system(), between=(0.1, 0.2), steps=n), 64, 20_000,
     ),
     "bifurcation": (
         lambda n: bifurcation(hysteresis_system(), SLOW[:n], transient=n * 5_000, steps=4096),
-        1, 400,
+        1, 20_000,
     ),
     "basins": (
         lambda n: basins(
