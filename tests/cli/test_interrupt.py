@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import threading
 
 import pytest
 
-from tribodyn.cli.entry import interruptible
+from tribodyn.cli.entry import interruptible, main
 
 
 class _Interrupted:
@@ -79,8 +80,9 @@ def command(arguments):
     signal.raise_signal(signal.SIGINT)
 
 entry._dispatch = command
+del sys.argv[1:]
 sys.settrace(trace)
-entry.main([])
+entry.main()
 """
 
 
@@ -92,3 +94,11 @@ def test_a_second_interruption_leaves_the_documented_code(lines: int) -> None:
     assert "Traceback" not in done.stderr
     assert "interrupted" in done.stderr
     assert done.returncode == 130
+
+
+def test_a_program_that_calls_a_command_listens_to_interruptions_after_it() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(SystemExit) as left:
+        main(["check", "no-such-case"])
+    assert left.value.code == 2
+    assert signal.getsignal(signal.SIGINT) is before

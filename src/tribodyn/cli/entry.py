@@ -127,11 +127,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments : sequence of str, optional
         Words after the program's name; those of the process by default.
     """
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    here = threading.current_thread() is threading.main_thread()
+    before = signal.getsignal(signal.SIGINT)
+    heard = here and before is signal.default_int_handler
+    if heard:
         signal.signal(signal.SIGINT, _ear)
     code = call(sys.argv[1:] if arguments is None else arguments)
-    # All is said: a repeated Ctrl-C no longer meets Python while it ends.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if here and arguments is None:
+        # All is said: a repeated Ctrl-C no longer meets Python while it ends.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    elif heard:
+        # Called by a program, which goes on and listens to Ctrl-C as before.
+        signal.signal(signal.SIGINT, before)
     sys.exit(code)
 
 
