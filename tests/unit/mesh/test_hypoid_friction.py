@@ -89,9 +89,9 @@ def test_friction_takes_power_in_every_cell_and_moments_take_the_same():
 def test_the_film_carries_more_where_it_is_thicker(loaded):
     found = rubbed(loaded)
     order = np.argsort(found.film_ratio, axis=None)
-    assert np.all(np.diff(found.film_load_share.ravel()[order]) >= 0.0)
+    assert np.all(np.diff(found.film_load_share.ravel()[order]) > -1e-12)
     carries = loaded.cell_force > 0.0
-    assert found.film_load_share[carries].max() < 1.0
+    assert 0.0 < found.film_load_share[carries].min() < 0.5
     assert set(np.unique(found.lubrication_regime[carries])) <= {0.0, 1.0, 2.0}
     assert np.all(np.isnan(found.lubrication_regime[~carries]))
     smooth = rubbed(loaded, roughness=0.0)

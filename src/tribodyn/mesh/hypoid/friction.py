@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, fields, replace
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from tribodyn.errors import (
     require_one_of,
     shortened,
 )
-from tribodyn.friction import LAWS, FrictionLaw, FrictionParts, TribologicalContact
+from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS, CellMotion, cell_motion
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wrench
@@ -220,10 +220,21 @@ def hypoid_friction(
     chosen = require_one_of("entrainment", entrainment, ENTRAINMENTS)
     cells, flanks = loaded.cells, loaded.cells.flanks.conjugate
     motion = cell_motion(flanks, cells.touch, cells.curvature, speed, chosen)
-    carry = loaded.line_force > 0.0
-    film = _film(loaded, motion, carry, lubricant, film_model)
-    contact = _contact(loaded, motion, carry, film, lubricant, roughness)
-    coefficient, share = _told(contact, LAWS[friction_law], friction_options)
+    law = LAWS[friction_law]
+
+    def rubbed(which: Mask) -> tuple[TribologicalContact, Array, Array]:
+        film = _film(loaded, motion, which, lubricant, film_model)
+        contact = _contact(loaded, motion, which, film, lubricant, roughness)
+        told = law.told(contact, friction_options)
+        if isinstance(told, FrictionParts):
+            return contact, told.coefficient, told.film_load_share
+        return contact, told, np.ones(told.shape)
+
+    width = loaded.line_force / cells.length
+    rubbed(width >= _TOLD * width.max())  # for what film and law have to say of them
+    carry = width > 0.0
+    with quiet():
+        contact, coefficient, share = rubbed(carry)
 
     def spread(values: Array, empty: float = 0.0) -> Array:
         whole = np.full(carry.shape, empty)
@@ -243,7 +254,7 @@ def hypoid_friction(
         sliding_speed=cells.spread(motion.sliding_speed),
         entrainment_speed=cells.spread(motion.entrainment_speed),
         equivalent_radius=cells.spread(motion.equivalent_radius),
-        minimum_film=spread(film),
+        minimum_film=spread(contact.known("film_thickness")),
         film_ratio=spread(contact.film_ratio, np.inf),
         friction_coefficient=spread(coefficient),
         film_load_share=spread(share, 1.0),
@@ -311,21 +322,3 @@ def _contact(
         oil_density=oil.density,
         film_thickness=film,
     )
-
-
-def _told(
-    contact: TribologicalContact, law: FrictionLaw, options: Mapping[str, Any]
-) -> tuple[Array, Array]:
-    """Coefficients and film load shares; warnings are those of the cells that matter."""
-    heavy = contact.load_per_width >= _TOLD * contact.load_per_width.max()
-    arrays = {
-        each.name: value[heavy]
-        for each in fields(contact)
-        if isinstance(value := getattr(contact, each.name), np.ndarray)
-    }
-    law.told(replace(contact, **arrays), options)
-    with quiet():
-        told = law.told(contact, options)
-    if isinstance(told, FrictionParts):
-        return told.coefficient, told.film_load_share
-    return told, np.ones(told.shape)
