@@ -15,7 +15,13 @@
 
 from __future__ import annotations
 
-from tribodyn.friction.base import LAWS, FrictionLaw, FrictionParts, TribologicalContact
+from tribodyn.friction.base import (
+    LAWS,
+    STEEL_BODIES,
+    FrictionLaw,
+    FrictionParts,
+    TribologicalContact,
+)
 from tribodyn.friction.benedict_kelly import benedict_kelly
 from tribodyn.friction.constant import constant, none
 from tribodyn.friction.drozdov import drozdov
@@ -36,6 +42,7 @@ from tribodyn.friction.xu import xu_2007
 
 __all__ = [
     "LAWS",
+    "STEEL_BODIES",
     "FrictionLaw",
     "FrictionParts",
     "PitchPoint",

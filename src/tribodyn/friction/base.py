@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
 from tribodyn.errors import InputError, Problem, require_between, require_positive
 from tribodyn.model import Model, Registry
 from tribodyn.types import Array
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from tribodyn.ehl.traction.film_state import FilmState
     from tribodyn.friction.mesh_means.pitch_point import PitchPoint
 
+
+#: Thermal contact coefficients of two bodies of gear steel [J/(m^2 K s^0.5)].
+STEEL_BODIES = (STEEL_THERMAL_CONTACT_COEFFICIENT, STEEL_THERMAL_CONTACT_COEFFICIENT)
 
 _POSITIVE = (
     ("load_per_width", "N/m"),
@@ -61,6 +65,8 @@ class TribologicalContact:
         The mesh at its pitch point, for laws of one mean value.
     central_film : array, optional [m]
         Film in the centre of each contact, where it is known.
+    bodies : (float, float) [J/(m^2 K s^0.5)]
+        ``sqrt(k rho c)`` of both bodies; gear steel by default.
 
     Raises
     ------
@@ -91,6 +97,7 @@ class TribologicalContact:
     film_thickness: Array | None = field(default=None, repr=False)
     pitch: PitchPoint | None = field(default=None, repr=False)
     central_film: Array | None = field(default=None, repr=False)
+    bodies: tuple[float, float] = field(default=STEEL_BODIES, repr=False)
 
     def __post_init__(self) -> None:
         """Refuse contacts without load, mixed shapes and contradicting speeds."""
@@ -116,6 +123,7 @@ class TribologicalContact:
         require_between("composite_roughness", self.composite_roughness, 0.0, np.inf, "m")
         if self.oil_density is not None:
             require_positive("oil_density", self.oil_density, "kg/m^3")
+        require_positive("bodies", self.bodies, "J/(m^2 K s^0.5)")
         for name in films:
             require_between(name, getattr(self, name), 0.0, np.inf, "m")
         self._require_consistent_sliding()

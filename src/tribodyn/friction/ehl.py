@@ -52,7 +52,8 @@ def ehl(
     inlet_heating : bool
         Thin the film by the heat made in the inlet.
     flash_temperature : bool
-        Take the viscosity at the mean temperature of the film, between bodies of steel.
+        Take the viscosity at the mean temperature of the film, between the ``bodies`` of the
+        contact.
     rolling : bool
         Add the rolling traction, so that the coefficient is that on the faster surface.
     **oil : float
@@ -125,15 +126,16 @@ def _film_factor(contact: TribologicalContact, film: FilmState) -> Array:
 def _temperature_rise(contact: TribologicalContact, shear: FilmShear, speed: Array) -> Array:
     """Mean rise of the film temperature in each contact."""
     film = shear.film
-    entrainment = np.ravel(contact.entrainment_speed)
+    entrainment, half = np.ravel(contact.entrainment_speed), 0.5 * np.ravel(contact.sliding_speed)
     half_width = 2.0 * np.ravel(contact.load_per_width / contact.hertz_pressure) / np.pi
     thickness = film.central_film[film.contacts]
     resistance = film_thermal_resistance(
         half_width,
         thickness if shear.film_factor is None else thickness * shear.film_factor,
-        entrainment + 0.5 * speed,
-        entrainment - 0.5 * speed,
+        entrainment + half,
+        entrainment - half,
         thermal_oil(film.lubricant).thermal_conductivity,
+        contact.bodies,
     )
 
     def heat(rise: Array) -> tuple[Array, Array]:
@@ -165,9 +167,7 @@ def _warn_of_solid(coefficient: Array, shear_model: str) -> None:
 #: Numbers of single shear models; those not given are the model's own.
 _OWN = {
     name: replace(
-        option,
-        default=None,
-        basis=f"the shear model, {option.show(option.default)} where it has one",
+        option, default=None, origin=f"{option.show(option.default)} if not given; {option.origin}"
     )
     for name, option in {**LIMIT, **THINNING}.items()
 }

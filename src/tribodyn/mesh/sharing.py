@@ -18,6 +18,7 @@ import numpy as np
 from tribodyn.contact import PathOfContact
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import require_between, warn
+from tribodyn.friction.base import STEEL_BODIES
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
@@ -43,6 +44,7 @@ class ToothContact:
     film_options: Mapping[str, Any] = field(default_factory=dict)
     friction_law: str = "none"
     friction_options: Mapping[str, Any] = field(default_factory=dict)
+    bodies: tuple[float, float] = STEEL_BODIES  #: sqrt(k rho c) of pinion and wheel
 
     def __post_init__(self) -> None:
         require_between(

@@ -149,6 +149,27 @@ def test_film_temperature_balances_the_heat_of_the_friction():
     assert 5.0 < oil < 60.0
 
 
+def test_each_body_takes_up_heat_by_its_own_properties():
+    # sqrt(k rho c) of steel 47 W/m/K, 7800 kg/m^3, 460 J/kg/K, and of a polyamide
+    bodies = (np.sqrt(47.0 * 7800.0 * 460.0), np.sqrt(0.25 * 1140.0 * 1700.0))
+    steel = ehl(contact((1.5,), entrainment=3.0), flash_temperature=True)[0]
+    here = contact((1.5,), entrainment=3.0, bodies=bodies)
+    coefficient = ehl(here, flash_temperature=True)[0]
+    heat = coefficient * LOAD * 1.5
+    surface = blok_flash_temperature(heat, HALF_WIDTH, 3.75, 2.25, *bodies, kind="mean")
+    oil = heat / (2.0 * HALF_WIDTH) * 1e-6 / (12.0 * 0.13)
+    traction = film_traction(here.film, 1.5, temperature_rise=surface + oil)
+    assert traction.sliding[0] / LOAD == pytest.approx(coefficient, rel=1e-7)
+    assert coefficient < 0.95 * steel
+    # the slower body is the polymer: with the roles of both exchanged it is hotter or cooler
+    back = contact((-1.5,), entrainment=3.0, bodies=bodies[::-1])
+    assert ehl(back, flash_temperature=True)[0] == pytest.approx(coefficient, rel=1e-12)
+    other = contact((1.5,), entrainment=3.0, bodies=bodies[::-1])
+    assert ehl(other, flash_temperature=True)[0] != pytest.approx(coefficient, rel=1e-3)
+    with pytest.raises(InputError, match="bodies"):
+        contact((1.5,), bodies=(0.0, 1.0))
+
+
 def test_heated_inlet_thins_the_film():
     here = contact((0.5,))
     factor = inlet_heating_factor(2.0, 0.25, PRESSURE, 0.082, 0.0533, 0.13, MODULUS)

@@ -204,6 +204,7 @@ def film_thermal_resistance(
     surface_speed_1: Array,
     surface_speed_2: Array,
     thermal_conductivity: float,
+    bodies: tuple[float, float] = (STEEL_THERMAL_CONTACT_COEFFICIENT,) * 2,
 ) -> Array:
     """Mean rise of the film temperature per heat made in it.
 
@@ -218,9 +219,11 @@ def film_thermal_resistance(
     film_thickness : array [m]
         Film in the contact.
     surface_speed_1, surface_speed_2 : array [m/s]
-        Speeds of the surfaces relative to the contact, of steel bodies.
+        Speeds of the surfaces relative to the contact.
     thermal_conductivity : float [W/m/K]
         Thermal conductivity of the oil.
+    bodies : (float, float) [J/(m^2 K s^0.5)]
+        ``sqrt(k rho c)`` of each body; gear steel by default.
 
     Returns
     -------
@@ -238,7 +241,12 @@ def film_thermal_resistance(
     [36.4]
     """
     flash = blok_flash_temperature(
-        np.ones(np.shape(half_width)), half_width, surface_speed_1, surface_speed_2, kind="mean"
+        np.ones(np.shape(half_width)),
+        half_width,
+        surface_speed_1,
+        surface_speed_2,
+        *bodies,
+        kind="mean",
     )
     across = film_thickness / (12.0 * thermal_conductivity * 2.0 * half_width)
     return np.asarray(flash + across)

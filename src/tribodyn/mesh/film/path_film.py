@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from itertools import product
 from typing import Protocol
 
 import numpy as np
@@ -317,11 +318,18 @@ def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact
     path, places = solved.path, solved.places
     columns: list[Array] = [np.zeros(path.zone.size) for _ in range(3)]
     shared = False
-    for zone in range(len(path.places.counts)):
-        here = path.zone == zone
+    # Which body is the faster one matters where one takes up more heat than the other.
+    first, second = settings.bodies
+    for zone, sign in product(
+        range(len(path.places.counts)), (0.0,) if first == second else (1, -1)
+    ):
+        here = (path.zone == zone) & (motion.sliding_speed * sign >= 0.0)
+        if not np.any(here):
+            continue
         sliding = np.abs(motion.sliding_speed[here])
         speeds = _speeds(sliding)
-        told = _asked(solved, settings, np.flatnonzero(places.zone == zone), speeds)
+        chosen = np.flatnonzero(places.zone == zone)
+        told = _asked(solved, settings, chosen, speeds, np.copysign(1.0, sign))
         over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
         curve = path.memory.curves.get((zone, PRESSURE), False)
         shared = isinstance(told, FrictionParts)
@@ -351,13 +359,15 @@ def _speeds(sliding: Array) -> Array:
     return np.asarray(_SLOW * np.sinh(inner))
 
 
-def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array) -> Friction:
-    """Friction of some of the solved places, each with all speeds in turn."""
+def _asked(
+    solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array, sign: float
+) -> Friction:
+    """Friction of some of the solved places, each with all speeds of one sign in turn."""
     places = solved.places
     index, speed = np.repeat(chosen, speeds.size), np.tile(speeds, chosen.size)
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
     entrainment = places.entrainment_speed[index]
-    speed = np.minimum(speed, _MOST_SLIDING * entrainment)
+    speed = sign * np.minimum(speed, _MOST_SLIDING * entrainment)
     pairs = solved.path.pairs
     contact = TribologicalContact(
         load_per_width=load,
@@ -369,5 +379,6 @@ def _asked(solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Ar
         dynamic_viscosity=pairs.lubricant.dynamic_viscosity,
         composite_roughness=settings.composite_roughness,
         film=FilmState.from_solutions(list(places.solution), index),
+        bodies=settings.bodies,
     )
     return LAWS[settings.friction_law].told(contact, settings.friction_options)

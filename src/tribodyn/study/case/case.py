@@ -215,6 +215,16 @@ class Case(Section, whole=True):
         """Material of both gears."""
         return derive.material(self.material)
 
+    def density(self, gear: str) -> float:
+        """Density of the pinion or the wheel [kg/m^3]: its own, or that of the material."""
+        own = getattr(self.gears, gear).density
+        return float(self.material.density if own is None else own)
+
+    @property
+    def thermal_contact_coefficients(self) -> tuple[float, float]:
+        """``sqrt(k rho c)`` of pinion and wheel [J/(m^2 K s^0.5)]; gear steel if not given."""
+        return derive.thermal_contact_coefficients(self)
+
     @cached_property
     def lubricant_properties(self) -> Lubricant | None:
         """The oil at its working temperature; None if the case has none."""

@@ -63,6 +63,20 @@ def _roughness(given: Given) -> Found:
         yield absent, Problem(what, "", why, "Add it, or give composite_roughness in [gears]")
 
 
+def _bodies(given: Given) -> Found:
+    """Conductivity and specific heat of a gear tell only together how its flank warms."""
+    for gear in ("pinion", "wheel"):
+        keys = [f"gears.{gear}.{name}" for name in ("thermal_conductivity", "specific_heat")]
+        present = [key for key in keys if key in given]
+        if len(present) == 1:
+            absent = next(key for key in keys if key not in given)
+            name = absent.rpartition(".")[2]
+            why = f"{given.show(present[0])} of the {gear} needs its counterpart"
+            example = {"specific_heat": "460 J/kg/K", "thermal_conductivity": "47 W/m/K"}[name]
+            remedy = f'Add {name} = "{example}", that of steel, or remove both'
+            yield absent, Problem(f"{name} of the {gear} is missing", "", why, remedy)
+
+
 def _mesh_table(given: Given) -> Found:
     """What a mesh table of another program needs, and what it cannot have."""
     if given.get("gears.kind", "spur") != "table":
@@ -403,7 +417,7 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _mesh_table, _roughness, _face_width, _size, _lubricant, _dampings,
+    _mesh_table, _roughness, _bodies, _face_width, _size, _lubricant, _dampings,
     _friction_load, _solver, _coupling,
 )  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -136,6 +137,20 @@ def material(data: MaterialData) -> Material:
     from tribodyn.gear import Material
 
     return Material(data.youngs_modulus, data.poissons_ratio, data.density)
+
+
+def thermal_contact_coefficients(case: Case) -> tuple[float, float]:
+    """How much heat each flank takes up, ``sqrt(k rho c)``."""
+    from tribodyn.friction import STEEL_BODIES
+
+    def coefficient(name: str, gear: Gear, steel: float) -> float:
+        if gear.thermal_conductivity is None or gear.specific_heat is None:
+            return steel
+        return math.sqrt(gear.thermal_conductivity * case.density(name) * gear.specific_heat)
+
+    steel, other = STEEL_BODIES
+    gears = case.gears
+    return coefficient("pinion", gears.pinion, steel), coefficient("wheel", gears.wheel, other)
 
 
 @lru_cache(maxsize=64)

@@ -112,6 +112,26 @@ class Gear(Section):
     roughness_ra: float | None = number(
         None, 0.0, 16e-6, "ground to milled flanks; " + _GUARD, of="roughness_ra"
     )
+    density: float | None = number(
+        None,
+        500.0,
+        25000.0,
+        "from polymers to tungsten",
+        of="density",
+        meaning="density of this gear, if not that of [material]",
+    )
+    thermal_conductivity: float | None = number(
+        None,
+        0.05,
+        1000.0,
+        "polymers have 0.2, copper 400 W/m/K",
+        of="thermal_conductivity",
+        meaning="thermal conductivity of the gear; steel if not given",
+        example='"47 W/m/K"',
+    )
+    specific_heat: float | None = number(
+        None, 100.0, 5000.0, _GUARD, of="specific_heat", example='"460 J/kg/K"'
+    )
     modification: Modification | None = inner_table(
         Modification, "what the loaded flanks have that the involute has not", "none"
     )

@@ -202,7 +202,14 @@ _MASSES = tuple(
 
 def body(gear: str) -> tuple[str, ...]:
     """Keys that make the body of a gear."""
-    own = ("teeth", "profile_shift_coefficient", "face_width", "tip_diameter", "bore_diameter")
+    own = (
+        "teeth",
+        "profile_shift_coefficient",
+        "face_width",
+        "tip_diameter",
+        "bore_diameter",
+        "density",
+    )
     return (*_PROFILE, *(f"gears.{gear}.{name}" for name in own), "material.density")
 
 
@@ -428,7 +435,7 @@ def derived_values(case: Case) -> dict[str, float]:
 
     pair, values = case.gear_pair, {}
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        solid = mass_properties(gear, case.material.density)
+        solid = mass_properties(gear, case.density(name))
         values[f"gears.{name}.face_width"] = gear.face_width
         values[f"gears.{name}.tip_diameter"] = gear.tip_diameter
         values[f"gears.{name}.mass"] = solid.mass

@@ -50,7 +50,7 @@ def geometry(case: Case) -> dict[str, float]:
     for place, angle in path_of_contact(pair).roll_angles.items():
         values[f"roll_angle_{place}"] = angle
     gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
-    bodies = {name: _body(case, gear) for name, gear in gears}
+    bodies = {name: _body(case, name, gear) for name, gear in gears}
     for key in bodies["pinion"]:
         for name, body in bodies.items():
             values[f"{key}_{name}"] = body[key]
@@ -69,10 +69,10 @@ def _of_mesh_table(case: Case, table: TableFile) -> dict[str, float]:
     return {name: float(value) for name, value in values.items()}
 
 
-def _body(case: Case, gear: SpurGear) -> dict[str, float]:
+def _body(case: Case, name: str, gear: SpurGear) -> dict[str, float]:
     from tribodyn.gear import mass_properties
 
-    solid = mass_properties(gear, case.material.density)
+    solid = mass_properties(gear, case.density(name))
     return {
         "reference_diameter": 2.0 * gear.reference_radius,
         "base_radius": gear.base_radius,

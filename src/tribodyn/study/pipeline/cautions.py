@@ -75,12 +75,12 @@ def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
         )
 
 
-def _solid(case: Case, gear: SpurGear) -> MassProperties:
+def _solid(case: Case, name: str, gear: SpurGear) -> MassProperties:
     from tribodyn.gear import mass_properties
 
     with collected():  # What is odd about the shape has been said.
         bare = replace(gear, mass=None, moment_of_inertia=None)
-    return mass_properties(bare, case.material.density)
+    return mass_properties(bare, case.density(name))
 
 
 def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
@@ -91,7 +91,7 @@ def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]
         full, given = f"gears.{name}.{key}", getattr(gear, key)
         if not shape or given is None or base.get(full) is None or full in changed:
             continue
-        own = getattr(_solid(case, gear), key)
+        own = getattr(_solid(case, name, gear), key)
         yield ModelWarning(
             "mass-of-other-gear",
             f"{name}: {key} = {given * factor:.4g} {unit} is that of the gear before "
@@ -102,7 +102,7 @@ def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]
 
 def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Compare given inertias with those of the solid: a wrong unit is far off."""
-    solid = _solid(case, gear)
+    solid = _solid(case, name, gear)
     for key, unit, factor in _INERTIAS:
         given, own = getattr(gear, key), getattr(solid, key)
         most = _OF_SOURCE if _is_stated(case, name, key) else _UNLIKELY

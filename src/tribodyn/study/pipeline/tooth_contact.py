@@ -48,6 +48,7 @@ def contact_settings(case: Case) -> ToothContact:
     return ToothContact(
         friction_law=case.friction.law,
         friction_options=chosen_options(case, "friction"),
+        bodies=case.thermal_contact_coefficients,
         **model_settings(case),
     )
 
