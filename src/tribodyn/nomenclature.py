@@ -84,6 +84,8 @@ temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per
 eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear | "5 MPa"
 limiting_stress | tau_L0 | Pa | MPa | limiting shear stress of the oil at ambient pressure | "2 MPa"
 limiting_stress_slope | Lambda | | | rise of the limiting shear stress of the oil per pressure | 0.05
+heat_transfer | hA | W/K | W/K | heat that surroundings take up per kelvin that gears and oil are warmer | "15 W/K"
+ambient_temperature | T_amb | K | degC | temperature of the surroundings | "20 degC"
 specific_heat | c | J/kg/K | J/kg/K | heat that warms a kilogram by one kelvin | "460 J/kg/K"
 carreau_stress | G | Pa | MPa | shear stress from which the oil thins after Carreau | "5 MPa"
 carreau_exponent | n | | | exponent of the shear stress over a high shear rate after Carreau | 0.5

@@ -17,7 +17,7 @@ from tribodyn.lubricant.agma_925 import BASE_OILS, agma_925_coefficient
 from tribodyn.lubricant.astm_d341 import walther_slope, walther_viscosity
 from tribodyn.lubricant.barus import barus_viscosity
 from tribodyn.lubricant.density import density_at_temperature, dowson_higginson_density
-from tribodyn.lubricant.library import from_library, library
+from tribodyn.lubricant.library import from_library, library, temperature_range
 from tribodyn.lubricant.oil import VISCOSITY_LAWS, Lubricant
 from tribodyn.lubricant.roelands import ROELANDS_PRESSURE, roelands_index, roelands_viscosity
 
@@ -34,6 +34,7 @@ __all__ = [
     "library",
     "roelands_index",
     "roelands_viscosity",
+    "temperature_range",
     "walther_slope",
     "walther_viscosity",
 ]

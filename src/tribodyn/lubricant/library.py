@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import Any
 
 from tribodyn.errors import Argument, InputError
+from tribodyn.lubricant.astm_d341 import MARGIN
 from tribodyn.lubricant.oil import Lubricant
 from tribodyn.model import Registry
 
@@ -70,6 +71,37 @@ def from_library(name: str, temperature: float | None = None) -> Lubricant:
     if "kinematic_viscosity" in record:
         return _at_temperature(name, record, temperature)
     return _as_known(name, record, temperature)
+
+
+def temperature_range(name: str) -> tuple[float, float]:
+    """Temperatures between which an oil of the library is known [K].
+
+    Parameters
+    ----------
+    name : str
+        Name of the oil.
+
+    Returns
+    -------
+    (float, float)
+        Both the same for an oil that is known at one temperature.
+
+    Raises
+    ------
+    InputError
+        If there is no such oil.
+
+    Examples
+    --------
+    >>> temperature_range("ISO VG 100")
+    (283.15, 403.15)
+    """
+    record = _records()[name]
+    if "kinematic_viscosity" not in record:
+        known = float(record["temperature"]["value"])
+        return known, known
+    cold, warm = (float(point["temperature"]) for point in record["kinematic_viscosity"])
+    return cold - MARGIN, warm + MARGIN
 
 
 def _common(name: str, record: dict[str, Any]) -> dict[str, Any]:

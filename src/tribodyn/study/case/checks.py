@@ -135,6 +135,7 @@ def _lubricant(given: Given) -> Found:
     if "lubricant" not in given:
         return
     present = [name for name in (*_PROPERTIES, *_THERMAL) if f"lubricant.{name}" in given]
+    yield from _heat(given)
     if "lubricant.name" in given:
         for name in present:
             yield _both(given, "lubricant.name", f"lubricant.{name}")
@@ -144,6 +145,28 @@ def _lubricant(given: Given) -> Found:
             why = "Without a name from the library all three properties are needed"
             remedy = f'Add {name}, or name an oil, for example name = "80W"'
             yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
+
+
+def _heat(given: Given) -> Found:
+    """A heat balance needs an oil that is known at every temperature, and gears that rub."""
+    key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
+    if key not in given:
+        if other in given:
+            why, remedy = "Without heat_transfer the oil keeps its temperature", "Remove it"
+            yield other, Problem(given.show(other), "", why, f"{remedy}, or add heat_transfer")
+        return
+    from tribodyn.lubricant import library, temperature_range
+
+    name, known = given.get("lubricant.name"), library()
+    grades = [each for each in known if len(set(temperature_range(each))) == 2]
+    if name not in grades:
+        what = f"{given.show(key)} with an oil that is known at one temperature"
+        why = "The balance asks for its viscosity at others"
+        remedy = f'Name another oil, for example name = "{grades[0]}", or remove heat_transfer'
+        yield key, Problem(what, "", why, remedy)
+    if given.get("gears.kind") == "table":
+        why = "The mesh table of another program has its films and friction at one temperature"
+        yield key, Problem(given.show(key), "", why, "Remove it")
 
 
 def _needs(given: Given, law: FrictionLaw | None) -> Found:

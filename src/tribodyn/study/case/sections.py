@@ -97,6 +97,18 @@ class LubricantData(Section):
     temperature: float | None = number(
         None, 233.15, 473.15, "gear oils work between -40 and 200 degC", of="temperature"
     )
+    heat_transfer: float | None = number(
+        None,
+        1e-3,
+        1e12,
+        "small gearboxes have some 10 W/K",
+        of="heat_transfer",
+        meaning="heat transfer coefficient times area: oil and gears take on the temperature at "
+        "which the surroundings take up what is lost",
+    )
+    ambient_temperature: float | None = number(
+        None, 233.15, 473.15, "20 degC if not given with heat_transfer", of="ambient_temperature"
+    )
 
 
 class Operation(Section):

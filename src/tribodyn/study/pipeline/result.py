@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
     from tribodyn.study.coupling import Coupling
+    from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.assembly import Damping
 
 
@@ -57,6 +58,8 @@ class Result(Record):
         The motion with the friction of the nominal load, to compare with.
     coupling : Coupling, optional
         How load, film, friction and stiffness came to agree, where ``solver.coupling`` asks for it.
+    heat : HeatBalance, optional
+        How gears and oil came to their temperature, where ``lubricant.heat_transfer`` is given.
     """
 
     case: Case
@@ -68,6 +71,7 @@ class Result(Record):
     friction: MeshFriction | None = None
     nominal_friction_response: Response | None = None
     coupling: Coupling | None = None
+    heat: HeatBalance | None = None
 
     @cached_property
     def _summary(self) -> dict[str, float]:

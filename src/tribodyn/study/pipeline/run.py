@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from tribodyn.errors import collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
-from tribodyn.study.coupling import Follow, coupled
+from tribodyn.study.coupling import Coupling, Follow, coupled
+from tribodyn.study.heat_balance import balanced
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
@@ -92,11 +93,18 @@ def computed(
     """
     with placed(case), collected() as found:
         progress.start("Tooth contact")
-        coupling = None
-        if case.solver.coupling != "none":
-            case, mesh, coupling = coupled(case, progress, follow)
+
+        def mesh_at(point: Case) -> tuple[Case, MeshTable, Coupling | None]:
+            if case.solver.coupling != "none":
+                return coupled(point, progress, follow)
+            return point, mesh_of(point, progress) if known is None else known(), None
+
+        heat = None
+        if case.lubricant is not None and case.lubricant.heat_transfer is not None:
+            known = None  # loads and films at hand belong to another temperature
+            case, mesh, coupling, heat = balanced(case, mesh_at)
         else:
-            mesh = mesh_of(case, progress) if known is None else known()
+            case, mesh, coupling = mesh_at(case)
         friction = load_friction_of(case, mesh)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
@@ -114,4 +122,4 @@ def computed(
     )
     everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
     told = tuple({str(warning): warning for warning in everything}.values())
-    return Result(case, mesh, system, response, damping, told, friction, compared, coupling)
+    return Result(case, mesh, system, response, damping, told, friction, compared, coupling, heat)

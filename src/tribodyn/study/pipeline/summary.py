@@ -149,6 +149,9 @@ def summarize(result: Result) -> dict[str, float]:
         values["steady_state_error"] = result.response.error
         if np.isfinite(result.response.step_error):
             values["step_error"] = result.response.step_error
+    oil = result.case.lubricant
+    if oil is not None and oil.heat_transfer is not None:
+        values["oil_temperature"] = oil.temperature
     values |= load_figures(result.case, result.mesh, values)
     measures = MEASURES.all().items()
     values |= {name: measure(result) for name, measure in measures}

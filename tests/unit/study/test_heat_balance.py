@@ -1,0 +1,144 @@
+"""Bulk temperature: what is lost is what the surroundings take up."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import ComputationError, InputError
+from tribodyn.lubricant import library, temperature_range
+from tribodyn.mesh import MeshTable
+from tribodyn.study.heat_balance import balanced
+from tribodyn.study.pipeline.tooth_contact import mesh_of
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+
+def _case(transfer: str = "4 W/K", **more: Any) -> Any:
+    changes = {
+        "lubricant.name": "ISO VG 100", "lubricant.temperature": "60 degC",
+        "friction.law": "schlenk", "friction.variant": None, "lubricant.heat_transfer": transfer,
+    }  # fmt: skip
+    more = {key.replace("__", "."): value for key, value in more.items()}
+    return td.load_case("fzg-roughness").replace({**changes, **more})
+
+
+def _balance(case: Any) -> Any:
+    """The balance of the mesh alone, without the motion."""
+    calls: list[float] = []
+
+    def mesh_at(point: Any) -> tuple[Any, MeshTable, None]:
+        calls.append(point.lubricant.temperature)
+        return point, mesh_of(point), None
+
+    found, _, _, heat = balanced(case, mesh_at)
+    assert calls == heat.temperature.tolist()
+    return found, heat
+
+
+@pytest.mark.parametrize("around", ["-10 degC", "20 degC"])
+def test_what_is_lost_is_given_off(around: str) -> None:
+    if around == "-10 degC":
+        with pytest.raises(ComputationError, match="known from 10 degC on"):
+            _balance(_case(lubricant__ambient_temperature=around))
+        return
+    found, heat = _balance(_case(losses__wheel__seal_diameter="30 mm"))
+    lost = td.loss_map(found, torque=found.operation.torque, speed=found.operation.speed)
+    rise = found.lubricant.temperature - 293.15
+    assert float(lost.total[0, 0]) == pytest.approx(4.0 * rise, rel=1e-6)
+    assert lost.seal[0, 0] > 0.0
+    assert float(lost.gear[0, 0]) < 4.0 * rise  # the seal heats too
+    assert heat.power_loss[-1] == pytest.approx(heat.dissipated[-1], rel=1e-6)
+    # not a thing of chance: a tenth of a degree further it no longer holds
+    off = found.replace({"lubricant.temperature": found.lubricant.temperature + 0.1})
+    lost = td.loss_map(off, torque=found.operation.torque, speed=found.operation.speed)
+    assert float(lost.total[0, 0]) != pytest.approx(4.0 * (rise + 0.1), rel=1e-4)
+
+
+def test_more_heat_transfer_is_cooler_down_to_the_surroundings() -> None:
+    transfers = ("3 W/K", "10 W/K", "100 W/K", "1e4 W/K", "1e9 W/K")
+    above = (
+        np.array([_balance(_case(each))[0].lubricant.temperature for each in transfers]) - 293.15
+    )
+    assert np.all(np.diff(above) < 0.0)
+    assert above[-1] < 1e-6
+    # far out the loss is that of the surroundings, so that the rise falls as 1/hA
+    assert above[-2] / above[-1] == pytest.approx(1e5, rel=1e-3)
+
+
+def test_where_it_begins_does_not_matter() -> None:
+    cold, hot = (_balance(_case(lubricant__temperature=t))[0] for t in ("20 degC", "120 degC"))
+    assert cold.lubricant.temperature == pytest.approx(hot.lubricant.temperature, abs=1e-4)
+
+
+def test_without_losses_it_is_as_warm_as_the_surroundings() -> None:
+    found, heat = _balance(_case(friction__law="none"))
+    assert found.lubricant.temperature == 293.15
+    assert heat.power_loss[-1] == 0.0
+
+
+def test_a_balance_beyond_what_is_known_of_the_oil_is_told() -> None:
+    with pytest.raises(ComputationError) as caught:
+        _balance(_case("0.5 W/K"))
+    told = str(caught.value)
+    for words in ("130 degC", "lubricant.heat_transfer", "W are lost", "Give more than"):
+        assert words in told
+    # what it says would do does
+    enough = float(told.partition("Give more than ")[2].partition(" W/K")[0])
+    assert _balance(_case(f"{1.02 * enough} W/K"))[0].lubricant.temperature < 403.15
+
+
+def test_losses_that_jump_are_told() -> None:
+    case, mesh = _case(), mesh_of(_case())
+    lossy, smooth = (_scaled(mesh, factor) for factor in (8.0, 0.01))
+
+    def mesh_at(point: Any) -> tuple[Any, MeshTable, None]:
+        return point, lossy if point.lubricant.temperature < 320.0 else smooth, None
+
+    with pytest.raises(ComputationError, match="do not settle"):
+        balanced(case, mesh_at)
+
+
+def _scaled(mesh: MeshTable, factor: float) -> MeshTable:
+    from dataclasses import replace
+
+    return replace(mesh, friction_coefficient=factor * mesh.friction_coefficient)
+
+
+def test_a_run_ends_at_the_balance_with_and_without_coupling() -> None:
+    plain = td.run(_case(operation__torque_balance="load"))
+    coupled = td.run(_case(operation__torque_balance="load", solver__coupling="static"))
+    for result in (plain, coupled):
+        heat, summary = result.heat, result.summary()
+        assert heat.power_loss[-1] == pytest.approx(heat.dissipated[-1], rel=1e-6)
+        assert summary["oil_temperature"] == result.case.lubricant.temperature
+        assert heat.power_loss[-1] == pytest.approx(result.mesh.mean_friction_power, rel=1e-12)
+    assert coupled.coupling is not None
+    assert plain.heat.temperature[-1] == pytest.approx(coupled.heat.temperature[-1], abs=5.0)
+    assert plain.heat.temperature[-1] != coupled.heat.temperature[-1]
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"lubricant.name": "80W", "lubricant.temperature": None}, "known at one temperature"),
+        ({"lubricant.heat_transfer": None, "lubricant.ambient_temperature": "30 degC"},
+         "keeps its temperature"),
+        ({"lubricant.heat_transfer": "5 W"}, "heat_transfer"),
+        ({"lubricant.heat_transfer": "0 W/K"}, "heat_transfer"),
+    ],
+)  # fmt: skip
+def test_wrong_keys_are_refused(changes: dict[str, Any], told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        _case().replace(changes)
+
+
+def test_range_of_an_oil_is_where_it_can_be_made() -> None:
+    for name in library():
+        for temperature in temperature_range(name):
+            td.lubricant.from_library(name, temperature)
+    with pytest.raises(InputError):
+        td.lubricant.from_library("ISO VG 100", temperature_range("ISO VG 100")[1] + 0.1)
