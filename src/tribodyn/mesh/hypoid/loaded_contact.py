@@ -20,7 +20,7 @@ from tribodyn.gear import HypoidFlanks, Material, Misalignment
 from tribodyn.gear.hypoid.envelope import cross
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.hypoid.cells import ContactCells, contact_cells
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array
 
 #: Steps of Newton's method, which comes down a convex curve, and the torque that may be left.
@@ -153,6 +153,9 @@ class HypoidLoadedContact(Record):
         """
         torque = _required_torque(pinion_torque)
         return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
+
+    plot_pressure = drawn("hypoid_pressure", "Draw the pressure over the flank.")
+    plot_load = drawn("hypoid_load", "Draw load sharing, transmission error and stiffness.")
 
     def __repr__(self) -> str:
         """One line."""
