@@ -11,6 +11,7 @@ import pytest
 from tribodyn.cases import compare_with_paper
 from tribodyn.cases.papers import printed
 from tribodyn.cli import call
+from tribodyn.errors import ModelWarning
 from tribodyn.members import Members
 
 _KEYS = ["table", "row", "printed", "computed", "deviation", "expected", "verdict", "reason"]
@@ -41,7 +42,7 @@ def test_computed_figures_are_those_of_a_run(shown: tuple[list[Any], Path]) -> N
     from tribodyn.cases import load_case, run
 
     row = next(row for row in shown[0] if row["row"] == "fifth harmonic, constant")
-    with pytest.warns(UserWarning):
+    with pytest.warns(ModelWarning):
         figures = run(load_case("fzg-12dof-light")).summary()
     assert row["computed"] == 1e6 * figures["dynamic_transmission_error_harmonic_5"]
     assert row["deviation"] == pytest.approx(row["computed"] / 14.82 - 1.0)
@@ -93,9 +94,7 @@ def test_an_interrupted_comparison_goes_on_from_there(tmp_path: Path) -> None:
             self.total = None
 
     with Members(tmp_path / "there") as members:
-        begun = compare_with_paper(
-            "fzg-12dof", partial=True, progress=Stopping(2), members=members
-        )
+        begun = compare_with_paper("fzg-12dof", partial=True, progress=Stopping(2), members=members)
     assert 0 < len(begun.points) < begun.asked
     assert 0 < len(begun.rows) < len(printed.printed_rows("fzg-12dof"))
     with Members(tmp_path / "there") as members:
