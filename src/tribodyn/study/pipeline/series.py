@@ -204,6 +204,12 @@ def _ends(result: Result) -> dict[str, Any]:
         told = {"long_name": "friction over powers of the load: force [1], moments [m]"}
         dims = ("knot", "power", "channel")
         found["friction_coefficients"] = (dims, friction.coefficients, told)
+    if (coupling := result.coupling) is not None:
+        told = _told("1", "change of each quantity from one pass of the coupling to the next")
+        found |= {f"coupling_{each.name}": ("pass", getattr(coupling, each.name), told)
+                  for each in fields(coupling) if each.name.endswith("_change")}  # fmt: skip
+        told = _told("1", "force of all pairs over that of the torque alone, by phase of the mesh")
+        found["coupling_loading"] = ("knot", coupling.loading, told)
     return found
 
 
@@ -223,6 +229,9 @@ def _facts(result: Result) -> dict[str, Any]:
     if result.friction is not None:
         names = ("load", "limit", "fit_error")
         facts |= {f"friction_{name}": getattr(result.friction, name) for name in names}
+    if result.coupling is not None:
+        facts |= {f"coupling_{name}": getattr(result.coupling, name)
+                  for name in ("kind", "tolerance")}  # fmt: skip
     facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
     facts["figures"] = len(result.summary())
     return {**facts, **result.summary()}
