@@ -155,9 +155,7 @@ def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:
                for name in map(str, data.data_vars) if name.startswith("coupling_")}  # fmt: skip
     order = np.arange(1.0, data.sizes["pass"] + 1.0)
     kind, tolerance = str(data.attrs["coupling_kind"]), float(data.attrs["coupling_tolerance"])
-    return Coupling(
-        iteration=order, phase=mesh.phase, kind=kind, tolerance=tolerance, **columns
-    )
+    return Coupling(iteration=order, phase=mesh.phase, kind=kind, tolerance=tolerance, **columns)
 
 
 def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:

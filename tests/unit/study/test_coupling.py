@@ -175,7 +175,7 @@ def test_friction_that_follows_the_load_is_the_same_motion() -> None:
 
         law = {"friction__law": "in-proportion", "film__model": "none"}
         shares = [mesh_of(td.load_case("fzg-roughness"), load=x).load_share for x in (1.0, 1.6)]
-        # The loop takes shares of the momentary load, the coupling those of linear teeth: 4e-3 apart.
+        # The loop has shares of the momentary load, the coupling those of linear teeth: 4e-3.
         assert np.abs(shares[1] - shares[0]).max() > 5e-4
         law |= {"stiffness__model": "rectangular", "stiffness__pair_stiffness": 2e8,
                 "stiffness__reference": None}  # fmt: skip

@@ -97,14 +97,30 @@ def _told(unit: str, words: str) -> dict[str, str]:
     return {"units": unit, "long_name": words}
 
 
+def asperity_friction(result: Result, phase: Array, force: Array) -> Array | None:
+    """Friction force of the asperities under a force; None where the law tells no such part."""
+    from tribodyn.mesh.functions import ASPERITIES
+
+    if result.friction is not None:
+        if not result.friction.splits:
+            return None
+        return result.friction.value(ASPERITIES, phase, force) * force
+    if result.mesh.asperity_friction_coefficient is None:
+        return None
+    return result.mesh.at(ASPERITIES, phase) * force
+
+
 def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals that figures draw, on the samples: values, unit and meaning by name."""
     force = mesh_force(samples)
-    phase = np.asarray(samples.phase)
+    # Fine samples know the side of an event on which they stand.
+    fine = hasattr(samples, "weight")
+    phase = one_sided_phase(samples) if fine else np.asarray(samples.phase)
     if result.friction is None:
         rubbing = result.mesh.functions().friction_sum(phase) * force
     else:
         rubbing = result.friction.value("friction_sum", phase, force) * force
+    metal = asperity_friction(result, phase, force)
     static = result.mesh.at("static_transmission_error", phase) + result.static_error(phase)
     found = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
@@ -116,6 +132,9 @@ def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
         "static_transmission_error": (static, "m", "the same at rest under the nominal load"),
         "friction_force": (rubbing, "N", "friction force of all tooth pairs"),
     }
+    if metal is not None:
+        found["film_friction_force"] = (rubbing - metal, "N", "part of it that the oil films cause")
+        found["asperity_friction_force"] = (metal, "N", "part of it that the asperities cause")
     forces = support_forces(result.system, samples)
     for gear in ("pinion", "wheel"):
         for direction, (axis, words) in _DIRECTIONS.items():

@@ -15,6 +15,7 @@ from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.first_look import load_figures, mode_figures, operating_figures
 from tribodyn.study.pipeline.series import (
+    asperity_friction,
     centre_column,
     compression,
     first_touch,
@@ -266,8 +267,11 @@ def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     wheel_speed = mesh.pinion_speed / result.case.gear_ratio
     lost = mesh.pinion_speed * friction("friction_moment_pinion")
     lost = lost - wheel_speed * friction("friction_moment_wheel")
+    rubbing, metal = friction("friction_sum"), asperity_friction(result, phase, force)
+    parts = {} if metal is None else {"film": rubbing - metal, "asperity": metal}
     return {
-        "rms_friction_force": rms(samples, friction("friction_sum")),
+        "rms_friction_force": rms(samples, rubbing),
+        **{f"rms_{name}_friction_force": rms(samples, part) for name, part in parts.items()},
         "mean_friction_power": mean(samples, lost),
     }
 
