@@ -2,7 +2,7 @@
 
 The rival of the map is a loop over the same points with ``tribodyn.run``, as one would write it
 without a map: it finds the steady motion of each besides. The rival of the fixed point at rest is
-Anderson's method of SciPy from forces to forces, to the same tolerance; that of the one in motion is
+Anderson's method of SciPy, to the same tolerance; that of the one in motion is
 the run without coupling, which is solved once and not in every pass.
 """
 

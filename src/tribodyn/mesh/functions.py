@@ -147,7 +147,7 @@ class MeshFriction:
     @property
     def splits(self) -> bool:
         """Whether the part of the friction that asperities cause is known."""
-        return self.coefficients.shape[-1] > len(CHANNELS)
+        return bool(self.coefficients.shape[-1] > len(CHANNELS))
 
     def value(self, name: str, phase: ArrayLike, normal_force: ArrayLike) -> Array:
         """Friction sum at a phase under a load.
