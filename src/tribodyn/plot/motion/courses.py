@@ -92,7 +92,7 @@ def mesh_force(result: Result) -> Any:
 
 
 def _friction_caption(result: Result) -> str:
-    split = "film_friction_force" in series.signals(result, result.response.fine)
+    split = "film_friction_force" in series.friction_forces(result, result.response.fine)
     parts = (
         "What the oil films and what the asperities cause of it add up to the whole."
         if split
@@ -116,7 +116,7 @@ def _friction_caption(result: Result) -> str:
 def friction_force(result: Result) -> Any:
     """Draw the friction force of all tooth pairs, and its parts from films and asperities."""
     motion, unit = Motion(result), display_unit("friction_force")
-    found = series.signals(result, result.response.fine)
+    found = series.friction_forces(result, result.response.fine)
     shown = (
         ("friction_force", "whole", TOTAL),
         ("film_friction_force", "oil films", PAIR_COLORS[2]),

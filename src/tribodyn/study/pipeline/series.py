@@ -97,30 +97,34 @@ def _told(unit: str, words: str) -> dict[str, str]:
     return {"units": unit, "long_name": words}
 
 
-def asperity_friction(result: Result, phase: Array, force: Array) -> Array | None:
-    """Friction force of the asperities under a force; None where the law tells no such part."""
+def _sided(samples: Any) -> Array:
+    """Phase of samples, of which the fine ones know the side of an event on which they stand."""
+    fine = hasattr(samples, "weight")
+    return one_sided_phase(samples) if fine else np.asarray(samples.phase)
+
+
+def friction_forces(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
+    """Friction force of all pairs, and what of it films and asperities cause where that is told."""
     from tribodyn.mesh.functions import ASPERITIES
 
-    if result.friction is not None:
-        if not result.friction.splits:
-            return None
-        return result.friction.value(ASPERITIES, phase, force) * force
-    if result.mesh.asperity_friction_coefficient is None:
-        return None
-    return result.mesh.at(ASPERITIES, phase) * force
+    force, phase, law = mesh_force(samples), _sided(samples), result.friction
+    if law is None:
+        rubbing = result.mesh.functions().friction_sum(phase) * force
+        split = result.mesh.asperity_friction_coefficient is not None
+        metal = result.mesh.at(ASPERITIES, phase) * force if split else None
+    else:
+        rubbing = law.value("friction_sum", phase, force) * force
+        metal = law.value(ASPERITIES, phase, force) * force if law.splits else None
+    found = {"friction_force": (rubbing, "N", "friction force of all tooth pairs")}
+    if metal is not None:
+        found["film_friction_force"] = (rubbing - metal, "N", "part of it that the oil films cause")
+        found["asperity_friction_force"] = (metal, "N", "part of it that the asperities cause")
+    return found
 
 
 def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals that figures draw, on the samples: values, unit and meaning by name."""
-    force = mesh_force(samples)
-    # Fine samples know the side of an event on which they stand.
-    fine = hasattr(samples, "weight")
-    phase = one_sided_phase(samples) if fine else np.asarray(samples.phase)
-    if result.friction is None:
-        rubbing = result.mesh.functions().friction_sum(phase) * force
-    else:
-        rubbing = result.friction.value("friction_sum", phase, force) * force
-    metal = asperity_friction(result, phase, force)
+    force, phase = mesh_force(samples), _sided(samples)
     static = result.mesh.at("static_transmission_error", phase) + result.static_error(phase)
     found = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
@@ -130,11 +134,8 @@ def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
             "lag of the driven gear on the line of action, from first contact of the flanks",
         ),
         "static_transmission_error": (static, "m", "the same at rest under the nominal load"),
-        "friction_force": (rubbing, "N", "friction force of all tooth pairs"),
+        **friction_forces(result, samples),
     }
-    if metal is not None:
-        found["film_friction_force"] = (rubbing - metal, "N", "part of it that the oil films cause")
-        found["asperity_friction_force"] = (metal, "N", "part of it that the asperities cause")
     forces = support_forces(result.system, samples)
     for gear in ("pinion", "wheel"):
         for direction, (axis, words) in _DIRECTIONS.items():

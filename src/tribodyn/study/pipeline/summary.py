@@ -15,10 +15,10 @@ from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.first_look import load_figures, mode_figures, operating_figures
 from tribodyn.study.pipeline.series import (
-    asperity_friction,
     centre_column,
     compression,
     first_touch,
+    friction_forces,
     is_steady,
     measured,
     mesh_force,
@@ -267,11 +267,9 @@ def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     wheel_speed = mesh.pinion_speed / result.case.gear_ratio
     lost = mesh.pinion_speed * friction("friction_moment_pinion")
     lost = lost - wheel_speed * friction("friction_moment_wheel")
-    rubbing, metal = friction("friction_sum"), asperity_friction(result, phase, force)
-    parts = {} if metal is None else {"film": rubbing - metal, "asperity": metal}
+    forces = friction_forces(result, samples)
     return {
-        "rms_friction_force": rms(samples, rubbing),
-        **{f"rms_{name}_friction_force": rms(samples, part) for name, part in parts.items()},
+        **{f"rms_{name}": rms(samples, values) for name, (values, *_) in forces.items()},
         "mean_friction_power": mean(samples, lost),
     }
 
