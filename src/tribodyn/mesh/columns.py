@@ -253,8 +253,8 @@ class MeshColumns(Record):
             return None
         if self.friction_direction is None:
             return self.by_share(self.sliding_direction * part)
-        across = self.friction_direction[:, :, COORDINATES.index("pinion_x")]
-        return np.asarray((part * self.load_share * across).sum(axis=1))
+        each = (part * self.load_share)[:, :, None] * self.friction_direction
+        return self._of(each.sum(axis=1), "pinion_x")
 
     @property
     def friction_moment_pinion(self) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -226,6 +227,10 @@ def test_friction_force_of_the_motion_is_that_of_film_and_asperities(
     apart = np.abs(metal - wanted).max() / np.abs(metal).max()
     if load == "nominal":
         assert apart < 1e-9
+        directions = np.zeros((*mesh.path.shape, 6))
+        directions[:, :, 0] = mesh.sliding_direction
+        table = dataclasses.replace(mesh, friction_direction=directions)
+        np.testing.assert_allclose(table.asperity_friction_sum, mesh.asperity_friction_sum)
     else:  # the share of the asperities grows with the momentary load, by the whole law
         assert 1e-3 < apart < 0.2
         heavy = mesh_of(case, load=1.3)
