@@ -216,6 +216,7 @@ def hypoid_loaded_contact(
 
     Examples
     --------
+    >>> import math
     >>> from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
     >>> blank = hypoid_blank(10, 43, 31.7e-3, 0.336, 47.7e-3, math.radians(46.0), 0.1143)
     >>> ease_off = EaseOff(lengthwise_crowning=30e-6, profile_crowning=6e-6)
