@@ -55,6 +55,11 @@ COMMANDS = (
         "Judge published claims on one gear pair: friction.",
     ),
     (
+        "paper",
+        "tribodyn.cli.experiment_command:paper",
+        "Lay the printed tables of a source beside what is computed.",
+    ),
+    (
         "compare",
         "tribodyn.cli.compare_command:compare",
         "Show what differs between two results.",
