@@ -35,9 +35,8 @@ def main(words: Sequence[str] | None = None) -> None:
             run(case.replace({"friction.law": law})).summary()
         alone = (time.perf_counter() - start) / len(SAMPLE) * len(found.points)
     print(f"{len(found.points)} steady states with shared films   {spent:6.1f} s")
-    print(
-        f"each by itself, from {len(SAMPLE)} of them           {alone:6.1f} s, {alone / spent:.2g} times"
-    )
+    times = f"{alone:6.1f} s, {alone / spent:.2g} times"
+    print(f"each by itself, from {len(SAMPLE)} of them           {times}")
     if not quick:
         print_goals([Goal("the whole experiment", 60.0, spent, "s wall", at_least=False)])
 
