@@ -11,9 +11,9 @@ from pages import ROOT
 DATA = ROOT / "tests" / "docs" / "contents.toml"
 HEAD = """# What the sources contain
 
-Every law, table, figure and number of the sources of the built-in cases, and where it is: the test that holds
-it, the figure that draws it, the printed table that `tribodyn paper` [computes](papers.md), or the reason why
-it is not there.
+Every law, table, figure and number of the sources of the built-in cases, and where it is: the test
+that holds it, the figure that draws it, the printed table that `tribodyn paper`
+[computes](papers.md), or the reason why it is not there.
 """
 
 

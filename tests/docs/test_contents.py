@@ -20,5 +20,9 @@ def test_what_a_row_names_exists(row: dict[str, object]) -> None:
 
 
 def test_what_does_not_exist_is_noticed() -> None:
-    row = {"tests": ["test_contents.py::test_none"], "figures": ["none"], "tables": ["fzg-12dof: -"]}
+    row = {
+        "tests": ["test_contents.py::test_none"],
+        "figures": ["none"],
+        "tables": ["fzg-12dof: -"],
+    }
     assert len(list(missing(row))) == 3
