@@ -264,7 +264,7 @@ def read_fields(
             except FaultError as fault:
                 found.append((key, fault.problem))
         elif name in cls.fields:
-            values[name] = cls.fields[name].default
+            values[name] = field.default
             if values[name] is REQUIRED:
                 values[name] = None
                 found.append((key, _missing(field, name, path)))
