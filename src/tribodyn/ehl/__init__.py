@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
+from tribodyn.ehl.formulas.elliptical import hamrock_dowson_minimum
 from tribodyn.ehl.formulas.moes import moes_central, moes_dimensionless_central
 from tribodyn.ehl.formulas.power_laws import (
     dowson_1968_minimum,
@@ -63,6 +64,7 @@ __all__ = [
     "dowson_toyoda_central",
     "film_load_share",
     "film_traction",
+    "hamrock_dowson_minimum",
     "inlet_heating_factor",
     "line_contact_groups",
     "lubrication_regime",
