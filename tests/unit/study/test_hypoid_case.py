@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import tribodyn
-from tribodyn.errors import InputError, ModelWarning
+from tribodyn.dynamics import steady_state
+from tribodyn.errors import InputError, ModelWarning, collected
 from tribodyn.gear import tooth_contact
-from tribodyn.study import Case
 from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.tooth_contact import mesh_of
@@ -27,6 +27,11 @@ def quiet(case):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         return tribodyn.run(case)
+
+
+def rehearsed(case):
+    with collected():
+        return mesh_of(case, rehearsal=True)
 
 
 @pytest.fixture(scope="module")
@@ -89,14 +94,15 @@ def test_only_the_design_has_to_be_given():
         ({"driver": '"wheel"'}, "gears.driver", "The pinion of a hypoid pair drives"),
         ({"dynamics": '"spur-6dof"'}, "dynamics.model", "move in one plane"),
         ({"law": '"ehl"'}, "friction.law", "that of a formula"),
-        ({"more": '[losses]\nwindage = false'}, "losses", "those of spur gears"),
+        ({"more": "[losses]\nwindage = false"}, "losses", "those of spur gears"),
         ({"more": '[gears.ease_off]\nbias = "20 um"'}, "gears.ease_off.bias", "cut into"),
         ({"ease_of": "1"}, "ease_of", 'Did you mean "ease_off"'),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_line(changes, place, told):
     message = refused(text(**changes))
-    assert message.startswith("my.toml:") and told in message
+    assert message.startswith("my.toml:")
+    assert told in message
     for word in place.split():
         assert word.rpartition(".")[2] in message
 
@@ -118,7 +124,7 @@ def test_figures_of_the_run_are_those_of_the_contact_at_rest(result):
     expected = (loaded.mean_mesh_stiffness, np.ptp(loaded.unloaded_transmission_error),
                 np.ptp(loaded.loaded_transmission_error), rest.minimum_film_ratio,
                 rest.mean_friction_coefficient)  # fmt: skip
-    assert [figures[name] for name in names] == pytest.approx(expected, rel=1e-3)
+    assert [figures[name] for name in names] == pytest.approx(expected, rel=2e-3)
     assert figures["mean_mesh_stiffness"] == pytest.approx(5.69e8, rel=0.02)
     assert figures["transverse_contact_ratio"] == pytest.approx(
         tooth_contact(result.case.hypoid_flanks, rotations_per_pitch=4, cells=5).contact_ratio
@@ -148,7 +154,7 @@ def test_friction_takes_power_that_engine_and_load_account_for(result):
 
 def test_slow_gears_follow_the_loaded_transmission_error():
     case = built_in(**{"friction.law": "none"})
-    mesh = mesh_of(case, rehearsal=True)
+    mesh = rehearsed(case)
     system = whole_system(case, mesh)
     (contact,) = system.contacts
     # Nothing but the mesh gives way on the line of action: its force at rest is the torque's.
@@ -160,10 +166,13 @@ def test_slow_gears_follow_the_loaded_transmission_error():
     assert contact.direction(phase)[:, 5] / -contact.direction(phase)[:, 11] == pytest.approx(RATIO)
 
 
-def test_coast_side_and_torsional_structure_run():
-    coast = built_in(**{"gears.side": "coast", "solver.steps_per_mesh_cycle": 256})
-    assert 0.98 < quiet(coast).summary()["efficiency"] < 0.999
-    simple = {"dynamics.model": "torsional", "solver.steps_per_mesh_cycle": 256}
-    figures = quiet(Case.replace(built_in(), simple)).summary()
-    assert "mean_bearing_force_x_pinion" not in figures
-    assert figures["mean_mesh_force_y"] == pytest.approx(14070.0, rel=0.01)
+def test_both_sides_lose_power_and_the_torsional_pair_runs():
+    fewer = {"operation.speed": 314.0}
+    coast = rehearsed(built_in(**fewer, **{"gears.side": "coast"}))
+    assert 0.0 < coast.mean_friction_power < 0.02 * 500.0 * 314.0
+    assert np.all(coast.direction[:, 4] > 0.0)
+    simple = built_in(**fewer, **{"dynamics.model": "torsional"})
+    mesh = rehearsed(simple)
+    orbit = steady_state(whole_system(simple, mesh), mesh.mesh_frequency, steps=256)
+    lost = 314.0 * (500.0 + RATIO * (orbit.extra_force[1] - 500.0 / RATIO))
+    assert lost == pytest.approx(mesh.mean_friction_power, rel=0.02)

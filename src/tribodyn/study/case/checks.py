@@ -260,7 +260,7 @@ def _coupling(given: Given) -> Found:
     if kind == "none":
         return
     clashes = {
-        "gears.kind": _UNCOUPLED.get(given.get("gears.kind"), ("table", "")),
+        "gears.kind": _UNCOUPLED.get(str(given.get("gears.kind")), ("table", "")),
         "dynamics.friction_load": ("dynamic", "The coupling already lets friction follow the load"),
     }
     if kind == "dynamic":

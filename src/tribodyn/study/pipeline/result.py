@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from tribodyn.drawing import FIGURES, draw, figures_of, write_report_of
+from tribodyn.errors import collected
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.stored import write_dataset
 from tribodyn.study.case.hypoid import mounting
@@ -131,7 +132,8 @@ class Result(Record):
         """Load, film and friction in every cell of a hypoid pair at rest; None of other gears."""
         from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of
 
-        return None if self.case.hypoid_flanks is None else hypoid_friction_of(self.case)
+        with collected():  # The run has said what there was to say.
+            return None if self.case.hypoid_flanks is None else hypoid_friction_of(self.case)
 
     @cached_property
     def natural_modes(self) -> NaturalModes:
