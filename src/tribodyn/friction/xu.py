@@ -134,8 +134,7 @@ def _require_plausible(coefficient: Array, roughness: float) -> None:
         where="argument roughness",
         why="the regression grows with exp(exp(S)) and means nothing far beyond the 0.6 um "
         "and the other limits of its fit",
-        remedy="Check the units (roughness in m, viscosity in Pa*s, pressure in Pa), "
-        "or choose another friction law",
+        remedy="Check the roughness and its unit, or choose another friction law, such as mixed",
     )
 
 

@@ -10,6 +10,7 @@ from tribodyn.ehl import hamrock_dowson_minimum
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, hypoid_friction, hypoid_loaded_contact
+from tribodyn.mesh.hypoid.loaded_contact import wheel_torque_at
 from tribodyn.mesh.table_file import read_table_file
 
 OIL = Lubricant(0.01, 769.0, 2e-8)
@@ -91,7 +92,7 @@ def test_the_film_carries_more_where_it_is_thicker(loaded):
     order = np.argsort(found.film_ratio, axis=None)
     assert np.all(np.diff(found.film_load_share.ravel()[order]) > -1e-12)
     carries = loaded.cell_force > 0.0
-    assert 0.0 < found.film_load_share[carries].min() < 0.5
+    assert 0.0 < found.film_load_share[carries].min() < 0.7
     assert set(np.unique(found.lubrication_regime[carries])) <= {0.0, 1.0, 2.0}
     assert np.all(np.isnan(found.lubrication_regime[~carries]))
     smooth = rubbed(loaded, roughness=0.0)
@@ -136,8 +137,9 @@ def test_the_table_holds_what_was_computed(loaded, tmp_path):
         loaded.mesh_force[:-1], rel=1e-9
     )
     for share in (0.25, 0.6, 1.7):
-        torque = loaded.wheel_torque_at(
-            loaded.unloaded_rotation + share * (loaded.loaded_rotation - loaded.unloaded_rotation)
+        torque = wheel_torque_at(
+            loaded,
+            loaded.unloaded_rotation + share * (loaded.loaded_rotation - loaded.unloaded_rotation),
         )
         force = law.force(table.phase[:-1], share * deflection[:-1])
         assert force == pytest.approx((torque / loaded.wheel_lever)[:-1], rel=0.015)

@@ -146,8 +146,7 @@ BROKEN = (
            ("steps_per_mesh_cycle = 8", "64 to 262144")),
     # names
     Broken("misspelt-key", _MODULE, 'normal_modul = "4.5 mm"', "normal_modul",
-           ("gears.normal_modul", "unknown key", 'Did you mean "normal_module"?',
-            "normal_module is missing")),
+           ("gears.normal_modul", "unknown key", 'Did you mean "normal_module"?')),
     Broken("misspelt-table", "[operation]", "[operations]", "[operations]",
            ("operations", "unknown key", 'Did you mean "operation"?')),
     Broken("key-in-wrong-table", 'driver = "pinion"', 'driver = "pinion"\nface_width = "20 mm"',
@@ -290,6 +289,9 @@ BROKEN = (
            ("friction.shear_model", "newtonian, ree-eyring", 'Did you mean "ree-eyring"?')),
     Broken("shear-model-of-another-law", _LAW, _LAW + '\nshear_model = "newtonian"',
            "shear_model", ('shear_model = "newtonian"', 'does not belong to law = "constant"')),
+    Broken("number-of-another-shear-model", _LAW,
+           'law = "ehl"\ncarreau_exponent = 0.5\n[film]\nmodel = "newton"', "carreau_exponent",
+           ('does not belong to shear_model = "ree-eyring"', 'shear_model = "carreau"')),
     # physics
     Broken("too-close", _DISTANCE, 'center_distance = "80 mm"', "center_distance",
            ("gears.center_distance", "80 mm")),

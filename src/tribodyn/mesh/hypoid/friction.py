@@ -22,11 +22,12 @@ from tribodyn.errors import (
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS, CellMotion, cell_motion
 from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.hypoid.cells import ContactCells
 from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wrench
 from tribodyn.mesh.hypoid.table import table_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
-from tribodyn.record import Record, drawn, fact, quantity, record
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 #: Film of the elliptical contact that each line is; other models are those of line contacts.
@@ -62,7 +63,7 @@ class HypoidFriction(Record):
         Unit vector of the friction force on the pinion, in the fixed frame.
     pinion_friction, wheel_friction : array (phase, 6)
         Force and moment of friction on each gear over the amount of the mesh force, in the frames
-        of :class:`HypoidLoadedContact`: three pure numbers and three levers [m].
+        of :class:`HypoidLoadedContact`: three pure numbers and three levers in m.
     power : array (phase,) [W]
         Power lost by sliding.
     mean_coefficient : array (phase,)
@@ -129,8 +130,6 @@ class HypoidFriction(Record):
             in the frames of :class:`HypoidLoadedContact`.
         """
         return table_of(self)
-
-    plot_friction = drawn("hypoid_friction", "Draw friction and lubrication over the flank.")
 
     def __repr__(self) -> str:
         """One line."""
@@ -218,51 +217,29 @@ def hypoid_friction(
     roughness = require_number("composite_roughness", composite_roughness)
     require_between("composite_roughness", roughness, 0.0, 1e-4, "m", remedy="0.4 um is 0.4e-6")
     chosen = require_one_of("entrainment", entrainment, ENTRAINMENTS)
-    cells, flanks = loaded.cells, loaded.cells.flanks.conjugate
-    motion = cell_motion(flanks, cells.touch, cells.curvature, speed, chosen)
-    law = LAWS[friction_law]
+    cells, law = loaded.cells, LAWS[friction_law]
+    motion = cell_motion(cells.flanks.conjugate, cells.touch, cells.curvature, speed, chosen)
 
-    def rubbed(which: Mask) -> tuple[TribologicalContact, Array, Array]:
+    def rubbed(which: Mask) -> tuple[TribologicalContact, FrictionParts]:
         film = _film(loaded, motion, which, lubricant, film_model)
         contact = _contact(loaded, motion, which, film, lubricant, roughness)
         told = law.told(contact, friction_options)
         if isinstance(told, FrictionParts):
-            return contact, told.coefficient, told.film_load_share
-        return contact, told, np.ones(told.shape)
+            return contact, told
+        return contact, FrictionParts(told, np.zeros(told.shape), np.ones(told.shape))
 
     width = loaded.line_force / cells.length
     rubbed(width >= _TOLD * width.max())  # for what film and law have to say of them
-    carry = width > 0.0
     with quiet():
-        contact, coefficient, share = rubbed(carry)
-
-    def spread(values: Array, empty: float = 0.0) -> Array:
-        whole = np.full(carry.shape, empty)
-        whole[carry] = values
-        return cells.spread(whole, empty)
-
-    force = np.zeros(carry.shape)
-    force[carry] = coefficient * contact.known("load_per_width") * cells.length[carry]
-    rubbing = force[..., None] * motion.friction_direction
-    wrenches = [
-        cells.summed(sign * wrench(cells, rubbing, gear).sum(axis=1)) / loaded.mesh_force[:, None]
-        for gear, sign in (("pinion", 1.0), ("wheel", -1.0))
-    ]
-    normal = cells.summed(loaded.line_force.sum(axis=1))
+        contact, told = rubbed(width > 0.0)
     return HypoidFriction(
         phase=loaded.phase,
         sliding_speed=cells.spread(motion.sliding_speed),
         entrainment_speed=cells.spread(motion.entrainment_speed),
         equivalent_radius=cells.spread(motion.equivalent_radius),
-        minimum_film=spread(contact.known("film_thickness")),
-        film_ratio=spread(contact.film_ratio, np.inf),
-        friction_coefficient=spread(coefficient),
-        film_load_share=spread(share, 1.0),
         friction_direction=cells.spread(motion.friction_direction),
-        pinion_friction=wrenches[0],
-        wheel_friction=wrenches[1],
-        power=cells.summed((force * motion.sliding_speed).sum(axis=1)),
-        mean_coefficient=cells.summed(force.sum(axis=1)) / normal,
+        **_of_the_law(cells, width > 0.0, contact, told),
+        **_sums(loaded, motion, width > 0.0, told.coefficient),
         pinion_speed=speed,
         composite_roughness=roughness,
         friction_law=friction_law,
@@ -270,6 +247,43 @@ def hypoid_friction(
         entrainment=chosen,
         loaded=loaded,
     )
+
+
+def _of_the_law(
+    cells: ContactCells, carry: Mask, contact: TribologicalContact, told: FrictionParts
+) -> dict[str, Array]:
+    """Film and friction of the cells that carry, laid out over all."""
+    known = {
+        "minimum_film": (contact.known("film_thickness"), 0.0),
+        "film_ratio": (contact.film_ratio, np.inf),
+        "friction_coefficient": (told.coefficient, 0.0),
+        "film_load_share": (told.film_load_share, 1.0),
+    }
+    found = {}
+    for name, (values, empty) in known.items():
+        whole = np.full(carry.shape, empty)
+        whole[carry] = values
+        found[name] = cells.spread(whole, empty)
+    return found
+
+
+def _sums(
+    loaded: HypoidLoadedContact, motion: CellMotion, carry: Mask, coefficient: Array
+) -> dict[str, Array]:
+    """Sum the friction forces up to forces, moments, power and one coefficient of each phase."""
+    cells, force = loaded.cells, loaded.line_force.copy()
+    force[carry] *= coefficient
+    rubbing = force[..., None] * motion.friction_direction
+    of_gears = {
+        f"{gear}_friction": cells.summed(sign * wrench(cells, rubbing, gear).sum(axis=1))
+        / loaded.mesh_force[:, None]
+        for gear, sign in (("pinion", 1.0), ("wheel", -1.0))
+    }
+    normal = cells.summed(loaded.line_force.sum(axis=1))
+    return of_gears | {
+        "power": cells.summed((force * motion.sliding_speed).sum(axis=1)),
+        "mean_coefficient": cells.summed(force.sum(axis=1)) / normal,
+    }
 
 
 def _film(

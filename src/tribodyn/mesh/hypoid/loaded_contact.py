@@ -20,7 +20,7 @@ from tribodyn.gear import HypoidFlanks, Material, Misalignment
 from tribodyn.gear.hypoid.envelope import cross
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.hypoid.cells import ContactCells, contact_cells
-from tribodyn.record import Record, drawn, fact, quantity, record
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
 #: Steps of Newton's method, which comes down a convex curve, and the torque that may be left.
@@ -50,7 +50,7 @@ class HypoidLoadedContact(Record):
         Slope of that force there.
     pinion_direction, wheel_direction : array (phase, 6)
         Force and moment of the mesh on each gear over the amount of the force: three pure numbers
-        and three levers [m], normals out of the pinion. Moments are about the point where the
+        and three levers in m, normals out of the pinion. Moments are about the point where the
         common perpendicular meets the axis.
     load_share : array (phase, pair)
         Part of the torque on each pair.
@@ -153,15 +153,6 @@ class HypoidLoadedContact(Record):
         """
         torque = _required_torque(pinion_torque)
         return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
-
-    def wheel_torque_at(self, lag: Array) -> Array:
-        """Torque on the wheel that lags by some angle (..., phase) [rad]."""
-        lags = np.reshape(lag, (-1, self.phase.size))
-        torques = [carried(self.cells, self.line_stiffness, each)[1] for each in lags]
-        return np.reshape(torques, np.shape(lag))
-
-    plot_pressure = drawn("hypoid_pressure", "Draw the greatest pressure over the flank.")
-    plot_load = drawn("hypoid_load", "Draw load sharing and loaded transmission error.")
 
     def __repr__(self) -> str:
         """One line."""
@@ -274,6 +265,13 @@ def carried(cells: ContactCells, line_stiffness: float, lag: Array) -> tuple[Arr
     arm = cells.touch.lever
     torque, rate = (cells.summed((each * arm).sum(axis=1)) for each in (force, slope))
     return force, torque, rate
+
+
+def wheel_torque_at(loaded: HypoidLoadedContact, lag: Array) -> Array:
+    """Torque on a wheel that lags by some angles (..., phase) [rad]."""
+    lags = np.reshape(lag, (-1, loaded.phase.size))
+    torques = [carried(loaded.cells, loaded.line_stiffness, each)[1] for each in lags]
+    return np.reshape(torques, np.shape(lag))
 
 
 def first_touch(cells: ContactCells) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.gears import NoGears
-from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wrench
+from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wheel_torque_at, wrench
 from tribodyn.mesh.table import MeshTable
 from tribodyn.types import Array
 
@@ -23,52 +23,25 @@ _POINTS = np.array([0.0, 0.03, 0.06, *np.geomspace(0.1, 1.0, 13), 1.2, 1.5, 1.9,
 def table_of(rubbed: HypoidFriction) -> MeshTable:
     """Mesh table of a pair with its friction."""
     loaded, cells = rubbed.loaded, rubbed.loaded.cells
-    in_contact = cells.in_contact
-    law = _force_law(loaded)
-    share = loaded.load_share
-    normal = loaded.mesh_force[:, None] * share
-    deflection = loaded.mesh_force / loaded.mesh_stiffness
+    share, law = loaded.load_share, _force_law(loaded)
     stiffness = share * loaded.mesh_stiffness[:, None]
-    coefficient, direction = _friction(rubbed)
-    rubs = loaded.cell_force * rubbed.friction_coefficient
-    weighted = {
-        name: _mean(values, weight)
-        for name, values, weight in (
-            ("sliding_speed", rubbed.sliding_speed, rubs),
-            ("entrainment_speed", rubbed.entrainment_speed, rubs),
-            ("equivalent_radius", rubbed.equivalent_radius, loaded.cell_force),
-            ("film_load_share", rubbed.film_load_share, loaded.cell_force),
-        )
-    }
-    entrained = np.where(in_contact, weighted["entrainment_speed"], 1.0)
-    carries = loaded.cell_force > 0.0
-    least = {
-        name: np.where(carries, getattr(rubbed, name), np.inf).min(axis=2)
-        for name in ("minimum_film", "film_ratio")
-    }
     pitch = 2.0 * math.pi / cells.flanks.blank.teeth_wheel * loaded.wheel_lever.mean()
     return MeshTable(
         grid=loaded.grid,
-        path=pitch * (loaded.phase[:, None] + np.arange(in_contact.shape[1])),
-        in_contact=in_contact,
-        slide_to_roll_ratio=weighted["sliding_speed"] / entrained,
-        sliding_direction=np.where(in_contact, 1.0, 0.0),
-        pinion_curvature_radius=np.abs(direction[..., 4]),
-        wheel_curvature_radius=np.abs(direction[..., 10]),
+        path=pitch * (loaded.phase[:, None] + np.arange(share.shape[1])),
+        in_contact=cells.in_contact,
         stiffness=stiffness,
         tooth_stiffness=stiffness,
         corner_share=np.zeros((loaded.phase.size, 2)),
-        static_transmission_error=deflection,
+        static_transmission_error=loaded.mesh_force / loaded.mesh_stiffness,
         mesh_stiffness_tangent=loaded.mesh_stiffness_tangent,
         ramp_deflection=law.knot_deflection,
         ramp_stiffness=law.knot_stiffness,
         load_share=share,
-        normal_force=normal,
+        normal_force=loaded.mesh_force[:, None] * share,
         load_per_width=loaded.load_per_width.max(axis=2),
         hertz_pressure=loaded.hertz_pressure.max(axis=2),
-        friction_coefficient=coefficient,
         central_film=None,
-        **{n: np.where(np.isfinite(v), v, np.nan) for n, v in least.items()},
         film_pressure=None,
         film_stiffness=None,
         maximum_single_pair_stiffness=float(stiffness.max()),
@@ -82,23 +55,46 @@ def table_of(rubbed: HypoidFriction) -> MeshTable:
         film_stiffness_kind="none",
         mesh_order=cells.flanks.blank.teeth_pinion,
         direction=np.hstack([loaded.pinion_direction, -loaded.wheel_direction]),
-        friction_direction=direction,
         unloaded_transmission_error=loaded.unloaded_transmission_error,
-        **weighted,
+        **_friction(rubbed),
+        **_contacts(rubbed),
     )
+
+
+def _contacts(rubbed: HypoidFriction) -> dict[str, Array]:
+    """Columns that tell of the cells of each pair: means by their force, and least films."""
+    loaded, touch = rubbed.loaded, rubbed.loaded.cells.in_contact
+    force, carries = loaded.cell_force, loaded.cell_force > 0.0
+    rubs = force * rubbed.friction_coefficient
+    found = {
+        name: _mean(getattr(rubbed, name), weight)
+        for name, weight in (
+            ("sliding_speed", rubs),
+            ("entrainment_speed", rubs),
+            ("equivalent_radius", force),
+            ("film_load_share", force),
+        )
+    }
+    for name in ("minimum_film", "film_ratio"):
+        least = np.where(carries, getattr(rubbed, name), np.inf).min(axis=2)
+        found[name] = np.where(np.isfinite(least), least, np.nan)
+    entrained = np.where(touch, found["entrainment_speed"], 1.0)
+    found["slide_to_roll_ratio"] = found["sliding_speed"] / entrained
+    found["sliding_direction"] = np.where(touch, 1.0, 0.0)
+    return found
 
 
 def _force_law(loaded: HypoidLoadedContact) -> MeshForceLaw:
     """Force on the line of action over the deflection from the first touch on."""
     start, lever = loaded.unloaded_rotation, loaded.wheel_lever
     turn = (loaded.loaded_rotation - start) * _POINTS[:, None]
-    torque = loaded.wheel_torque_at(start + turn)
+    torque = wheel_torque_at(loaded, start + turn)
     torque[0] = 0.0
     return MeshForceLaw.through(loaded.grid, (lever * turn).T, (torque / lever).T)
 
 
-def _friction(rubbed: HypoidFriction) -> tuple[Array, Array]:
-    """Coefficient of each pair (p, pairs), and what a newton of its friction does (p, pairs, 12).
+def _friction(rubbed: HypoidFriction) -> dict[str, Array]:
+    """Coefficient of each pair, what a newton of its friction does, and the levers of that.
 
     Without any friction the direction is that of one coefficient in all cells.
     """
@@ -116,7 +112,12 @@ def _friction(rubbed: HypoidFriction) -> tuple[Array, Array]:
     share = (loaded.mesh_force[:, None] * loaded.load_share)[touch]
     over = np.where(rubs > 0.0, coefficient, 1.0) * share
     direction = np.concatenate(sums, axis=-1) / np.where(carries, over, 1.0)[:, None]
-    return cells.spread(coefficient), cells.spread(direction)
+    return {
+        "friction_coefficient": cells.spread(coefficient),
+        "friction_direction": cells.spread(direction),
+        "pinion_curvature_radius": cells.spread(np.abs(direction[:, 4])),
+        "wheel_curvature_radius": cells.spread(np.abs(direction[:, 10])),
+    }
 
 
 def _mean(values: Array, weight: Array) -> Array:

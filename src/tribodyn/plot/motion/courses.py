@@ -84,7 +84,7 @@ def mesh_force(result: Result) -> Any:
     ]
     low, high = (rounded("mesh_force", float(f(motion.measured(force)))) for f in (np.min, np.max))
     return stack(
-        f"The mesh force swings between {low} and {high}{motion.window}",
+        f"The mesh force varies between {low} and {high}{motion.window}",
         motion.label,
         [Panel(axis_label("mesh_force"), traces, {"rangemode": "tozero"}, height=1.3)],
         motion.layout(),
