@@ -310,7 +310,7 @@ _NO_PAIR = {
 def no_gear_pair(kind: str) -> Problem:
     """What is said where something asks for the spur gears of a case that has none."""
     return Problem(
-        f'a case with gears.kind = "{kind}" has no spur gear pair',
+        f'a case with gears.kind = "{kind}" has no gear pair',
         "gears.kind",
         _NO_PAIR[kind],
         'Give the gears with kind = "spur" for what follows from their shape',
