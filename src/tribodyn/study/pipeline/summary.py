@@ -19,6 +19,7 @@ from tribodyn.study.pipeline.series import (
     compression,
     directions_of,
     first_touch,
+    friction_forces,
     is_steady,
     measured,
     mesh_force,
@@ -267,8 +268,9 @@ def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     wheel_speed = mesh.pinion_speed / result.case.gear_ratio
     lost = mesh.pinion_speed * friction("friction_moment_pinion")
     lost = lost - wheel_speed * friction("friction_moment_wheel")
+    forces = friction_forces(result, samples)
     return {
-        "rms_friction_force": rms(samples, friction("friction_sum")),
+        **{f"rms_{name}": rms(samples, values) for name, (values, *_) in forces.items()},
         "mean_friction_power": mean(samples, lost),
     }
 
