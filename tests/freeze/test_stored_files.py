@@ -24,7 +24,9 @@ _ARCHIVE = Path(__file__).parent / "stored.zip"
 _RESULTS = sorted(COMMANDS)
 with zipfile.ZipFile(_ARCHIVE) as _archive:
     #: Built-in cases of that state; later ones are not in it.
-    _CASES = sorted(Path(n).stem for n in _archive.namelist() if n.startswith("cases/"))
+    _CASES = sorted(
+        Path(n).stem for n in _archive.namelist() if n.startswith("cases/") and n.endswith(".toml")
+    )
 #: Columns of the solved film.
 _FILMS = {"central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness"}
 
