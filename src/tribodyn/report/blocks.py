@@ -24,6 +24,7 @@ SECTIONS = (
     "film_pressure",
     "film_stiffness",
     "mesh_force",
+    "friction_force",
     "transmission_error",
     "acceleration",
     "spectrum",
