@@ -157,9 +157,8 @@ def bifurcation(
     )
     first = None if start is None else read_start(values.systems[0], start)
     branches = _BRANCHES[sweep]
-    work = values.count * len(branches) * (1 + bool(verdict))
     _announce(values, (transient + cycles) * len(branches) * (3 if verdict else 1))
-    progress.start("Motions", work)
+    progress.start("Motions", values.count * len(branches) * (1 + bool(verdict)))
     rows = _rows(values, branches, first, survey, progress)
     finer = values.refined(_refined_steps(values))
     fine = [_begin(values, row, keep) for row in rows]
