@@ -21,8 +21,10 @@ SCRIPTS = (
     "film_batch",
     "friction_speed",
     "friction_experiment",
+    "losses_speed",
     "fe2d_speed",
     "stiffness_speed",
+    "hypoid_speed",
     "cold_start",
 )
 

@@ -17,6 +17,7 @@ from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid_blank import hypoid_blank
 from tribodyn.plot.gear.hypoid_contact import hypoid_contact
 from tribodyn.plot.gear.hypoid_flanks import ease_off, hypoid_pair
+from tribodyn.plot.gear.hypoid_loaded import hypoid_friction, hypoid_load, hypoid_pressure
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.coupling import coupling
@@ -29,7 +30,14 @@ from tribodyn.plot.mesh.table import (
     static_stiffness,
     static_transmission_error,
 )
-from tribodyn.plot.motion.courses import acceleration, bearing_force, mesh_force, transmission_error
+from tribodyn.plot.motion.beside import result_comparison
+from tribodyn.plot.motion.courses import (
+    acceleration,
+    bearing_force,
+    friction_force,
+    mesh_force,
+    transmission_error,
+)
 from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
@@ -76,13 +84,17 @@ __all__ = [
     "friction",
     "friction_claims",
     "friction_effect",
+    "friction_force",
     "friction_from_loss",
     "friction_harmonics",
     "gear_pair",
     "harris_map",
     "hypoid_blank",
     "hypoid_contact",
+    "hypoid_friction",
+    "hypoid_load",
     "hypoid_pair",
+    "hypoid_pressure",
     "line_contact",
     "load_sharing",
     "loaded_contact",
@@ -103,6 +115,7 @@ __all__ = [
     "poincare",
     "power_flow",
     "recording",
+    "result_comparison",
     "run_up",
     "run_up_map",
     "spectrogram",

@@ -20,11 +20,12 @@ from tribodyn.gear import HypoidFlanks, Material, Misalignment
 from tribodyn.gear.hypoid.envelope import cross
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.hypoid.cells import ContactCells, contact_cells
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array
 
-#: Steps of Newton's method, which comes down a convex curve, and the torque that may be left.
-_STEPS, _CLOSE = 60, 1e-13
+#: Steps of Newton's method, which comes down a convex curve, and the parts of
+#: the torque at which it ends and that are refused.
+_STEPS, _CLOSE, _REFUSED = 60, 1e-13, 1e-9
 _PHASES, _PAIRS, _CELLS = ("phase",), ("phase", "pair"), ("phase", "pair", "cell")
 
 
@@ -154,6 +155,9 @@ class HypoidLoadedContact(Record):
         torque = _required_torque(pinion_torque)
         return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
 
+    plot_pressure = drawn("hypoid_pressure", "Draw the pressure over the flank.")
+    plot_load = drawn("hypoid_load", "Draw load sharing, transmission error and stiffness.")
+
     def __repr__(self) -> str:
         """One line."""
         return (
@@ -213,6 +217,7 @@ def hypoid_loaded_contact(
 
     Examples
     --------
+    >>> import math
     >>> from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
     >>> blank = hypoid_blank(10, 43, 31.7e-3, 0.336, 47.7e-3, math.radians(46.0), 0.1143)
     >>> ease_off = EaseOff(lengthwise_crowning=30e-6, profile_crowning=6e-6)
@@ -292,9 +297,16 @@ def lag_under(cells: ContactCells, line_stiffness: float, wheel_torque: float) -
     lag = most + 1.1 * wheel_torque / cells.summed(spring)
     for _ in range(_STEPS):
         _, torque, rate = carried(cells, line_stiffness, lag)
-        if np.max(np.abs(torque - wheel_torque)) < _CLOSE * wheel_torque:
+        left = float(np.max(np.abs(torque - wheel_torque))) / wheel_torque
+        if left < _CLOSE:
             break
         lag = lag - (torque - wheel_torque) / rate
+    if not left < _REFUSED:
+        raise ComputationError(
+            f"a torque of {wheel_torque:.4g} N m on the wheel is balanced within {left:.2g} only",
+            why="It is too small beside the gaps of ease-off and misalignment",
+            remedy="Give more torque, or read the tooth contact without load",
+        )
     return lag
 
 

@@ -14,6 +14,7 @@ from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears, is_needed
 from tribodyn.study.case.given import Given, Source, plain, unsound
+from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.provenance import (
     Stated,
     effective_values,
@@ -36,10 +37,10 @@ from tribodyn.study.case.sections import (
     Solver,
     Stiffness,
 )
-from tribodyn.study.case.values import Plain, read_fields
+from tribodyn.study.case.values import Plain, as_meant, as_typed, read_fields
 
 if TYPE_CHECKING:
-    from tribodyn.gear import Material, SpurPair
+    from tribodyn.gear import HypoidFlanks, Material, SpurPair
     from tribodyn.losses import Gearbox
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
@@ -97,6 +98,7 @@ class Case(Section, whole=True):
         found = list(unsound(data))
         if found:
             raise InputError((source or Source()).place(found))
+        data, misspelt, meant = as_meant(data)
         given = Given(data if source is not None else plain(data))
         source = source or Source()
         stated, found = read_stated(given)
@@ -105,7 +107,7 @@ class Case(Section, whole=True):
         chosen = choices(given)
         vars(self).update(read_fields(type(self), body, "", chosen, found))
         found = [fault for fault in found if is_needed(fault[0], given.get("gears.kind"))]
-        found += reason_faults(marks)
+        found += [*misspelt, *reason_faults(marks)]
         readable = not any(key.startswith("gears") for key, _ in found)
         found += cross_problems(given, chosen, {key for key, _ in found})
         if not found:
@@ -114,7 +116,7 @@ class Case(Section, whole=True):
             told = {key for key, _ in found}
             found += [fault for fault in derive.gear_problems(self.gears) if fault[0] not in told]
         if found:
-            raise InputError(source.place(found))
+            raise InputError(source.place(as_typed(found, meant)))
         self._source, self._assumed = source, dict(marks)
         self._stated, stale = settled(self, self._effective, given, stated)
         for key in stale:
@@ -204,11 +206,16 @@ class Case(Section, whole=True):
         Raises
         ------
         InputError
-            If the case has a mesh table of another program instead.
+            If the case has a mesh table of another program, or a hypoid pair.
         """
-        if self.gears.kind == "table":
-            raise InputError(derive.no_gear_pair())
+        if self.gears.kind != "spur":
+            raise InputError(derive.no_gear_pair(self.gears.kind))
         return derive.gear_pair(self.gears, self.dynamics.backlash)
+
+    @cached_property
+    def hypoid_flanks(self) -> HypoidFlanks | None:
+        """Flanks of the side that carries; None where the gears are no hypoid pair."""
+        return hypoid_flanks(self.gears) if self.gears.kind == "hypoid" else None
 
     @cached_property
     def material_properties(self) -> Material:
@@ -240,7 +247,7 @@ class Case(Section, whole=True):
         """Total play on the line of action [m]: given, or that of the tooth thicknesses."""
         given = self.dynamics.backlash
         if given is None:
-            return 0.0 if self.gears.kind == "table" else self.gear_pair.backlash
+            return derive.backlash(self)
         return given
 
     @property
