@@ -117,8 +117,8 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling() -> None:
         assert summary["oil_temperature"] == result.case.lubricant.temperature
         assert heat.power_loss[-1] == pytest.approx(result.mesh.mean_friction_power, rel=1e-12)
     assert coupled.coupling is not None
-    assert plain.heat.temperature[-1] == pytest.approx(coupled.heat.temperature[-1], abs=5.0)
-    assert plain.heat.temperature[-1] != coupled.heat.temperature[-1]
+    # One mean coefficient for the whole mesh does not know how the load is shared.
+    assert plain.heat.temperature[-1] == pytest.approx(coupled.heat.temperature[-1], abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.given import Given
+from tribodyn.study.case.heat import heat_balance, heat_of_bodies
 from tribodyn.study.case.hypoid import HYPOID_KEYS
 from tribodyn.study.case.section import Choice, Known, choices, section_at
 
@@ -62,20 +63,6 @@ def _roughness(given: Given) -> Found:
         what = f"{absent.split('.')[2]} of the {absent.split('.')[1]} is missing"
         why = f"{given.show(key)} of the {gear} needs its counterpart"
         yield absent, Problem(what, "", why, "Add it, or give composite_roughness in [gears]")
-
-
-def _bodies(given: Given) -> Found:
-    """Conductivity and specific heat of a gear tell only together how its flank warms."""
-    for gear in ("pinion", "wheel"):
-        keys = [f"gears.{gear}.{name}" for name in ("thermal_conductivity", "specific_heat")]
-        present = [key for key in keys if key in given]
-        if len(present) == 1:
-            absent = next(key for key in keys if key not in given)
-            name = absent.rpartition(".")[2]
-            why = f"{given.show(present[0])} of the {gear} needs its counterpart"
-            example = {"specific_heat": "460 J/kg/K", "thermal_conductivity": "47 W/m/K"}[name]
-            remedy = f'Add {name} = "{example}", that of steel, or remove both'
-            yield absent, Problem(f"{name} of the {gear} is missing", "", why, remedy)
 
 
 #: Kind of gears -> keys that take few of their names, those names, and why.
@@ -185,7 +172,7 @@ def _lubricant(given: Given) -> Found:
     if "lubricant" not in given:
         return
     present = [name for name in (*_PROPERTIES, *_THERMAL) if f"lubricant.{name}" in given]
-    yield from _heat(given)
+    yield from heat_balance(given)
     if "lubricant.name" in given:
         for name in present:
             yield _both(given, "lubricant.name", f"lubricant.{name}")
@@ -195,28 +182,6 @@ def _lubricant(given: Given) -> Found:
             why = "Without a name from the library all three properties are needed"
             remedy = f'Add {name}, or name an oil, for example name = "80W"'
             yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
-
-
-def _heat(given: Given) -> Found:
-    """A heat balance needs an oil that is known at every temperature, and gears that rub."""
-    key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
-    if key not in given:
-        if other in given:
-            why, remedy = "Without heat_transfer the oil keeps its temperature", "Remove it"
-            yield other, Problem(given.show(other), "", why, f"{remedy}, or add heat_transfer")
-        return
-    from tribodyn.lubricant import library, temperature_range
-
-    name, known = given.get("lubricant.name"), library()
-    grades = [each for each in known if len(set(temperature_range(each))) == 2]
-    if name not in grades:
-        what = f"{given.show(key)} with an oil that is known at one temperature"
-        why = "The balance asks for its viscosity at others"
-        remedy = f'Name another oil, for example name = "{grades[0]}", or remove heat_transfer'
-        yield key, Problem(what, "", why, remedy)
-    if given.get("gears.kind", "spur") != "spur":
-        why = "The losses at other temperatures are known of spur gears"
-        yield key, Problem(given.show(key), "", why, "Remove it")
 
 
 def _needs(given: Given, law: FrictionLaw | None) -> Found:
@@ -501,7 +466,7 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _kind, _roughness, _bodies, _face_width, _size, _lubricant, _dampings,
+    _kind, _roughness, heat_of_bodies, _face_width, _size, _lubricant, _dampings,
     _friction_load, _solver, _coupling,
 )  # fmt: skip
 
