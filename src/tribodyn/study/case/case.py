@@ -223,7 +223,23 @@ class Case(Section, whole=True):
         return derive.material(self.material)
 
     def density(self, gear: str) -> float:
-        """Density of the pinion or the wheel [kg/m^3]: its own, or that of the material."""
+        """Density of one gear [kg/m^3]: its own, or that of the material.
+
+        Parameters
+        ----------
+        gear : str
+            ``"pinion"`` or ``"wheel"``.
+
+        Returns
+        -------
+        float
+
+        Examples
+        --------
+        >>> import tribodyn
+        >>> tribodyn.load_case("fzg-film").density("wheel")
+        7800.0
+        """
         own = getattr(self.gears, gear).density
         return float(self.material.density if own is None else own)
 
