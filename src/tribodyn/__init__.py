@@ -7,7 +7,7 @@
 
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
-``analysis``, ``measurement``, ``uncertainty``,
+``analysis``, ``measurement``, ``uncertainty``, ``surrogate``,
 ``study``, ``cases``, ``plot`` and ``report``.
 """
 
@@ -95,7 +95,7 @@ _HOMES = {
 _ROOMS = (
     "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
     "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report", "stiffness",
-    "study", "uncertainty", "units",
+    "study", "surrogate", "uncertainty", "units",
 )  # fmt: skip
 
 
