@@ -37,3 +37,27 @@ def random_blanks(number, seed=0, **more):
             refused += 1
     assert refused <= number // 10
     return blanks
+
+
+def contact_rows(flanks, places):
+    """Direction and sliding direction (p, 12) of contacts at places on the wheel's flank.
+
+    Worked out in the fixed frame and written in those of the gears: x common, y along the axis of
+    each gear in its running sense.
+    """
+    touch, sense = flanks.touch(np.asarray(places)), flanks.sense
+    position, normal = touch.contact.wheel[:2]
+    sliding = sense * touch.sliding
+    tangent = sliding / np.linalg.norm(sliding, axis=-1, keepdims=True)
+    frames = (sense * np.array([[sense, 0, 0], [0, 1, 0], [0, 0, 1]]),
+              np.array([[1, 0, 0], [0, 0, -sense], [0, sense, 0]]))  # fmt: skip
+    rows = []
+    for way in (normal, tangent):
+        parts = [
+            sign * np.hstack([way @ frame.T, np.cross(position - origin, way) @ frame.T])
+            for sign, frame, origin in zip(
+                (1.0, -1.0), frames, (flanks.axes.origin, np.zeros(3)), strict=True
+            )
+        ]
+        rows.append(np.hstack(parts))
+    return rows[0], rows[1], np.linalg.norm(sliding, axis=-1)

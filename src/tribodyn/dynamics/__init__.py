@@ -17,6 +17,7 @@ from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.dynamics.structure.force_law import MeshForce, follow_load, law_contacts
 from tribodyn.dynamics.structure.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12
 from tribodyn.dynamics.structure.gear_pair import SPUR6_NAMES, TORSIONAL_NAMES, spur6, torsional
+from tribodyn.dynamics.structure.hypoid14 import HYPOID14_NAMES, HypoidSupports, hypoid14
 from tribodyn.dynamics.structure.shafts import (
     Body,
     GearMesh,
@@ -37,6 +38,7 @@ __all__ = [
     "FZG12_LIGHT",
     "FZG12_MESH_FREQUENCY",
     "FZG12_NAMES",
+    "HYPOID14_NAMES",
     "SPUR6_NAMES",
     "STRUCTURES",
     "TORSIONAL_NAMES",
@@ -53,6 +55,7 @@ __all__ = [
     "ForcedResponse",
     "GearMesh",
     "Gearing",
+    "HypoidSupports",
     "Jump",
     "LaneParameters",
     "LaneStatistics",
@@ -74,6 +77,7 @@ __all__ = [
     "follow_load",
     "forced_response",
     "fzg12",
+    "hypoid14",
     "law_contacts",
     "natural_modes",
     "recommended_steps",

@@ -241,7 +241,7 @@ def _signals(
     contacts = len(system.contacts)
     ends = [""] if contacts == 1 else [f"_{j}" for j in range(contacts)]
     names = [f"{kind}{end}" for kind in ("deflection", "contact_force") for end in ends[:contacts]]
-    turning = ["rad/s^2" if name.endswith("theta") else "m/s^2" for name in system.names]
+    turning = ["rad/s^2" if "theta" in name else "m/s^2" for name in system.names]
     units = [*["m"] * contacts, *["N"] * contacts, *turning, *[unit] * len(outputs)]
     return (*names, *system.names, *outputs), tuple(units)
 

@@ -127,7 +127,7 @@ class RunUp(Record):
         if name == "contact_force" and self.contact_force.shape[1]:
             return np.asarray(self.contact_force.sum(axis=1)), "N"
         if name in self.names:
-            unit = "rad/s^2" if name.endswith("theta") else "m/s^2"
+            unit = "rad/s^2" if "theta" in name else "m/s^2"
             return self.acceleration[:, self.names.index(name)], unit
         if name in self.output_names:
             return self.output[:, self.output_names.index(name)], self.output_unit

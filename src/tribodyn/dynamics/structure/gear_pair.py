@@ -88,6 +88,7 @@ def gear_contact(
     keep = slice(None) if supports else [2, 5]
     towards: Entry = direction[keep]
     if (varying := getattr(mesh, "direction", None)) is not None:
+        keep = _kept(varying, supports)
         towards = _columns(varying, keep)
     of_mesh = getattr(mesh, "friction", None) or friction
     return Contact(
@@ -100,6 +101,21 @@ def gear_contact(
         events=tuple(mesh.event_phases),
         damping_in_gap=damping_in_gap,
     )
+
+
+def _kept(direction: Callable[[Array], Array], supports: bool) -> slice | list[int]:
+    """Columns of a direction that a structure has: all of a plane, or the turns of both gears."""
+    in_space = np.shape(direction(np.zeros(1)))[-1] == 12
+    if in_space and supports:
+        raise InputError(
+            "the mesh has directions in space",
+            where="argument mesh",
+            why="The gears of this structure move in one plane",
+            remedy="Take hypoid14, or torsional, which has turning gears alone",
+        )
+    if supports:
+        return slice(None)
+    return [4, 10] if in_space else [2, 5]
 
 
 def with_error_of(mesh: object, error: Entry) -> Entry:

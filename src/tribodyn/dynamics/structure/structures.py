@@ -11,8 +11,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tribodyn.dynamics.structure.fzg12 import fzg12
 from tribodyn.dynamics.structure.gear_pair import spur6, torsional
+from tribodyn.dynamics.structure.hypoid14 import HypoidSupports, hypoid14
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
 
 if TYPE_CHECKING:
@@ -258,5 +261,58 @@ def _fzg12(
         shaft_damping=[shafts[f"shaft{number}_damping"] for number in (1, 2)],
         bearing_stiffness=[stiffness[1], stiffness[1], stiffness[0], stiffness[0]],
         bearing_damping=[discs[1], wheels[1], wheels[0], discs[0]],
+        **gears.contact,
+    )
+
+
+_OWN_AXES = "That model has no axes that cross"
+
+
+def _hypoid_options() -> dict[str, Option]:
+    """Options of shafts and bearings in space: those of the class, in the same order."""
+    given: dict[str, Any] = {
+        "engine_moment_of_inertia": ("moment_of_inertia", "of what drives the pinion's shaft"),
+        "load_moment_of_inertia": ("moment_of_inertia", "of what the wheel's shaft drives"),
+        "diametral_moment_of_inertia": (
+            "moment_of_inertia", "of each gear about an axis across its own"),
+        "bearing_stiffness": ("bearing_stiffness", "of the bearings across the axis of each gear"),
+        "axial_bearing_stiffness": ("bearing_stiffness", "of the bearings along the axis"),
+        "tilting_stiffness": ("shaft_stiffness", "of the bearings against tilting of each gear"),
+        "shaft_stiffness": (
+            "shaft_stiffness", "against twist from engine to pinion and from wheel to load"),
+    }  # fmt: skip
+    usual, found = HypoidSupports(), {}
+    for name, (of, words) in given.items():
+        value = getattr(usual, name)
+        each = None if np.ndim(value) == 0 else tuple(float(v) for v in value)
+        default = value if each is None else (each[0] if each[0] == each[1] else each)
+        low, high = (1e-14, 1e7) if of == "moment_of_inertia" else (1.0, 1e13)
+        kind = "moment of inertia" if of == "moment_of_inertia" else "stiffness"
+        found[name] = number(
+            default, low, high, _GUARD, of=of, meaning=f"{kind} {words}", absent=_OWN_AXES,
+            pair=each is not None,
+        )  # fmt: skip
+    for part, words in (("bearing", "of each support"), ("shaft", "of each shaft")):
+        name = f"{part}_damping_ratio"
+        found[name] = number(
+            getattr(usual, name), 0.0, 2.0, "supports lie between 0.01 and 0.1",
+            meaning=f"damping {words} over its critical value", absent=_OWN_AXES,
+        )  # fmt: skip
+    return found
+
+
+@STRUCTURES.define(
+    "hypoid-14dof",
+    options=_hypoid_options(),
+    turns_with={"engine_theta": "pinion", "load_theta": "wheel"},
+    meaning="both gears move along three axes, turn and tilt; shafts join them to engine and load",
+)
+def _hypoid14(gears: Gearing, **options: Any) -> System:
+    return hypoid14(
+        gears.mesh,
+        mass=gears.mass,
+        moment_of_inertia=gears.moment_of_inertia,
+        torque=gears.torque,
+        supports=HypoidSupports(**options),
         **gears.contact,
     )

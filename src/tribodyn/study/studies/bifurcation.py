@@ -214,7 +214,7 @@ class Findings:
         """Return the diagram as a table."""
         found = self.found
         unit = f" [{self.axis.display_unit}]" if self.axis.display_unit else ""
-        turns = self.found.signal.endswith("theta")
+        turns = "theta" in self.found.signal
         head = [f"{self.axis.name.replace('_', ' ')}{unit}", "branch", "period",
                 "rms [rad]" if turns else "rms [um]",
                 "off the flank", "omega_max dt", "verdict"]  # fmt: skip
@@ -322,7 +322,7 @@ class Findings:
 
     def _size(self, rms: float) -> str:
         """Write a size of the signal, which turns or moves."""
-        return f"{rms:.3g} rad" if self.found.signal.endswith("theta") else f"{1e6 * rms:.3g} um"
+        return f"{rms:.3g} rad" if "theta" in self.found.signal else f"{1e6 * rms:.3g} um"
 
     def _two(self) -> Iterator[str]:
         if len(self.found.branches) < 2:
