@@ -25,17 +25,20 @@ if TYPE_CHECKING:
         bifurcation,
         campbell,
         comprehensive_stiffness,
+        ensemble,
         film_over_operation,
         friction_experiment,
         harris_map,
         loaded_contact,
         loss_map,
         natural_modes,
+        operating_data,
         optimize_tip_relief,
         rig_power_flow,
         run_up,
         speed_sweep,
         sweep,
+        vibration_data,
     )
 
 __version__ = "0.1.0"
@@ -51,6 +54,7 @@ __all__ = [
     "campbell",
     "cases",
     "comprehensive_stiffness",
+    "ensemble",
     "film_over_operation",
     "friction_experiment",
     "harris_map",
@@ -59,12 +63,14 @@ __all__ = [
     "loaded_contact",
     "loss_map",
     "natural_modes",
+    "operating_data",
     "optimize_tip_relief",
     "rig_power_flow",
     "run",
     "run_up",
     "speed_sweep",
     "sweep",
+    "vibration_data",
 ]
 
 _HOMES = {
@@ -76,6 +82,7 @@ _HOMES = {
     "bifurcation": "study",
     "campbell": "study",
     "comprehensive_stiffness": "study",
+    "ensemble": "study",
     "film_over_operation": "study",
     "friction_experiment": "study",
     "harris_map": "study",
@@ -84,12 +91,14 @@ _HOMES = {
     "loaded_contact": "study",
     "loss_map": "study",
     "natural_modes": "study",
+    "operating_data": "study",
     "optimize_tip_relief": "study",
     "rig_power_flow": "study",
     "run": "cases",
     "run_up": "study",
     "speed_sweep": "study",
     "sweep": "study",
+    "vibration_data": "study",
 }
 
 _ROOMS = (

@@ -55,6 +55,11 @@ COMMANDS = (
         "Judge published claims on one gear pair: friction.",
     ),
     (
+        "surrogate",
+        "tribodyn.cli.surrogate_command:surrogate",
+        "Learn the steady response of a case, and predict it at once.",
+    ),
+    (
         "compare",
         "tribodyn.cli.compare_command:compare",
         "Show what differs between two results.",

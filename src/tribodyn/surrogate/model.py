@@ -19,7 +19,8 @@ from tribodyn.types import Array
 
 #: What a stored model calls itself.
 _KIND = "tribodyn surrogate"
-_STORED = ("feature_range", "target_range", "true", "predicted", "band", "epochs", "stopped")
+_STORED = ("feature_range", "target_range", "true", "predicted", "band", "epochs")
+_WORDS = ("feature_unit", "target_unit", "stopped")
 _COUNTS = ("training_rows", "validation_rows", "seed")
 #: Part of the range of a feature beyond it that is no extrapolation yet.
 _MARGIN = 1e-9
@@ -37,6 +38,8 @@ class Surrogate(Record):
         What is predicted from.
     targets : (t,) array of str
         What is predicted.
+    feature_unit, target_unit : (k,), (t,) array of str
+        Their units, where the data told.
     feature_range : (2, k) array
         Least and greatest value of each feature over the training rows.
     target_range : (2, t) array
@@ -61,6 +64,8 @@ class Surrogate(Record):
 
     features: Any = quantity("feature", unit="", axis=True, name="feature")
     targets: Any = quantity("target", unit="", axis=True, name="target")
+    feature_unit: Any = quantity("feature", unit="")
+    target_unit: Any = quantity("target", unit="")
     feature_range: Array = quantity("end", "feature", unit="")
     target_range: Array = quantity("end", "target", unit="")
     networks: tuple[tuple[Network, Array], ...]
@@ -226,7 +231,8 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
         fields: dict[str, Any] = {name: np.asarray(data[name].values) for name in _STORED}
         fields |= {name: int(data.attrs[name]) for name in _COUNTS}
         fields |= {f"{name}s": data[name].values.astype(str) for name in ("feature", "target")}
-        fields |= {"level": float(data.attrs["level"]), "stopped": fields["stopped"].astype(str)}
+        fields |= {name: data[name].values.astype(str) for name in _WORDS}
+        fields["level"] = float(data.attrs["level"])
         fields["networks"] = tuple(
             _network(data[f"weights_{number}"], data.sizes["feature"])
             for number in range(data.sizes["target"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -145,7 +145,7 @@ def train(
         fits.append(_fitted(ready, column, seed, chosen)[:2])
         progress.advance()
     progress.finish()
-    return _model(ready, list(features), list(targets), fits, chosen, seed)
+    return _model(data, ready, (list(features), list(targets)), fits, chosen, seed)
 
 
 def bpnn_pl(
@@ -214,7 +214,7 @@ def bpnn_pl(
         errors = search[str(name)][:, 1:]
         fits.append(tried[int(np.argmin((errors / errors.min(axis=0)).sum(axis=1)))])
     progress.finish()
-    return _model(ready, list(features), list(targets), fits, training, seed), search
+    return _model(data, ready, (list(features), list(targets)), fits, training, seed), search
 
 
 def _prepared(
@@ -277,9 +277,9 @@ class _Residuals:
 
 
 def _model(
+    data: Any,
     ready: Prepared,
-    features: list[str],
-    targets: list[str],
+    names: tuple[list[str], list[str]],
     fits: list[tuple[Network, Fit]],
     training: Training,
     seed: int,
@@ -291,8 +291,10 @@ def _model(
     predicted = scaling.low[:, None] + made * scaling.span[:, None]
     true = ready.targets[held].T.copy()
     return Surrogate(
-        features=np.array(features),
-        targets=np.array(targets),
+        features=np.array(names[0]),
+        targets=np.array(names[1]),
+        feature_unit=_units(data, names[0]),
+        target_unit=_units(data, names[1]),
         feature_range=np.stack([ready.feature_scaling.low, ready.feature_scaling.high]),
         target_range=np.stack([scaling.low, scaling.high]),
         networks=tuple((network, fit.weights) for network, fit in fits),
@@ -306,6 +308,15 @@ def _model(
         validation_rows=int(ready.split.validation.size),
         seed=int(seed),
     )
+
+
+def _units(data: Any, names: list[str]) -> Any:
+    """Units of columns, empty where the data do not tell."""
+    known = getattr(data, "units", None)
+    if isinstance(known, Mapping):
+        return np.array([str(known.get(name, "")) for name in names])
+    columns = (getattr(data[name], "attrs", {}) for name in names)
+    return np.array([str(told.get("units", "")) for told in columns])
 
 
 def _half_width(errors: Array, level: float) -> Array:
