@@ -5,12 +5,26 @@ import math
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.gear import hypoid_blank
+from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
 
 
 def h1043(**more):
     """10 teeth against 43, offset 31.7 mm, a cutter of 9 in."""
     return hypoid_blank(10, 43, 31.7e-3, 336e-3, 47.7e-3, math.radians(46.0), 114.3e-3, **more)
+
+
+def eased(blank=None, side="drive", along=0.5e-4, across=2e-4, both=0.3e-4, scale=1.0):
+    """Flanks, of 10 x 43 by default, with coefficients [1/mm] of an ease-off about P = -2.2 mm."""
+    blank = blank or h1043()
+    width = 0.5 * blank.face_width_wheel
+    depth = 0.5 * (blank.mean_addendum_pinion + blank.mean_addendum_wheel)
+    ease = EaseOff(
+        lengthwise_crowning=scale * 1e3 * along * width**2,
+        profile_crowning=scale * 1e3 * across * depth**2,
+        bias=scale * 1e3 * both * width * depth,
+        center=(0.0, -2.2e-3),
+    )
+    return hypoid_flanks(blank, side, ease, points=9)
 
 
 def random_blanks(number, seed=0, **more):

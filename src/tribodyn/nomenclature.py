@@ -82,6 +82,11 @@ kinematic_viscosity | nu | m^2/s | mm^2/s | viscosity divided by density
 pressure_viscosity_coefficient | alpha | 1/Pa | 1/GPa | slope of ln(viscosity) over pressure at ambient pressure | "21.9 1/GPa"
 temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per kelvin at ambient pressure | "0.04 1/K"
 eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear | "5 MPa"
+limiting_stress | tau_L0 | Pa | MPa | limiting shear stress of the oil at ambient pressure | "2 MPa"
+limiting_stress_slope | Lambda | | | rise of the limiting shear stress of the oil per pressure | 0.05
+carreau_stress | G | Pa | MPa | shear stress from which the oil thins after Carreau | "5 MPa"
+carreau_exponent | n | | | exponent of the shear stress over a high shear rate after Carreau | 0.5
+yasuda_exponent | a | | | sharpness of the bend from Newton's oil to a power of the shear rate | 2.0
 thermal_conductivity | k | W/m/K | W/m/K | thermal conductivity of the oil | "0.13 W/m/K"
 temperature | theta | K | degC | working temperature | "40 degC"
 speed | n | rad/s | rpm | rotational speed of the gear named by speed_of | "900 rpm"

@@ -30,6 +30,7 @@ LARGEST = {
     "case": 10**6,
     "profile map": 4 * 10**6,
     "table": 10**7,
+    "rexs": 5 * 10**7,
     "netcdf": 2**30,
     "recording": 2**31,
 }

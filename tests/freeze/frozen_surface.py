@@ -18,8 +18,8 @@ from typing import Any
 PACKAGE = Path(str(files("tribodyn")))
 
 _PARTS = """
-analysis cases cli contact dynamics ehl errors friction gear losses lubricant measurement mesh
-nomenclature plot progress report stiffness study surrogate uncertainty units
+analysis cases cli contact dynamics ehl errors exchange friction gear losses lubricant
+measurement mesh nomenclature plot progress report stiffness study surrogate uncertainty units
 """
 
 #: Pages of public names.

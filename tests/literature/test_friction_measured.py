@@ -103,6 +103,36 @@ def test_traction_beside_the_sheared_film():
     assert np.all(np.abs(found[3:] - TRACTION[3:, 1]) < TRACTION[3:, 2])
 
 
+@pytest.mark.parametrize(
+    ("numbers", "first", "low", "high"),
+    [
+        # At 0.17 % of sliding, and from the least to the greatest between 2.8 and 17.7 %. The film
+        # yields everywhere, so that friction is the slope of the limit, 0.05 by default.
+        ({"shear_model": "bair-winer"}, 7.42, -0.306, -0.125),
+        ({"shear_model": "carreau", "limiting_stress_slope": 0.05}, 7.40, -0.306, -0.126),
+        ({"shear_model": "carreau-eyring"}, 2.09, -0.694, -0.637),
+        ({"eyring_stress": 8.3e6, "limiting_stress_slope": 0.07}, 8.69, -0.035, 0.143),
+    ],
+)
+def test_traction_beside_films_that_thin_and_yield(numbers, first, low, high):
+    found = deviation(ehl(traction_contacts(), **numbers))
+    assert found[0] == pytest.approx(first, abs=0.05)
+    assert found[2:].min() == pytest.approx(low, abs=0.01)
+    assert found[2:].max() == pytest.approx(high, abs=0.02)
+
+
+def test_slope_of_the_limit_fitted_at_one_point():
+    contact = traction_contacts()
+    slopes = np.linspace(0.03, 0.12, 31)
+    levels = [
+        ehl(contact, shear_model="bair-winer", limiting_stress_slope=slope)[3] for slope in slopes
+    ]
+    fitted = float(np.interp(TRACTION[3, 1], levels, slopes))
+    assert fitted == pytest.approx(0.0685, abs=5e-4)  # oils lie between 0.02 and 0.12
+    found = ehl(contact, shear_model="bair-winer", limiting_stress_slope=fitted)
+    assert np.all(np.abs(found[3:] - TRACTION[3:, 1]) < TRACTION[3:, 2])
+
+
 def test_boundary_friction_beside_its_range():
     # 100 mm/s at 100 degrees: film ratio below 1 for 5 mPa s and a worn track; the last hundred
     # points, after a film has built up.

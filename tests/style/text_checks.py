@@ -11,7 +11,7 @@ _PATH = re.compile(rf"(?<![\w.$}}~\]/-])/(?:{_FOLDERS})/\w")
 _DRIVE = re.compile(r"(?<![\w])[A-Z]:\\{1,2}\w")
 _URL = re.compile(r"https?://([\w.-]+)(:\d+)?")
 
-#: Hosts that text may name: literature, standards of writing, namespaces, and the example ones.
+#: Hosts that text may name: literature, standards of writing, licences, namespaces, and the example ones.
 HOSTS = {
     "doi.org",
     "keepachangelog.com",
@@ -19,6 +19,7 @@ HOSTS = {
     "toml.io",
     "citation-file-format.github.io",
     "www.w3.org",
+    "www.apache.org",
     "plotly.com",
     "docs.python.org",
     "example.org",

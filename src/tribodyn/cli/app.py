@@ -65,6 +65,16 @@ COMMANDS = (
         "Show what differs between two results.",
     ),
     ("check", "tribodyn.cli.case_commands:check", "Check a case and show its geometry."),
+    (
+        "import",
+        "tribodyn.cli.exchange_commands:import_",
+        "List a gearbox model of another program (REXS), and make a case of it.",
+    ),
+    (
+        "export",
+        "tribodyn.cli.exchange_commands:export",
+        "Write a case for other gear programs (REXS).",
+    ),
     ("new", "tribodyn.cli.case_commands:new", "Write a commented case file to start from."),
     (
         "explain",

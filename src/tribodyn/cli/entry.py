@@ -111,6 +111,8 @@ _EXAMPLES = {
     "friction-from-loss": "losses.csv --case fzg-roughness",
     "experiment": "friction",
     "compare": "first second",
+    "import": "gearbox.rexs --out my.toml",
+    "export": "fzg-roughness --rexs gearbox.rexs",
     "new": "my.toml",
     "explain": "epsilon_alpha",
     "cite": "fzg-roughness",

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from tribodyn.ehl.traction.carreau import THINNING
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import (
     film_temperature_rise,
@@ -11,11 +14,12 @@ from tribodyn.ehl.traction.film_temperature import (
     thermal_oil,
 )
 from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS
+from tribodyn.ehl.traction.ree_eyring import EYRING, EYRING_STRESS
+from tribodyn.ehl.traction.shear_models import LIMIT, SHEAR_MODELS
 from tribodyn.ehl.traction.traction import FilmShear
-from tribodyn.errors import require_positive, warn
+from tribodyn.errors import warn
 from tribodyn.friction.base import LAWS, TribologicalContact
-from tribodyn.model import choice, flag, number
+from tribodyn.model import choice, flag
 from tribodyn.types import Array
 
 _GREATEST = 0.2  # friction coefficient that lubricated steel hardly exceeds
@@ -29,6 +33,7 @@ def ehl(
     inlet_heating: bool = False,
     flash_temperature: bool = False,
     rolling: bool = False,
+    **oil: float | None,
 ) -> Array:
     """Friction coefficient of solved films: integral of their shear stress over the load.
 
@@ -40,16 +45,19 @@ def ehl(
     ----------
     contact : TribologicalContact
         Loaded contacts with their ``film``.
-    shear_model : {"ree-eyring", "newtonian"}
-        How the oil shears.
+    shear_model : str
+        How the oil shears: a name of :data:`tribodyn.ehl.SHEAR_MODELS`.
     eyring_stress : float [Pa]
-        Stress from which a Ree-Eyring oil thins; 2 to 10 MPa for oils.
+        Stress from which an oil thins, by the models that have it; 2 to 10 MPa for oils.
     inlet_heating : bool
         Thin the film by the heat made in the inlet.
     flash_temperature : bool
         Take the viscosity at the mean temperature of the film, between bodies of steel.
     rolling : bool
         Add the rolling traction, so that the coefficient is that on the faster surface.
+    **oil : float
+        Other numbers of the shear model, such as ``limiting_stress`` [Pa]; those not given, or
+        None, have its defaults.
 
     Returns
     -------
@@ -59,7 +67,8 @@ def ehl(
     Raises
     ------
     InputError
-        If the contacts have no film, or the oil lacks the thermal data that an option needs.
+        If the contacts have no film, the oil lacks the thermal data that an option needs, or a
+        number does not belong to the shear model.
 
     Warns
     -----
@@ -84,11 +93,11 @@ def ehl(
     >>> print(np.round(ehl(contact), 4), np.round(ehl(contact, flash_temperature=True), 4))
     [0.044] [0.035]
     """
-    require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
     film = contact.known("film")
     speed = np.abs(np.ravel(contact.sliding_speed))
     factor = _film_factor(contact, film) if inlet_heating else None
-    shear = FilmShear(film, SHEAR_MODELS[shear_model], eyring_stress, factor)
+    model = SHEAR_MODELS[shear_model]
+    shear = FilmShear(film, model, model.complete(eyring_stress, oil), factor)
     rise = _temperature_rise(contact, shear, speed) if flash_temperature else None
     traction, _ = shear.sliding(speed, rise)
     if rolling:
@@ -138,11 +147,13 @@ def _warn_of_solid(coefficient: Array, shear_model: str) -> None:
     """Say where the oil would have to be stronger than any oil is."""
     greatest = float(np.max(coefficient))
     if greatest > _GREATEST:
-        remedy = (
-            'Set friction.shear_model = "ree-eyring"'
-            if shear_model == "newtonian"
-            else "Lower the Eyring stress, or set friction.flash_temperature = true"
-        )
+        if shear_model == "newtonian":
+            remedy = 'Set friction.shear_model = "ree-eyring"'
+        else:
+            remedy = (
+                "Give friction.limiting_stress_slope, lower the stress from which the oil thins, "
+                "or set friction.flash_temperature = true"
+            )
         warn(
             "friction-range",
             f"ehl: friction coefficient up to {greatest:.3g} with {shear_model} shear; oil films "
@@ -151,16 +162,23 @@ def _warn_of_solid(coefficient: Array, shear_model: str) -> None:
         )
 
 
+#: Numbers of single shear models; those not given are the model's own.
+_OWN = {
+    name: replace(
+        option,
+        default=None,
+        basis=f"the shear model, {option.show(option.default)} where it has one",
+    )
+    for name, option in {**LIMIT, **THINNING}.items()
+}
 SHEAR_OPTIONS = {
     "shear_model": choice(
         "ree-eyring",
-        SHEAR_MODELS.names,
-        meanings={name: SHEAR_MODELS[name].meaning for name in SHEAR_MODELS},
+        {name: SHEAR_MODELS[name].meaning for name in sorted(SHEAR_MODELS)},
         meaning="how the oil film shears under the solved pressure",
     ),
-    "eyring_stress": number(
-        EYRING_STRESS, 1e5, 1e8, "oils lie between 2 and 10 MPa", of="eyring_stress"
-    ),
+    **EYRING,
+    **_OWN,
     "inlet_heating": flag(False, meaning="thin the film by the heat that shear makes in the inlet"),
     "flash_temperature": flag(
         False, meaning="take the viscosity at the mean temperature of the film"

@@ -6,6 +6,8 @@ from tribodyn.mesh.film.film_columns import film_columns, moving_film
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import LOADS, MeshFriction, MeshFunctions, mesh_friction
 from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction, PhaseGrid, phase_grid
+from tribodyn.mesh.hypoid.friction import HypoidFriction, hypoid_friction
+from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, hypoid_loaded_contact
 from tribodyn.mesh.operation import (
     ComprehensiveStiffness,
     FilmOverOperation,
@@ -18,6 +20,8 @@ __all__ = [
     "LOADS",
     "ComprehensiveStiffness",
     "FilmOverOperation",
+    "HypoidFriction",
+    "HypoidLoadedContact",
     "MeshColumns",
     "MeshForceLaw",
     "MeshFriction",
@@ -30,6 +34,8 @@ __all__ = [
     "comprehensive_stiffness",
     "film_columns",
     "film_over_operation",
+    "hypoid_friction",
+    "hypoid_loaded_contact",
     "mesh_friction",
     "moving_film",
     "phase_grid",

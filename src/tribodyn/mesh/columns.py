@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.ehl import lubrication_regime
-from tribodyn.mesh.gears import COORDINATES, GearData, Gears, NoGears
+from tribodyn.mesh.gears import GearData, Gears, NoGears, place_of
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
@@ -94,11 +94,13 @@ class MeshColumns(Record):
         ``"none"`` and ``"seed"`` are not.
     mesh_order : int
         Mesh cycles in one turn of the pinion; by default its number of teeth.
-    direction : array (6,) or (n, 6)
+    direction : array (6,) or (n, 6) or (n, 12)
         Change of the compression with the coordinates ``pinion_x``, ``pinion_y``,
         ``pinion_theta``, ``wheel_x``, ``wheel_y``, ``wheel_theta`` [1 or m]: y along, x across
-        the line of action. By default that of the base radii.
-    friction_direction : array (n, pairs, 6) or None
+        the line of action. By default that of the base radii. Of gears that move in space the
+        coordinates are ``x, y, z, theta_x, theta_y, theta_z`` of pinion and wheel, each in a frame
+        whose y axis is that of the gear.
+    friction_direction : array (n, pairs, 6 or 12) or None
         Generalized force of one newton of friction of each contact, with the sign of sliding
         [1 or m]. Where None, friction acts across the line of action, with the radii of curvature
         as levers.
@@ -168,7 +170,7 @@ class MeshColumns(Record):
     @property
     def driver(self) -> str:
         """Which gear drives: ``"pinion"`` or ``"wheel"``."""
-        along = np.atleast_2d(self.direction)[:, COORDINATES.index("pinion_theta")]
+        along = self._of(self.direction, "pinion_theta")
         return "pinion" if float(along.mean()) > 0.0 else "wheel"
 
     @property
@@ -191,8 +193,11 @@ class MeshColumns(Record):
         """Lever of the normal force on the wheel: for spur gears the base radius [m]."""
         return self._lever("wheel_theta")
 
+    def _of(self, columns: Array, coordinate: str) -> Array:
+        return np.asarray(columns[..., place_of(coordinate, columns.shape[-1])])
+
     def _lever(self, coordinate: str) -> float:
-        column = self.direction[..., COORDINATES.index(coordinate)]
+        column = self._of(self.direction, coordinate)
         return abs(float(column if column.ndim == 0 else self.grid.mean(column)))
 
     @property
@@ -237,26 +242,26 @@ class MeshColumns(Record):
     def friction_sum(self) -> Array:
         """Friction over normal force of all pairs together, with direction (n,)."""
         if self.friction_direction is not None:
-            return np.asarray(self.friction[:, COORDINATES.index("pinion_x")])
+            return self._of(self.friction, "pinion_x")
         return self.by_share(self._directed_friction)
 
     @property
     def friction_moment_pinion(self) -> Array:
         """Friction moment on the pinion over total normal force (n,) [m]."""
         if self.friction_direction is not None:
-            return np.asarray(self.friction[:, COORDINATES.index("pinion_theta")])
+            return self._of(self.friction, "pinion_theta")
         return self.by_share(self._directed_friction * self.pinion_curvature_radius)
 
     @property
     def friction_moment_wheel(self) -> Array:
         """Friction moment on the wheel over total normal force (n,) [m]."""
         if self.friction_direction is not None:
-            return -np.asarray(self.friction[:, COORDINATES.index("wheel_theta")])
+            return -self._of(self.friction, "wheel_theta")
         return self.by_share(self._directed_friction * self.wheel_curvature_radius)
 
     @property
     def friction(self) -> Array:
-        """Generalized friction force of all pairs over their normal force (n, 6) [1 or m]."""
+        """Generalized friction force of all pairs over their normal force (n, 6 or 12) [1 or m]."""
         if self.friction_direction is None:
             across, zero = self.friction_sum, np.zeros(self.phase.size)
             levers = (self.friction_moment_pinion, -self.friction_moment_wheel)

@@ -15,7 +15,7 @@ import numpy as np
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import whole
 from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS, MeshColumns
-from tribodyn.mesh.gears import COORDINATES, NoGears, read_pair
+from tribodyn.mesh.gears import NoGears, coordinates_of, read_pair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.record import labels_of
@@ -94,7 +94,8 @@ def _values(data: xarray.Dataset) -> dict[str, Any]:
 def _check(values: Mapping[str, Any]) -> None:
     """Refuse what is missing, has another shape, or is not finite where it has to be."""
     _check_grid(values["grid"])
-    sizes = {"knot": values["grid"].phase.size, "end": 2, "coordinate": len(COORDINATES)}
+    count = len(coordinates_of(*(np.shape(values.get("direction", 0.0))[-1:] or (0,))))
+    sizes = {"knot": values["grid"].phase.size, "end": 2, "coordinate": count}
     foreign = isinstance(values["gear_pair"], NoGears)
     for field in fields(MeshColumns):
         name, value, kind = field.name, values.get(field.name), str(field.type)
@@ -220,9 +221,9 @@ def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
             continue
         flat = np.asarray(values, dtype=float).reshape(table.phase.size, -1)
         if name in DIRECTIONS:
-            heads = [f"{name}_{c}" for c in COORDINATES]
+            heads = [f"{name}_{c}" for c in coordinates_of(values.shape[-1])]
             if name != "direction":
-                heads = [f"{h}_{i + 1}" for i in range(flat.shape[1] // 6) for h in heads]
+                heads = [f"{h}_{i + 1}" for i in range(values.shape[1]) for h in heads]
         else:
             several = name not in OF_THE_MESH
             heads = [f"{name}_{i + 1}" if several else name for i in range(flat.shape[1])]

@@ -15,7 +15,14 @@ import numpy as np
 from tribodyn import units
 from tribodyn.errors import InputError
 from tribodyn.mesh.force_law import at_rest
-from tribodyn.mesh.gears import COORDINATES, GearData, NoGears
+from tribodyn.mesh.gears import (
+    COORDINATES,
+    SPATIAL_COORDINATES,
+    GearData,
+    NoGears,
+    coordinates_of,
+    place_of,
+)
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.storage import (
     DIRECTIONS,
@@ -78,7 +85,8 @@ class TableFile:
 
     def lever(self, coordinate: str) -> float:
         """Lever of the normal force on a gear, over the cycle [m]."""
-        column = self.direction("pinion")[..., COORDINATES.index(coordinate)]
+        columns = self.direction("pinion")
+        column = columns[..., place_of(coordinate, columns.shape[-1])]
         return abs(float(column if column.ndim == 0 else self.grid.mean(column)))
 
     def table(
@@ -405,7 +413,7 @@ def _event(place: Path, text: str) -> float:
 
 def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
     """Columns by name: those of contacts, ramps and coordinates side by side."""
-    found: dict[str, dict[tuple[int, int], Array]] = {}
+    found: dict[str, dict[tuple[int, str], Array]] = {}
     for column, header in enumerate(names):
         name, number, unit, coordinate = _column_name(header)
         if name not in UNITS:
@@ -415,33 +423,41 @@ def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
         if at in found.setdefault(name, {}):
             _refuse(place, f'the column "{header}" stands twice', "Each stands once", "Remove one")
         found[name][at] = _in_si(place, name, (unit or "").strip(), values[:, column])
-    return {name: _stacked(place, name, parts) for name, parts in found.items()}
+    told = {coordinate for parts in found.values() for _, coordinate in parts if coordinate}
+    space = coordinates_of(len(SPATIAL_COORDINATES) if told.difference(COORDINATES) else 0)
+    return {name: _stacked(place, name, parts, space) for name, parts in found.items()}
 
 
-def _column_name(header: str) -> tuple[str, str | None, str | None, int]:
+def _column_name(header: str) -> tuple[str, str | None, str | None, str]:
     """Name, contact, unit and coordinate of a column."""
     match = _HEADER.fullmatch(header.strip()) if len(header) < 200 else None
     name, number, unit = match.groups() if match else (header, None, None)
     for of in DIRECTIONS[::-1]:
-        if name.startswith(f"{of}_") and name.removeprefix(f"{of}_") in COORDINATES:
-            return of, number, unit, COORDINATES.index(name.removeprefix(f"{of}_"))
-    return name, number, unit, 0
+        coordinate = name.removeprefix(f"{of}_")
+        if name != coordinate and coordinate in (*COORDINATES, *SPATIAL_COORDINATES):
+            return of, number, unit, coordinate
+    return name, number, unit, ""
 
 
-def _stacked(place: Path, name: str, parts: dict[tuple[int, int], Array]) -> Array:
+def _stacked(
+    place: Path, name: str, parts: dict[tuple[int, str], Array], space: tuple[str, ...]
+) -> Array:
     count = max(contact for contact, _ in parts) + 1
     rows = next(iter(parts.values())).size
     if name in OF_THE_MESH:
-        return parts[0, 0]
+        return parts[0, ""]
     if name in DIRECTIONS:
-        whole = np.zeros((rows, count, len(COORDINATES)))
+        if strange := [c for _, c in parts if c not in space]:
+            why = "Coordinates in space have an axis each: theta_y is the rotation of a gear"
+            _refuse(place, f"{name} has the coordinate {strange[0]}", why, "Write theta_y")
+        whole = np.zeros((rows, count, len(space)))
         for (contact, coordinate), values in parts.items():
-            whole[:, contact, coordinate] = values
+            whole[:, contact, space.index(coordinate)] = values
         return whole[:, 0] if name == "direction" else whole
     if len(parts) != count:
         why = "Contacts and ramps are counted from 1"
         _refuse(place, f"the column {name}_{len(parts)} is missing", why, "Number them")
-    return np.stack([parts[contact, 0] for contact in range(count)], axis=1)
+    return np.stack([parts[contact, ""] for contact in range(count)], axis=1)
 
 
 def _netcdf(place: Path) -> tuple[dict[str, float], dict[str, Array]]:

@@ -56,6 +56,12 @@ def test_law_is_known_with_its_options():
     assert dict(law.options) == {
         "shear_model": "ree-eyring",
         "eyring_stress": 5e6,
+        # None: the shear model's own, and refused by a model that has no such number
+        "limiting_stress": None,
+        "limiting_stress_slope": None,
+        "carreau_stress": None,
+        "carreau_exponent": None,
+        "yasuda_exponent": None,
         "inlet_heating": False,
         "flash_temperature": False,
         "rolling": False,
@@ -159,7 +165,7 @@ def test_newtonian_oil_under_pressure_is_warned_of():
 
 
 def test_eyring_stress_of_a_solid_is_warned_of():
-    with pytest.warns(ModelWarning, match="Lower the Eyring stress"):
+    with pytest.warns(ModelWarning, match="lower the stress from which the oil thins"):
         ehl(contact(), eyring_stress=50e6)
 
 

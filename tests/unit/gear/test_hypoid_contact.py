@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from known_hypoids import h1043, random_blanks
+from known_hypoids import eased, h1043, random_blanks
 from tribodyn.errors import InputError
 from tribodyn.gear import EaseOff, Misalignment, hypoid_blank, hypoid_flanks, tooth_contact
 from tribodyn.gear.hypoid.contact_lines import ContactLines
@@ -17,17 +17,7 @@ NONE = Misalignment()
 
 
 def _eased(along=1e-4, across=3e-4, both=0.5e-4, scale=1.0, side="drive", **more):
-    """Flanks of 10 x 43 with the coefficients [1/mm] of a quadratic ease-off about P = -2.2 mm."""
-    blank = h1043(**more)
-    width = 0.5 * blank.face_width_wheel
-    depth = 0.5 * (blank.mean_addendum_pinion + blank.mean_addendum_wheel)
-    ease = EaseOff(
-        lengthwise_crowning=scale * 1e3 * along * width**2,
-        profile_crowning=scale * 1e3 * across * depth**2,
-        bias=scale * 1e3 * both * width * depth,
-        center=(0.0, -2.2e-3),
-    )
-    return hypoid_flanks(blank, side, ease, points=9)
+    return eased(h1043(**more), side, along, across, both, scale)
 
 
 def _both(flanks, rotation, misalignment=NONE):

@@ -290,6 +290,9 @@ BROKEN = (
            ("friction.shear_model", "newtonian, ree-eyring", 'Did you mean "ree-eyring"?')),
     Broken("shear-model-of-another-law", _LAW, _LAW + '\nshear_model = "newtonian"',
            "shear_model", ('shear_model = "newtonian"', 'does not belong to law = "constant"')),
+    Broken("number-of-another-shear-model", _LAW,
+           'law = "ehl"\ncarreau_exponent = 0.5\n[film]\nmodel = "newton"', "carreau_exponent",
+           ('does not belong to shear_model = "ree-eyring"', 'shear_model = "carreau"')),
     # physics
     Broken("too-close", _DISTANCE, 'center_distance = "80 mm"', "center_distance",
            ("gears.center_distance", "80 mm")),

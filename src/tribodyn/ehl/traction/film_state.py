@@ -149,8 +149,7 @@ class FilmState:
     @cached_property
     def interval_width(self) -> Array:
         """Width of each interval that oil fills, zero for the others (films, nodes - 1) [m]."""
-        filled = (self.pressure[:, 1:] + self.pressure[:, :-1]) > 0.0
-        return np.where(filled, np.diff(self.position, axis=1), 0.0)
+        return np.where(self.interval_pressure > 0.0, np.diff(self.position, axis=1), 0.0)
 
     @cached_property
     def pressure_gradient(self) -> Array:
@@ -158,9 +157,14 @@ class FilmState:
         return np.asarray(np.diff(self.pressure, axis=1) / np.diff(self.position, axis=1))
 
     @cached_property
+    def interval_pressure(self) -> Array:
+        """Pressure in the middle of each interval (films, nodes - 1) [Pa]."""
+        return np.asarray(0.5 * (self.pressure[:, 1:] + self.pressure[:, :-1]))
+
+    @cached_property
     def log_viscosity(self) -> Array:
         """Logarithm of the viscosity in Pa*s in each interval (films, nodes - 1)."""
-        middle = 0.5 * (self.pressure[:, 1:] + self.pressure[:, :-1])
+        middle = self.interval_pressure
         if self.viscosity_law == "isoviscous":
             return np.full(middle.shape, np.log(self.lubricant.dynamic_viscosity))
         return np.log(self.lubricant.viscosity(middle, self.viscosity_law))

@@ -1,189 +1,71 @@
-"""Shear models of the oil by name, and the stress of each: Newton; Ree and Eyring."""
+"""Shear models of the oil by name: how its mean shear stress follows from the shear rate."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from tribodyn.errors import require_between, require_positive
-from tribodyn.model import Registry
+from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
+from tribodyn.model import NO_OPTIONS, Model, Registry, number
 from tribodyn.types import Array
 
-
-def newtonian_shear_stress(
-    viscosity: ArrayLike, sliding_speed: ArrayLike, film_thickness: ArrayLike
-) -> Array:
-    """Mean shear stress over a film of a Newtonian oil: ``eta v_s / h``.
-
-    Parameters
-    ----------
-    viscosity : float or array [Pa*s]
-        Viscosity under the local pressure.
-    sliding_speed : float or array [m/s]
-        Difference of the surface speeds.
-    film_thickness : float or array [m]
-        Distance of the surfaces.
-
-    Returns
-    -------
-    float or array [Pa]
-        Of the common shape and the sign of the sliding speed. A pressure gradient does not change
-        the mean; it adds ``-h/2 dp/dx`` at one surface and ``+h/2 dp/dx`` at the other.
-
-    Raises
-    ------
-    InputError
-        If a value is not finite, or a viscosity or film not positive.
-
-    Valid while the stress stays below a few MPa. Source: Newton (1687).
-
-    Examples
-    --------
-    >>> round(float(newtonian_shear_stress(10.0, 0.5, 1e-6)))
-    5000000
-    """
-    require_positive("viscosity", viscosity, "Pa*s")
-    require_between("sliding_speed", sliding_speed, -np.inf, np.inf, "m/s")
-    require_positive("film_thickness", film_thickness, "m")
-    eta, speed, film = (
-        np.asarray(a, dtype=float) for a in (viscosity, sliding_speed, film_thickness)
-    )
-    return np.asarray(eta * speed / film)[()]
-
-
-def _newtonian_rate(
-    log_viscosity: Array, film_thickness: Array, pressure_gradient: Array, eyring_stress: float
-) -> Array:
-    """Logarithm of the stress per sliding speed, see ``ShearModel``."""
-    return np.asarray(log_viscosity - np.log(film_thickness))
-
-
-def _newtonian_stress(rate: Array, eyring_stress: float) -> tuple[Array, Array]:
-    """Mean shear stress, and its slope over the logarithm of the rate: both are the rate itself."""
-    return rate, rate
-
-
-#: Usual Eyring stress of a mineral oil [Pa]. Traction tests give 2 to 10 MPa.
-EYRING_STRESS = 5e6
-
-#: The largest exponent whose exponential, times a speed, a double holds.
-_LARGEST_EXPONENT = 690.0
-#: Below this argument ``ln(y/sinh y)`` is its first term to the last bit.
-_SMALL = 1e-4
-
-
-def ree_eyring_shear_stress(
-    viscosity: ArrayLike,
-    sliding_speed: ArrayLike,
-    film_thickness: ArrayLike,
-    eyring_stress: float = EYRING_STRESS,
-    pressure_gradient: ArrayLike = 0.0,
-) -> Array:
-    """Mean shear stress over a film that shears as ``(tau_0/eta) sinh(tau/tau_0)``.
-
-    Across the film the stress is ``tau_m + z dp/dx``, with z from the middle. The shear rate,
-    integrated over the film, is the sliding speed: with ``y = h dp/dx/(2 tau_0)``
-    ``v_s = (2 tau_0^2/(eta dp/dx)) sinh(tau_m/tau_0) sinh(y)``, hence
-    ``tau_m = tau_0 asinh[ eta v_s/(tau_0 h) y/sinh(y) ]``.
-
-    Parameters
-    ----------
-    viscosity : float or array [Pa*s]
-        Viscosity under the local pressure at small shear stress.
-    sliding_speed : float or array [m/s]
-        Difference of the surface speeds.
-    film_thickness : float or array [m]
-        Distance of the surfaces.
-    eyring_stress : float [Pa]
-        Stress ``tau_0`` from which the oil thins; 2 to 10 MPa for oils.
-    pressure_gradient : float or array [Pa/m]
-        Slope of the pressure along the film.
-
-    Returns
-    -------
-    float or array [Pa]
-        Of the common shape and the sign of the sliding speed.
-
-    Raises
-    ------
-    InputError
-        If a value is not finite, or a viscosity, film or Eyring stress not positive.
-
-    Valid while the film is at one temperature across its thickness. Source: Ree and Eyring (1955);
-    Conry, Wang and Cusano (1987) for the integral.
-
-    Examples
-    --------
-    >>> round(float(ree_eyring_shear_stress(1000.0, 0.5, 1e-6)) / 1e6, 3)
-    26.492
-    >>> round(float(ree_eyring_shear_stress(1000.0, 0.5, 1e-6, 1e15)) / 1e6, 3)
-    500.0
-    """
-    require_positive("viscosity", viscosity, "Pa*s")
-    require_between("sliding_speed", sliding_speed, -np.inf, np.inf, "m/s")
-    require_positive("film_thickness", film_thickness, "m")
-    require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
-    require_between("pressure_gradient", pressure_gradient, -np.inf, np.inf, "Pa/m")
-    speed, film, gradient = (
-        np.asarray(a, dtype=float) for a in (sliding_speed, film_thickness, pressure_gradient)
-    )
-    logarithm = np.log(np.asarray(viscosity, dtype=float))
-    rate = np.abs(speed) * np.exp(_ree_eyring_rate(logarithm, film, gradient, eyring_stress))
-    return np.asarray(np.copysign(_ree_eyring_stress(rate, eyring_stress)[0], speed))[()]
-
-
-def _log_shape(y: Array) -> Array:
-    """Return ln(y/sinh(y)) of a positive array, where sinh itself would overflow."""
-    safe = np.maximum(y, _SMALL)
-    large = np.log(2.0 * safe) - safe - np.log1p(-np.exp(-2.0 * safe))
-    return np.asarray(np.where(y < _SMALL, -(y**2) / 6.0, large))
-
-
-def _ree_eyring_rate(
-    log_viscosity: Array, film_thickness: Array, pressure_gradient: Array, eyring_stress: float
-) -> Array:
-    """Logarithm of ``eta/(tau_0 h) y/sinh(y)``: the sine hyperbolic of the stress per speed."""
-    y = np.abs(film_thickness * pressure_gradient) / (2.0 * eyring_stress)
-    logarithm = log_viscosity + _log_shape(y) - np.log(eyring_stress * film_thickness)
-    return np.asarray(np.minimum(logarithm, _LARGEST_EXPONENT))
-
-
-def _ree_eyring_stress(rate: Array, eyring_stress: float) -> tuple[Array, Array]:
-    """Mean shear stress ``tau_0 asinh(rate)``, and its slope over the logarithm of the rate."""
-    return eyring_stress * np.arcsinh(rate), eyring_stress * (rate / np.hypot(1.0, rate))
+#: Limiting stress ``tau_L0 + Lambda p``, which every model may have.
+LIMIT = {
+    "limiting_stress": number(2e6, 1e4, 1e9, "oils have a few MPa", of="limiting_stress"),
+    "limiting_stress_slope": number(
+        0.05, 0.0, 0.3, "oils lie between 0.02 and 0.12", of="limiting_stress_slope"
+    ),
+}
 
 
 @dataclass(frozen=True)
-class ShearModel:
-    """A shear model: mean shear stress over the film from what drives it."""
+class ShearModel(Model):
+    """A shear model: ``stress(rate, limit, **numbers)`` is the mean over the film.
+
+    The rate is ``eta v_s/h`` [Pa], the stress that Newton's oil would have; the limit is that of
+    the stress [Pa], infinite for none. The stress comes with its slope over ``ln(rate)``.
+    """
 
     name: str  #: name in the registry
     source: str  #: paper behind the model
-    log_rate: Callable[[Array, Array, Array, float], Array] = field(repr=False)
-    stress: Callable[[Array, float], tuple[Array, Array]] = field(repr=False)
+    stress: Callable[..., tuple[Array, Array]] = field(repr=False)
+    options: Mapping[str, Any] = field(default_factory=lambda: NO_OPTIONS)  #: numbers of the oil
     meaning: str = ""  #: one line
+    papers: tuple[str, ...] = ()  #: keys of the bibliography
+    #: Logarithm of what a pressure step h dp/dx leaves of the viscosity; None for all of it.
+    across: Callable[..., Array] | None = field(default=None, repr=False)
+
+    def complete(
+        self, eyring_stress: float, numbers: Mapping[str, float | None]
+    ) -> dict[str, float]:
+        """All numbers of this model: those that are None at their defaults, others refused.
+
+        The Eyring stress always has a value, so that a model without it leaves it alone. Without
+        a number of the limit there is none, unless the model is made of it.
+        """
+        given = {name: value for name, value in numbers.items() if value is not None}
+        known = {**self.declared, **(LIMIT if given.keys() & LIMIT.keys() else {})}
+        for name in sorted(given.keys() - known.keys()):
+            raise InputError(
+                Problem(
+                    f'{name} does not belong to shear_model = "{self.name}"',
+                    Argument(name),
+                    f"Its numbers are: {', '.join({**known, **LIMIT})}",
+                    "Remove it, or choose another shear model",
+                )
+            )
+        require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
+        values = {**{n: o.default for n, o in known.items()}, "eyring_stress": eyring_stress}
+        values |= given
+        for name, option in known.items():
+            require_between(name, values[name], 0.0, np.inf, option.unit)
+            if option.low > 0.0:
+                require_positive(name, values[name], option.unit)
+        return {name: values[name] for name in known}
 
 
 #: Shear models by name.
-SHEAR_MODELS: Registry[ShearModel] = Registry("shear model")
-
-for _model in (
-    ShearModel(
-        "newtonian",
-        "Newton (1687)",
-        _newtonian_rate,
-        _newtonian_stress,
-        "an oil whose shear stress is in proportion to the shear rate",
-    ),
-    ShearModel(
-        "ree-eyring",
-        "Ree and Eyring (1955); Conry, Wang and Cusano (1987)",
-        _ree_eyring_rate,
-        _ree_eyring_stress,
-        "an oil that thins under shear after Ree and Eyring",
-    ),
-):
-    SHEAR_MODELS.register(_model.name)(_model)
+SHEAR_MODELS: Registry[ShearModel] = Registry("shear model", None, ShearModel, "stress")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,12 +11,15 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import heated_log_viscosity
-from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS, ShearModel
+from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
+from tribodyn.ehl.traction.shear_models import SHEAR_MODELS, ShearModel
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
 #: Contacts sheared at a time: their arrays stay in the cache of the processor.
 _BLOCK = 32
+#: The largest exponent whose exponential, times a speed, a double holds.
+_LARGEST_EXPONENT = 690.0
 
 
 @dataclass(frozen=True)
@@ -51,22 +55,32 @@ class FilmShear:
 
     film: FilmState  #: solved films
     model: ShearModel  #: how the oil shears
-    eyring_stress: float = EYRING_STRESS  #: stress from which the oil thins [Pa]
+    numbers: Mapping[str, float]  #: numbers of the model, all of them
     film_factor: Array | None = None  #: factor on the film of each contact
 
     @cached_property
-    def log_rate(self) -> Array:
-        """Logarithm of what turns speed into shear without heating, of each film or contact."""
-        film, index = self.film, self.film.contacts
+    def thickness(self) -> Array:
+        """Film of each interval, of each film or contact [m]."""
         if self.film_factor is None:
-            arguments = (film.log_viscosity, film.interval_film, film.pressure_gradient)
-            return self.model.log_rate(*arguments, self.eyring_stress)
-        return self.model.log_rate(
-            film.log_viscosity[index],
-            film.interval_film[index] * self.film_factor[:, None],
-            film.pressure_gradient[index],
-            self.eyring_stress,
-        )
+            return self.film.interval_film
+        return np.asarray(self.film.interval_film[self.film.contacts] * self.film_factor[:, None])
+
+    @cached_property
+    def pressure_step(self) -> Array:
+        """Pressure that rises over a length of one film, which shears both walls apart [Pa]."""
+        gradient = self.film.pressure_gradient
+        rows = gradient if self.film_factor is None else gradient[self.film.contacts]
+        return np.asarray(self.thickness * np.abs(rows))
+
+    @cached_property
+    def log_rate(self) -> Array:
+        """Logarithm of the rate per sliding speed without heating, of each film or contact."""
+        viscosity = self.film.log_viscosity
+        rows = viscosity if self.film_factor is None else viscosity[self.film.contacts]
+        logarithm = rows - np.log(self.thickness)
+        if self.model.across is not None:
+            logarithm = logarithm + self.model.across(self.pressure_step, **self.numbers)
+        return np.asarray(np.minimum(logarithm, _LARGEST_EXPONENT))
 
     def sliding(
         self, sliding_speed: Array, temperature_rise: Array | None = None
@@ -82,13 +96,22 @@ class FilmShear:
     def _sliding(self, block: slice, speed: Array, rise: Array | None) -> tuple[Array, Array]:
         """Return the same of some contacts."""
         film, index = self.film, self.film.contacts[block]
-        log_rate = self.log_rate[index if self.film_factor is None else block]
+        rows = index if self.film_factor is None else block
+        log_rate = self.log_rate[rows]
         width, fall = film.interval_width[index], np.zeros((1, 1))
         if rise is not None:
             cold = film.log_viscosity[index]
             warm, fall = heated_log_viscosity(cold, rise, film.lubricant, film.viscosity_law)
             log_rate = log_rate + (warm - cold)
-        stress, steep = self.model.stress(speed[:, None] * np.exp(log_rate), self.eyring_stress)
+        rate, limit = speed[:, None] * np.exp(log_rate), np.full((1, 1), np.inf)
+        if "limiting_stress" in self.numbers:
+            slope = self.numbers["limiting_stress_slope"]
+            limit = self.numbers["limiting_stress"] + slope * film.interval_pressure[index]
+        stress, steep = self.model.stress(rate, limit, **self.numbers)
+        if "limiting_stress" in self.numbers:
+            # The film yields where the stress at one of its walls reaches the limit.
+            most = np.maximum(limit - 0.5 * self.pressure_step[rows], 0.0)
+            stress, steep = np.minimum(stress, most), np.where(stress < most, steep, 0.0)
         return np.einsum("ij,ij->i", stress, width), np.einsum("ij,ij->i", steep * fall, width)
 
     @cached_property
@@ -111,6 +134,7 @@ def film_traction(
     eyring_stress: float = EYRING_STRESS,
     film_factor: ArrayLike = 1.0,
     temperature_rise: ArrayLike = 0.0,
+    **oil: float | None,
 ) -> Traction:
     """Traction of solved films.
 
@@ -124,14 +148,16 @@ def film_traction(
         Solved films.
     sliding_speed : float or (contacts,) array [m/s]
         Speed of surface 1 less that of surface 2.
-    shear_model : {"ree-eyring", "newtonian"}
-        How the oil shears.
+    shear_model : str
+        How the oil shears: a name of :data:`tribodyn.ehl.SHEAR_MODELS`.
     eyring_stress : float [Pa]
-        Stress from which a Ree-Eyring oil thins.
+        Stress from which an oil thins, by the models that have it.
     film_factor : float or (contacts,) array
         Factor on the films, such as that of a heated inlet.
     temperature_rise : float or (contacts,) array [K]
         Film temperature above that of the inlet, not negative.
+    **oil : float
+        Other numbers of the shear model, such as ``limiting_stress`` [Pa].
 
     Returns
     -------
@@ -141,7 +167,7 @@ def film_traction(
     Raises
     ------
     InputError
-        If a value is out of range or the shear model unknown.
+        If a value is out of range, the shear model unknown or a number not one of its own.
 
     Pressure and film come from a Newtonian oil: shear thinning in the inlet is not counted. Forces
     act along the mean of the two surfaces. Source: Johnson and Tevaarwerk, Proc. R. Soc. A 356
@@ -158,7 +184,6 @@ def film_traction(
     >>> print(np.round(film_traction(film, 0.5).sliding / load, 4))
     [0.044]
     """
-    require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
     require_between("sliding_speed", sliding_speed, -np.inf, np.inf, "m/s")
     require_positive("film_factor", film_factor)
     require_between("temperature_rise", temperature_rise, 0.0, np.inf, "K")
@@ -170,7 +195,8 @@ def film_traction(
             ("temperature_rise", temperature_rise),
         )
     )
-    shear = FilmShear(film, SHEAR_MODELS[shear_model], eyring_stress, factor)
+    model = SHEAR_MODELS[shear_model]
+    shear = FilmShear(film, model, model.complete(eyring_stress, oil), factor)
     sliding, _ = shear.sliding(np.abs(speed), rise if np.any(rise > 0.0) else None)
     return Traction(np.copysign(sliding, speed), shear.rolling)
 

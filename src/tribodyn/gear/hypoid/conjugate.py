@@ -35,6 +35,16 @@ class Touch(NamedTuple):
         """Curvature of the gap about each contact."""
         return relative_curvature(self.contact)
 
+    def at(self, chosen: tuple[slice, ...]) -> Touch:
+        """Some of the places."""
+        contact = self.contact
+        wheel, pinion = (
+            Surface(*(values[chosen] for values in each))
+            for each in (contact.wheel, contact.pinion)
+        )
+        touch = Envelope(contact.rotation[chosen], wheel, pinion, contact.slope[chosen])
+        return Touch(self.places[chosen], touch, self.sliding[chosen], self.lever[chosen])
+
 
 class ConjugateFlanks:
     """Drive or coast side of a pair; points are counted by the parameters of the wheel flank."""

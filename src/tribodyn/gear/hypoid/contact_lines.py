@@ -2,18 +2,41 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from tribodyn.errors import ComputationError
+from tribodyn.gear.hypoid.blank import HypoidBlank
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.ease_off import working_depth
-from tribodyn.gear.hypoid.envelope import envelope
+from tribodyn.gear.hypoid.envelope import envelope, solved
 from tribodyn.types import Array, Mask
 
 #: Steps of Newton's method and of the search for ends, samples of a line, grid of a flank.
 _NEWTON, _SEARCH, _SAMPLES, _GRID = 30, 60, 65, 33
 #: What is left of a place [m] and of a rotation [rad].
 _CLOSE = 1e-14
+#: Grid of the guess of parameters, how far it goes beyond the flank, and degree of its polynomials.
+_FITTED, _WIDER, _DEGREE = 15, 0.15, 5
+
+
+def _places(blank: HypoidBlank, wider: float, count: int) -> Array:
+    """Grid of places (count, count, 2) over the flank of the wheel, wider by a part of it."""
+    share = np.linspace(-wider, 1.0 + wider, count)
+    inner, outer = blank.inner_cone_distance_wheel, blank.outer_cone_distance_wheel
+    along = inner - blank.mean_cone_distance_wheel + share * (outer - inner)
+    (low, _), (high, _) = working_depth(blank, along)
+    across = low[:, None] + share * (high - low)[:, None]
+    return np.stack(np.broadcast_arrays(along[:, None], across), axis=-1)
+
+
+def _powers(pair: Array) -> Array:
+    """Products of powers of two numbers (n, 2) up to the degree of the guess."""
+    x, y = pair.T
+    return np.stack(
+        [x**i * y**j for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)], axis=-1
+    )
 
 
 class ContactLines:
@@ -27,32 +50,46 @@ class ContactLines:
         #: Directions along and across the line of the calculation point, in (along, across).
         self.across = slope / np.linalg.norm(slope)
         self.along = np.array([-self.across[1], self.across[0]])
-        self.start = np.linalg.inv(np.stack([slope, self.along]) @ steps)
+        self._unit = np.array([1e-3, 1e-3 / flanks.blank.cutter_radius])
+
+    @cached_property
+    def _start(self) -> tuple[Array, Array]:
+        """Scale of rotation and station, and polynomials of them that guess the parameters."""
+        places = _places(self.flanks.blank, _WIDER, _FITTED)
+        parameters = self.flanks.wheel.parameters(places.reshape(-1, 2))
+        here, _ = self._lines_at(parameters)
+        known = np.isfinite(here).all(axis=-1)
+        scale = np.abs(here[known]).max(axis=0)
+        terms = _powers(here[known] / scale)
+        return scale, np.asarray(np.linalg.lstsq(terms, parameters[known], rcond=None)[0])
+
+    def _lines_at(self, parameters: Array) -> tuple[Array, Array]:
+        """Rotation and station of points of the flank, with derivatives by the parameters."""
+        surface = self.flanks.wheel.at(parameters)
+        places, steps = self.flanks.wheel.projected(surface)
+        contact = envelope(surface, self.flanks.axes)
+        here = np.stack([contact.rotation, places @ self.along], axis=-1)
+        return here, np.stack([contact.slope, self.along @ steps], axis=-2)
 
     def parameters(self, rotation: Array, station: Array) -> Array:
         """Parameters of the flank at stations of the lines; NaN where there is none."""
         rotation, station = np.broadcast_arrays(rotation, station)
-        wanted = np.stack([rotation, station], axis=-1)
-        wheel, axes = self.flanks.wheel, self.flanks.axes
-        found = wanted @ self.start.T
+        wanted = np.stack([rotation.ravel(), station.ravel()], axis=-1)
+        scale, guess = self._start
         with np.errstate(all="ignore"):
+            found = _powers(wanted / scale) @ guess
+            lost = np.full(len(found), np.inf)
+            left = np.arange(len(found))
             for _ in range(_NEWTON):
-                surface = wheel.at(found)
-                places, steps = wheel.projected(surface)
-                contact = envelope(surface, axes)
-                here = np.stack([contact.rotation, places @ self.along], axis=-1)
-                error = wanted - here
-                rows = (contact.slope, np.einsum("i,...ij->...j", self.along, steps))
-                (a, b), (c, d) = ((row[..., 0], row[..., 1]) for row in rows)
-                step = np.stack(
-                    [d * error[..., 0] - b * error[..., 1], a * error[..., 1] - c * error[..., 0]],
-                    axis=-1,
-                )
-                found = found + step / (a * d - b * c)[..., None]
-                if np.nanmax(np.abs(error), initial=0.0) < _CLOSE:
+                here, matrix = self._lines_at(found[left])
+                error = wanted[left] - here
+                lost[left] = np.max(np.abs(error), axis=-1)
+                found[left] += solved(matrix, error)
+                left = left[lost[left] > _CLOSE]
+                if not left.size:
                     break
-        lost = ~(np.max(np.abs(error), axis=-1) < 1e-11)
-        return np.where(lost[..., None], np.nan, found)
+        found[~(lost < 1e-11)] = np.nan
+        return found.reshape(*rotation.shape, 2)
 
     def touch(self, rotation: Array, station: Array) -> Touch:
         """Contact at stations of the lines."""
@@ -68,14 +105,9 @@ class ContactLines:
         """Rotations of the wheel at which the active flank comes into touch and leaves it."""
         from scipy.optimize import minimize
 
-        blank, mean = self.flanks.blank, self.flanks.blank.mean_cone_distance_wheel
-        along = np.linspace(
-            blank.inner_cone_distance_wheel - mean, blank.outer_cone_distance_wheel - mean, _GRID
-        )
-        (low, _), (high, _) = working_depth(blank, along)
-        across = low[:, None] + np.linspace(0.0, 1.0, _GRID) * (high - low)[:, None]
-        places = np.stack(np.broadcast_arrays(along[:, None], across), axis=-1)
-        touch = self.flanks.touch(places)
+        places = _places(self.flanks.blank, 0.0, _GRID)
+        parameters = self.flanks.wheel.parameters(places)
+        touch = self.flanks.touch_at(self.flanks.wheel.at(parameters))
         inside = np.all(self.flanks.margins(touch) >= 0.0, axis=-1) & np.isfinite(
             touch.contact.rotation
         )
@@ -90,7 +122,7 @@ class ContactLines:
             best = np.argmax(np.where(inside, sense * touch.contact.rotation, -np.inf))
             found = minimize(
                 lambda x, sense=sense: -sense * float(self._at(x).contact.rotation[0]),
-                1e3 * places[np.unravel_index(best, inside.shape)],
+                parameters[np.unravel_index(best, inside.shape)] / self._unit,
                 constraints={
                     "type": "ineq",
                     "fun": lambda x: 1e3 * self.flanks.margins(self._at(x))[0],
@@ -101,23 +133,22 @@ class ContactLines:
             ends.append(float(self._at(found.x).contact.rotation[0]))
         return ends[0], ends[1]
 
-    def _at(self, place: Array) -> Touch:
-        return self.flanks.touch(1e-3 * np.asarray(place)[None])
-
-    def _room_at(self, place: Array) -> Array:
-        return np.asarray(1e3 * self.flanks.margins(self._at(place))[0])
+    def _at(self, parameters: Array) -> Touch:
+        return self.flanks.touch_at(self.flanks.wheel.at(self._unit * parameters[None]))
 
     def ends(self, rotation: Array) -> tuple[Array, Mask]:
         """First and last station (n, 2) of the lines on the active flank, and whether they are."""
-        blank, mean = self.flanks.blank, self.flanks.blank.mean_cone_distance_wheel
-        corners = []
-        for end in (blank.inner_cone_distance_wheel, blank.outer_cone_distance_wheel):
-            (low, _), (high, _) = working_depth(blank, np.array(end - mean))
-            corners += [(end - mean, float(low)), (end - mean, float(high))]
-        reach = np.array(corners) @ self.along
+        reach = _places(self.flanks.blank, 0.0, 2) @ self.along
         spread = 0.1 * np.ptp(reach)
-        station = np.linspace(reach.min() - spread, reach.max() + spread, _SAMPLES)
+        samples = np.linspace(reach.min() - spread, reach.max() + spread, _SAMPLES)
+        station = np.tile(samples, (len(rotation), 1))
         room = self.room(rotation[:, None], station)
+        if np.any(short := ~np.any(room > 0.0, axis=1)):
+            # A line shorter than the distance of two samples lies beside that with the most room.
+            middle = samples[np.argmax(room[short], axis=1)]
+            step = samples[1] - samples[0]
+            station[short] = middle[:, None] + np.linspace(-step, step, _SAMPLES)
+            room[short] = self.room(rotation[short, None], station[short])
         inside = room > 0.0
         middle = np.argmax(room, axis=1)
         number = np.arange(_SAMPLES)
@@ -127,7 +158,9 @@ class ContactLines:
         before, after = np.where(there, before, 0), np.where(there, after, 1)
         row = np.arange(len(rotation))
         found = [
-            self._end(rotation, station[[out, held]], np.stack([room[row, out], room[row, held]]))
+            self._end(
+                rotation, *(np.stack([each[row, out], each[row, held]]) for each in (station, room))
+            )
             for out, held in ((before, before + 1), (after, after - 1))
         ]
         return np.stack(found, axis=-1), there

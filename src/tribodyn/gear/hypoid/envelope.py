@@ -176,3 +176,11 @@ def _inverse(matrix: Array, determinant: Array) -> Array:
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(swapped / determinant[..., None, None])
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Solution (..., 2) of 2 x 2 systems; not finite where one is singular."""
+    (a, b), (c, d) = (np.moveaxis(row, -1, 0) for row in np.moveaxis(matrix, -2, 0))
+    x, y = np.moveaxis(right, -1, 0)
+    found = np.stack([d * x - b * y, a * y - c * x], axis=-1)
+    return np.asarray(found / (a * d - b * c)[..., None])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from tribodyn.gear.hypoid.blank import HypoidBlank
-from tribodyn.gear.hypoid.envelope import Axes, Surface, cross, turned
+from tribodyn.gear.hypoid.envelope import Axes, Surface, cross, solved, turned
 from tribodyn.types import Array
 
 #: Steps of Newton's method, and the greatest error left [m].
@@ -95,15 +95,6 @@ class FormateFlank:
                 error = np.asarray(places) - here
                 if np.nanmax(np.abs(error), initial=0.0) < _CLOSE:
                     break
-                determinant = slope[..., 0, 0] * slope[..., 1, 1]
-                determinant = determinant - slope[..., 0, 1] * slope[..., 1, 0]
-                step = np.stack(
-                    [
-                        slope[..., 1, 1] * error[..., 0] - slope[..., 0, 1] * error[..., 1],
-                        slope[..., 0, 0] * error[..., 1] - slope[..., 1, 0] * error[..., 0],
-                    ],
-                    axis=-1,
-                )
-                found = found + step / determinant[..., None]
+                found = found + solved(slope, error)
         lost = np.max(np.abs(error), axis=-1) > 1e3 * _CLOSE
         return np.where(lost[..., None], np.nan, found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from tribodyn.errors import (
     require_positive,
     shortened,
 )
-from tribodyn.gear.hypoid.envelope import cross
+from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
+from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import ToothContact
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
@@ -123,7 +125,37 @@ def hypoid_kinematics(
     flanks = contact.flanks.conjugate
     touch = flanks.touch(np.stack([contact.cell_along, contact.cell_across], axis=-1))
     position, normal = touch.contact.wheel[:2]
-    curvature, spin = touch.curvature, flanks.sense * speed
+    motion = cell_motion(flanks, touch, touch.curvature, speed, chosen)
+    return HypoidKinematics(
+        rotation=contact.rotation,
+        **motion._asdict(),
+        pinion_lever=cross(position - flanks.axes.origin, normal),
+        wheel_lever=cross(position, normal),
+        pinion_speed=speed,
+        entrainment=chosen,
+        contact=contact,
+    )
+
+
+class CellMotion(NamedTuple):
+    """Motion in cells of any shape, as :class:`HypoidKinematics` names it."""
+
+    sliding_velocity: Array
+    sliding_speed: Array
+    pinion_rolling_speed: Array
+    wheel_rolling_speed: Array
+    entrainment_speed: Array
+    slide_to_roll_ratio: Array
+    equivalent_radius: Array
+    friction_direction: Array
+
+
+def cell_motion(
+    flanks: ConjugateFlanks, touch: Touch, curvature: Curvature, speed: float, entrainment: str
+) -> CellMotion:
+    """Motion where flanks touch, at a speed of the pinion."""
+    position, normal = touch.contact.wheel[:2]
+    spin = flanks.sense * speed
     sliding = spin * touch.sliding
     amount = np.linalg.norm(sliding, axis=-1)
     wheel = -spin * flanks.axes.ratio / curvature.gradient
@@ -131,26 +163,12 @@ def hypoid_kinematics(
     velocity = -spin * flanks.axes.ratio * cross(np.array([0.0, 0.0, 1.0]), position)
     mean = velocity + 0.5 * sliding
     mean = mean - np.einsum("...i,...i->...", mean, normal)[..., None] * normal
-    fixed = chosen == "fixed_frame"
+    fixed = entrainment == "fixed_frame"
     drawn = np.linalg.norm(mean, axis=-1) if fixed else 0.5 * np.abs(pinion + wheel)
     moving = amount[..., None] > 1e-12 * speed * flanks.blank.mean_pitch_diameter_pinion
     safe = np.where(moving, amount[..., None], 1.0)
     with np.errstate(divide="ignore"):
         radius = 1.0 / curvature.tensor[..., 1, 1]
         ratio = amount / drawn
-    return HypoidKinematics(
-        rotation=contact.rotation,
-        sliding_velocity=sliding,
-        sliding_speed=amount,
-        pinion_rolling_speed=pinion,
-        wheel_rolling_speed=wheel,
-        entrainment_speed=drawn,
-        slide_to_roll_ratio=ratio,
-        equivalent_radius=radius,
-        pinion_lever=cross(position - flanks.axes.origin, normal),
-        wheel_lever=cross(position, normal),
-        friction_direction=np.where(moving, -sliding / safe, 0.0),
-        pinion_speed=speed,
-        entrainment=chosen,
-        contact=contact,
-    )
+    against = np.where(moving, -sliding / safe, 0.0)
+    return CellMotion(sliding, amount, pinion, wheel, drawn, ratio, radius, against)

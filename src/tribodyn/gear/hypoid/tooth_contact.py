@@ -228,13 +228,17 @@ def _analysis(
     )
 
 
-def _lag(flanks: ConjugateFlanks, touch: Touch, misalignment: Misalignment) -> Array:
-    """Rotation of the wheel that would close the gap at each place."""
+def gap_of(flanks: ConjugateFlanks, touch: Touch, misalignment: Misalignment) -> Array:
+    """Gap of ease-off and misalignment where conjugate flanks would touch, to first order."""
     gap, _ = eased_gap(flanks.ease_off, flanks.blank, touch.places)
     wheel = touch.contact.wheel
     sense = hand_sense(flanks.blank)
-    gap = gap + displaced_gap(misalignment, wheel.position, wheel.normal, sense)
-    return np.asarray(gap / touch.lever)
+    return np.asarray(gap + displaced_gap(misalignment, wheel.position, wheel.normal, sense))
+
+
+def _lag(flanks: ConjugateFlanks, touch: Touch, misalignment: Misalignment) -> Array:
+    """Rotation of the wheel that would close the gap at each place."""
+    return np.asarray(gap_of(flanks, touch, misalignment) / touch.lever)
 
 
 def lightest(

@@ -171,6 +171,23 @@ def _film_of_friction(given: Given, law: FrictionLaw | None, film: FilmModel | N
                 yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
 
 
+def _shear(given: Given, law: FrictionLaw | None) -> Found:
+    """Numbers of another shear model than the one that is named."""
+    if law is None or "shear_model" not in law.options:
+        return
+    from tribodyn.ehl import SHEAR_MODELS
+
+    models = SHEAR_MODELS.all()
+    name = given.get("friction.shear_model", law.options["shear_model"])
+    for key in ("carreau_stress", "carreau_exponent", "yasuda_exponent"):
+        if f"friction.{key}" in given and key not in models[name].options:
+            first = next(other for other in models if key in models[other].options)
+            what = f'{given.show(f"friction.{key}")} does not belong to shear_model = "{name}"'
+            why = "It is a number of another one"
+            remedy = f'Remove it, or write shear_model = "{first}"'
+            yield f"friction.{key}", Problem(what, "", why, remedy)
+
+
 def _dampings(given: Given) -> Found:
     for name in ("mesh_damping", "bearing_damping"):
         value, ratio = f"dynamics.{name}", f"dynamics.{name}_ratio"
@@ -399,6 +416,8 @@ def cross_problems(
     film = cast("FilmModel | None", chosen["film"].model)
     found = [problem for check in _CHECKS for problem in check(given)]
     found += [*_needs(given, law), *_film_of_friction(given, law, film), *_assumed(given, faulty)]
+    if "friction.shear_model" not in faulty:
+        found += _shear(given, law)
     for section, choice in chosen.items():
         found += _model_problems(given, section, choice, faulty)
     return [(key, problem) for key, problem in found if key not in faulty]

@@ -35,6 +35,8 @@ def _library() -> dict[str, dict[str, Any]]:
 def papers(case: Case) -> dict[str, dict[str, Any]]:
     """Papers behind the models that a case uses, each once."""
     keys = ["iso-21771", "hertz"]
+    from tribodyn.ehl import SHEAR_MODELS
+
     unlisted: dict[str, dict[str, Any]] = {}
     for table in ("stiffness", "friction", "film", "dynamics", "solver"):
         model = getattr(case, table).chosen
@@ -42,6 +44,10 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
         if not model.papers and model.source and not _is_built_in(model):
             title = f"{model.name}: {model.source}"
             unlisted[model.name] = {"type": "misc", "title": title}
+    if case.friction.shear_model is not None:
+        keys += SHEAR_MODELS[case.friction.shear_model].papers
+        if case.friction.limiting_stress or case.friction.limiting_stress_slope is not None:
+            keys.append("evans-johnson")
     keys += _METHODS.get(case.solver.method, ())
     if case.friction.variant == "he-singh":
         keys.append("he-gunda-singh")
@@ -92,6 +98,10 @@ def sources_of(section: str, name: str) -> list[str]:
     """Name the papers behind one choice."""
     kind = section_at((section,))
     model = kind.model_named(name) if kind else None
+    if model is None and section == "friction":
+        from tribodyn.ehl import SHEAR_MODELS
+
+        model = SHEAR_MODELS.all().get(name)
     keys = model.papers if model else _METHODS.get(name, ())
     unlisted = [model.source] if model and not keys and model.source else []
     return [*(_text(_library()[key]) for key in keys), *unlisted]

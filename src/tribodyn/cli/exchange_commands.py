@@ -1,0 +1,185 @@
+"""``tribodyn import`` and ``tribodyn export``: models of other gear programs."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.settings import changed_case, read_changes
+from tribodyn.errors import InputError, OutputExistsError, Problem
+
+if TYPE_CHECKING:
+    from tribodyn.exchange import GearboxModel, Load, Stage
+
+_TO_RPM, _TO_DEG = 30.0 / math.pi, 180.0 / math.pi
+
+
+def import_(
+    file: Path,
+    /,
+    *,
+    out: Path | None = None,
+    stage: int | None = None,
+    load_case: int | None = None,
+    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """List the stages and loads of a REXS gearbox model, and write a case of one stage.
+
+    Parameters
+    ----------
+    file : Path
+        Model of another gear program: .rexs, .rexsj or .rexsz.
+    out : Path
+        Case file to write; without it the model is listed.
+    stage : int
+        Number of the stage, where there are several.
+    load_case : int
+        Number of the load case; the first by default.
+    set_ : list of str
+        Values to add or to change in the case, for example "operation.torque=120 N*m".
+    force : bool
+        Replace an existing file.
+    json : bool
+        Write one JSON object in SI to stdout.
+    """
+    from tribodyn.exchange import case_from_rexs, read_rexs
+    from tribodyn.study.pipeline.save import write_file
+
+    model = read_rexs(file)
+    if out is None:
+        if json:
+            say_json(_listed(model))
+        else:
+            say(_tables(model))
+            _tell_remarks(model)
+            tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
+        return
+    if out.exists() and (out.is_dir() or not force):
+        remedy = "Choose another name" + ("" if out.is_dir() else ", or add --force to replace it")
+        raise OutputExistsError(Problem("this exists already", str(out), "", remedy))
+    if not out.parent.is_dir():
+        raise InputError(Problem("there is no such directory", str(out.parent), "", "Create it"))
+    case = case_from_rexs(model, stage, load_case, changes=read_changes(set_ or []))
+    write_file(out, case.to_toml())
+    if json:
+        say_json({"path": str(out)})
+    else:
+        say(str(out))
+    _tell_remarks(model)
+    tell(f"Look at what is marked as assumed, then: tribodyn check {out}")
+
+
+def export(
+    case: str,
+    /,
+    *,
+    rexs: Path,
+    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Write a case as a REXS gearbox model for other gear programs.
+
+    Parameters
+    ----------
+    case : str
+        Built-in case or path of a case file.
+    rexs : Path
+        File to write: .rexs (XML), .rexsj (JSON) or .rexsz (zip).
+    set_ : list of str
+        Values to change, for example "operation.torque=120 N*m".
+    force : bool
+        Replace an existing file.
+    json : bool
+        Write one JSON object to stdout.
+    """
+    from tribodyn.exchange import write_rexs
+
+    write_rexs(changed_case(case, set_ or []), rexs, force=force)
+    if json:
+        say_json({"path": str(rexs)})
+    else:
+        say(str(rexs))
+
+
+def _tell_remarks(model: GearboxModel) -> None:
+    for remark in model.remarks:
+        tell(f"note: {remark}")
+
+
+def _tables(model: GearboxModel) -> str:
+    """Stages and loads as text."""
+    parts = [f"{model.application or 'REXS'}, REXS {model.version}: "
+             f"{sum(model.components.values())} components"]  # fmt: skip
+    head = ["stage", "z", "m_n [mm]", "beta [deg]", "a [mm]", "b [mm]", "x", "alpha_wt [deg]",
+            "sum x from a"]  # fmt: skip
+    if model.stages:
+        parts.append(table([head, *(_stage_row(stage) for stage in model.stages)], indent=""))
+    rows = [_load_row(model, load, stage) for load in model.loads for stage in model.stages]
+    known = [row for row in rows if any(row[3:])]
+    if known:
+        head = ["load case", "share", "stage", "n_1 [rpm]", "T_1 [N m]", "mesh [Hz]", "n_2 [rpm]"]
+        parts.append(table([head, *known], indent=""))
+    return "\n\n".join(parts)
+
+
+def _stage_row(stage: Stage) -> list[str]:
+    gears = (stage.gear_1, stage.gear_2)
+
+    def both(values: list[float], form: str) -> str:
+        texts = [format(value, form) for value in values]
+        return texts[0] if texts[0] == texts[1] else " / ".join(texts)
+
+    widths = [math.nan if g.face_width is None else g.face_width * 1e3 for g in gears]
+    return [
+        str(stage.id),
+        " / ".join(str(g.teeth) for g in gears),
+        both([g.normal_module * 1e3 for g in gears], "g"),
+        both([g.helix_angle * _TO_DEG + 0.0 for g in gears], ".6g"),
+        f"{stage.center_distance * 1e3:g}",
+        both(widths, "g"),
+        both([g.profile_shift_coefficient for g in gears], "g"),
+        f"{stage.operating_pressure_angle * _TO_DEG:.4f}",
+        f"{stage.shift_sum + 0.0:.5f}",
+    ]
+
+
+def _load_row(model: GearboxModel, load: Load, stage: Stage) -> list[str]:
+    one, two = (model.shaft_of(g.id) for g in (stage.gear_1, stage.gear_2))
+    speeds = [load.speeds.get(s) if s is not None else None for s in (one, two)]
+    torque = load.torques.get(one) if one is not None else None
+    mesh = None if speeds[0] is None or stage.planetary else (
+        speeds[0] * abs(stage.gear_1.teeth) / (2.0 * math.pi)
+    )  # fmt: skip
+    values = [speeds[0] and speeds[0] * _TO_RPM, torque, mesh, speeds[1] and speeds[1] * _TO_RPM]
+    share = "" if load.share is None else f"{load.share * 100:g} %"
+    return [str(load.id), share, str(stage.id), *("" if v is None else f"{v:.6g}" for v in values)]
+
+
+def _listed(model: GearboxModel) -> dict[str, Any]:
+    """All of a model in SI and radians."""
+    return {
+        "version": model.version,
+        "application": model.application,
+        "components": model.components,
+        "stages": [
+            {
+                "id": stage.id,
+                "center_distance": stage.center_distance,
+                "reference_center_distance": stage.reference_center_distance,
+                "operating_pressure_angle": stage.operating_pressure_angle,
+                "shift_sum": stage.shift_sum,
+                "planetary": stage.planetary,
+                "gears": [vars(stage.gear_1), vars(stage.gear_2)],
+            }
+            for stage in model.stages
+        ],
+        "load_cases": [vars(load) for load in model.loads],
+        "remarks": model.remarks,
+    }

@@ -1,0 +1,463 @@
+"""The gear stages of a REXS model: their geometry, what drives them, and what is odd about them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+
+from tribodyn.errors import InputError
+from tribodyn.exchange.rexs_file import Component, RexsFile, kinds, read_file
+from tribodyn.gear.curves import involute
+
+_GEARS = ("cylindrical_gear", "ring_gear")
+#: Components that change a flank; a case has other forms of most of them.
+_MODIFICATIONS = (
+    "tip_relief", "root_relief", "profile_crowning", "profile_slope", "helix_crowning",
+    "helix_slope", "helix_deviation", "profile_deviation", "profile_twist",
+    "triangular_tip_relief", "triangular_root_relief", "end_relief_datum_face",
+    "end_relief_non_datum_face", "topographical_modification",
+)  # fmt: skip
+#: Stages that are no pair of cylindrical gears.
+_OTHER_STAGES = ("bevel_stage", "worm_stage")
+#: A tip circle is off the standard one by less than so many modules.
+_TIP_MODULES = 2.0
+
+
+@dataclass(frozen=True)
+class StageGear:
+    """One gear of a stage, in SI and radians; None is what the file does not say.
+
+    Parameters
+    ----------
+    id : int
+        Number of the component.
+    name : str
+        Its name in the file.
+    teeth : int
+        Number of teeth, negative for a ring gear.
+    normal_module : float [m]
+        Normal module.
+    normal_pressure_angle, helix_angle : float [rad]
+        Pressure angle in the normal section and helix angle at the reference circle.
+    profile_shift_coefficient : float
+        Of the flanks, over the normal module.
+    face_width, tip_diameter, roughness_ra : float, optional [m]
+        Width, tip circle and mean roughness of the flanks.
+    """
+
+    id: int
+    name: str
+    teeth: int
+    normal_module: float
+    normal_pressure_angle: float
+    helix_angle: float
+    profile_shift_coefficient: float
+    face_width: float | None = None
+    tip_diameter: float | None = None
+    roughness_ra: float | None = None
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Two cylindrical gears in mesh.
+
+    Parameters
+    ----------
+    id : int
+        Number of the component.
+    gear_1, gear_2 : StageGear
+        The gears, in the order of the file.
+    center_distance : float [m]
+        Distance of the axes.
+    planetary : bool
+        Whether it is part of a planetary stage.
+    """
+
+    id: int
+    gear_1: StageGear
+    gear_2: StageGear
+    center_distance: float
+    planetary: bool = False
+
+    @property
+    def _teeth(self) -> int:
+        return self.gear_1.teeth + self.gear_2.teeth
+
+    @property
+    def _transverse_angle(self) -> float:
+        one = self.gear_1
+        return math.atan(math.tan(one.normal_pressure_angle) / math.cos(one.helix_angle))
+
+    @property
+    def ratio(self) -> float:
+        """Teeth of the second over those of the first gear, negative with a ring gear."""
+        return self.gear_2.teeth / self.gear_1.teeth
+
+    @property
+    def reference_center_distance(self) -> float:
+        """Distance at which the reference circles touch [m] (ISO 21771, transverse module)."""
+        one = self.gear_1
+        return 0.5 * abs(self._teeth) * one.normal_module / math.cos(one.helix_angle)
+
+    @property
+    def operating_pressure_angle(self) -> float:
+        """Transverse pressure angle at the operating pitch circle [rad], ISO 21771."""
+        cosine = self.reference_center_distance * math.cos(self._transverse_angle)
+        return math.acos(min(cosine / self.center_distance, 1.0))
+
+    @property
+    def shift_sum(self) -> float:
+        """Sum of the profile shifts that fits the distance without backlash, ISO 21771."""
+        rise = involute(self.operating_pressure_angle) - involute(self._transverse_angle)
+        return float(rise * self._teeth / (2.0 * math.tan(self.gear_1.normal_pressure_angle)))
+
+
+@dataclass(frozen=True)
+class Load:
+    """One load case: speeds and torques of the shafts that follow from what is given.
+
+    Parameters
+    ----------
+    id : int
+        Number of the load case; 0 for values that stand outside of all load cases.
+    share : float, optional
+        Share of the life.
+    speeds : dict of int to float [rad/s]
+        Speed of each shaft, without its sign.
+    torques : dict of int to float [N m]
+        Torque through each shaft without losses, without its sign.
+    source : int, optional
+        Shaft at which the torque is given.
+    driven : bool
+        Whether the given torque brakes its shaft.
+    oil_temperature : float, optional [K]
+        Temperature of the oil.
+    """
+
+    id: int
+    share: float | None
+    speeds: dict[int, float]
+    torques: dict[int, float]
+    source: int | None = None
+    driven: bool = False
+    oil_temperature: float | None = None
+
+
+class GearboxModel:
+    """A gearbox of another program: its stages and its loads.
+
+    Made by :func:`read_rexs`; :func:`case_from_rexs` makes a case of a spur stage.
+
+    Parameters
+    ----------
+    file : RexsFile
+        What stands in the file.
+    path : str
+        Its place, for messages.
+
+    Attributes
+    ----------
+    version, application : str
+        Version of REXS and the program that wrote the file.
+    components : dict of str to int
+        How many components of each kind there are.
+    stages : list of Stage
+        Pairs of cylindrical gears.
+    loads : list of Load
+        Load cases.
+    remarks : list of str
+        What was left out or looks wrong, in words.
+    """
+
+    def __init__(self, file: RexsFile, path: str = "") -> None:
+        self.file, self.path = file, path
+        self.version, self.application = file.version, file.application
+        self.components = kinds(file.components.values())
+        self.remarks: list[str] = []
+        self.stages = [self._stage(found) for found in file.of_kind("cylindrical_stage")]
+        self.loads = [self._load(number) for number in sorted(file.load_cases)] or [self._load(0)]
+        self._remark_on_rest()
+
+    def __repr__(self) -> str:
+        count = sum(self.components.values())
+        return (
+            f"GearboxModel(REXS {self.version} of {self.application or 'an unnamed program'}: "
+            f"{count} components, {len(self.stages)} stages, {len(self.loads)} load cases)"
+        )
+
+    def stage(self, number: int | None = None) -> Stage:
+        """The stage with a number, or the only one.
+
+        Parameters
+        ----------
+        number : int, optional
+            Number of the component; not needed where there is one stage.
+
+        Returns
+        -------
+        Stage
+
+        Raises
+        ------
+        InputError
+            If there is no such stage, or more than one and none is named.
+        """
+        known = [stage.id for stage in self.stages]
+        if not known:
+            found = ", ".join(k for k in self.components if k.endswith("_stage")) or "none"
+            why = f"Stages in the file: {found}; cylindrical pairs are computed"
+            raise InputError("there is no cylindrical stage", self.path, why)
+        if number is None and len(known) == 1:
+            number = known[0]
+        if number not in known:
+            what = "there are several stages" if number is None else f"there is no stage {number}"
+            names = ", ".join(str(n) for n in known)
+            raise InputError(what, self.path, f"Stages: {names}", "Name one of them")
+        return self.stages[known.index(number)]
+
+    def load(self, number: int | None = None) -> Load:
+        """The load case with a number, or the first one.
+
+        Parameters
+        ----------
+        number : int, optional
+            Number of the load case.
+
+        Returns
+        -------
+        Load
+
+        Raises
+        ------
+        InputError
+            If there is no such load case.
+        """
+        for load in self.loads:
+            if number in (None, load.id):
+                return load
+        names = ", ".join(str(load.id) for load in self.loads)
+        what = f"there is no load case {number}"
+        raise InputError(what, self.path, f"Load cases: {names}", "Name one of them")
+
+    def shaft_of(self, gear: int) -> int | None:
+        """Number of the shaft that carries a gear.
+
+        Parameters
+        ----------
+        gear : int
+            Number of the gear.
+
+        Returns
+        -------
+        int or None
+        """
+        for relation in self.file.related("assembly", part=gear):
+            number = relation.of("assembly")
+            if number is not None and self.file.components[number].kind == "shaft":
+                return number
+        return None
+
+    @cached_property
+    def _planetary(self) -> set[int]:
+        planetary = {c.id for c in self.file.of_kind("planetary_stage")}
+        return {
+            part
+            for relation in self.file.related("assembly")
+            if relation.of("assembly") in planetary and (part := relation.of("part")) is not None
+        }
+
+    def _stage(self, stage: Component) -> Stage:
+        for relation in self.file.related("stage", stage=stage.id):
+            numbers = [relation.of("gear_1"), relation.of("gear_2")]
+            if None not in numbers:
+                one, two = (self._gear(self.file.components[n]) for n in numbers if n is not None)
+                distance = _needed(stage, "center_distance", "m")
+                found = Stage(stage.id, one, two, distance, stage.id in self._planetary)
+                self._remark_on_stage(found)
+                return found
+        raise InputError("no relation names both gears of the stage", str(stage))
+
+    def _gear(self, gear: Component) -> StageGear:
+        if gear.kind not in _GEARS:
+            raise InputError(f"a cylindrical stage has a {gear.kind}", str(gear))
+        flank = self._flank(gear)
+        teeth = _needed(gear, "number_of_teeth", "")
+        if teeth != int(teeth) or not 1 <= abs(teeth) <= 10_000:
+            raise InputError(f"number_of_teeth = {teeth:g}", str(gear), "It is no number of teeth")
+        sign = -1.0 if gear.kind == "ring_gear" else 1.0
+        found = StageGear(
+            gear.id,
+            gear.name,
+            int(math.copysign(teeth, sign)),
+            _needed(gear, "normal_module", "m"),
+            _needed(flank, "normal_pressure_angle", "rad"),
+            gear.number("helix_angle_reference_diameter", "rad") or 0.0,
+            flank.number("addendum_modification_coefficient", "") or 0.0,
+            gear.number("face_width", "m"),
+            gear.number("tip_diameter", "m"),
+            gear.number("arithmetic_average_roughness_flank", "m"),
+        )
+        _require_gear(found, gear)
+        return self._without_nonsense(found, gear)
+
+    def _flank(self, gear: Component) -> Component:
+        for relation in self.file.related("flank", gear=gear.id):
+            sides = [self.file.components[n] for r, n in relation.refs if r in ("left", "right")]
+            if len(sides) == 2:
+                for name in ("normal_pressure_angle", "addendum_modification_coefficient"):
+                    unit = "rad" if name.endswith("angle") else ""
+                    if sides[0].number(name, unit) != sides[1].number(name, unit):
+                        self._remark(f"{gear}: {name} of its flanks differs; the left one is read")
+            if sides:
+                return sides[0]
+        raise InputError("no relation names its flanks", str(gear))
+
+    def _without_nonsense(self, found: StageGear, gear: Component) -> StageGear:
+        if found.tip_diameter is None:
+            self._remark(f"{gear}: no tip diameter; that of the standard addendum is taken")
+            return found
+        reference = found.teeth * found.normal_module / math.cos(found.helix_angle)
+        standard = reference + 2.0 * found.normal_module * (1.0 + found.profile_shift_coefficient)
+        if abs(found.tip_diameter - abs(standard)) <= _TIP_MODULES * found.normal_module:
+            return found
+        self._remark(
+            f"{gear}: tip_diameter = {found.tip_diameter * 1e3:g} mm cannot be that of the gear "
+            f"(standard addendum: {abs(standard) * 1e3:.2f} mm); it is ignored"
+        )
+        values = {**vars(found), "tip_diameter": None}
+        return StageGear(**values)
+
+    def _load(self, number: int) -> Load:
+        case = {**self.file.components}
+        for key, part in self.file.load_cases.get(number, {}).items():
+            whole = self.file.components[key]
+            case[key] = Component(key, whole.kind, whole.name, {**whole.values, **part.values})
+        shafts = [c for c in case.values() if c.kind == "shaft"]
+        speeds = {c.id: v for c in shafts if (v := c.number("rotational_speed", "rad/s"))}
+        torques: dict[int, float] = {}
+        for load in (c for c in case.values() if c.kind == "external_load"):
+            torque = load.number("torque_around_u_axis", "N*m")
+            for relation in self.file.related("assembly", part=load.id) if torque else ():
+                shaft = relation.of("assembly")
+                if shaft is not None:
+                    torques[shaft] = torques.get(shaft, 0.0) + (torque or 0.0)
+        source = next(iter(torques)) if len(torques) == 1 else None
+        driven = source is not None and torques[source] * speeds.get(source, 1.0) < 0.0
+        units = [c for c in case.values() if c.kind == "gear_unit"]
+        casing = [c for c in case.values() if c.kind == "gear_casing"]
+        oil = [t for c in casing if (t := c.number("temperature_lubricant", "K")) is not None]
+        shares = [s for c in units if (s := c.number("load_duration_fraction", "")) is not None]
+        serial = not self._planetary
+        given = {} if source is None else {source: abs(torques[source])}
+        return Load(
+            number,
+            shares[0] if shares else None,
+            self._along({k: abs(v) for k, v in speeds.items()}, -1.0) if serial else speeds,
+            self._along(given, 1.0) if serial else given,
+            source,
+            driven,
+            oil[0] if oil else None,
+        )
+
+    def _along(self, known: dict[int, float], power: float) -> dict[int, float]:
+        """Carry speeds (power -1) or torques (1) from shaft to shaft through the stages."""
+        known = dict(known)
+        meshes = [
+            (self.shaft_of(s.gear_1.id), self.shaft_of(s.gear_2.id), abs(s.ratio))
+            for s in self.stages
+        ]
+        for _ in meshes:
+            for one, two, ratio in meshes:
+                if one in known and two is not None:
+                    known.setdefault(two, known[one] * ratio**power)
+                elif two in known and one is not None:
+                    known.setdefault(one, known[two] / ratio**power)
+        return known
+
+    def _remark_on_stage(self, stage: Stage) -> None:
+        one, two = stage.gear_1, stage.gear_2
+        given = one.profile_shift_coefficient + two.profile_shift_coefficient
+        if abs(one.normal_module - two.normal_module) > 1e-9:
+            self._remark(f"stage {stage.id}: the modules of its gears differ")
+        elif abs(given - stage.shift_sum) > 5e-3:
+            self._remark(
+                f"stage {stage.id}: the profile shifts sum up to {given:.4f}, the centre distance "
+                f"has no backlash at {stage.shift_sum:.4f}"
+            )
+
+    def _remark_on_rest(self) -> None:
+        changed = [k for k in self.components if k in _MODIFICATIONS]
+        if changed:
+            names = ", ".join(f"{self.components[k]} {k}" for k in changed)
+            self._remark(f"flank modifications are not read: {names}")
+        for kind in _OTHER_STAGES:
+            if kind in self.components:
+                self._remark(f"{self.components[kind]} {kind}: not computed, and not read")
+        for planetary in self.file.of_kind("planetary_stage"):
+            self._remark(f"{planetary} is not computed; its gears are listed{self._epicyclic()}")
+        torques = {load.source for load in self.loads}
+        if torques == {None}:
+            self._remark("no single torque is given that all others follow from")
+
+    def _epicyclic(self) -> str:
+        """Sun, planets and ring of the one planetary stage, in words."""
+        inner = {abs(s.gear_1.teeth) for s in self.stages if s.planetary and s.ratio > 0.0}
+        outer = [s for s in self.stages if s.planetary and s.ratio < 0.0]
+        if len(self.file.of_kind("planetary_stage")) != 1 or len(inner) != 1 or not outer:
+            return ""
+        (sun,), ring, planets = inner, abs(outer[0].gear_2.teeth), len(outer)
+        fits = "" if (sun + ring) % planets == 0 else "do not "
+        return (
+            f": sun {sun}, {planets} planets {outer[0].gear_1.teeth}, ring {ring} teeth; ratio "
+            f"{1.0 + ring / sun:.4g} with the ring held; equally spaced planets {fits}assemble"
+        )
+
+    def _remark(self, text: str) -> None:
+        if text not in self.remarks:
+            self.remarks.append(text)
+
+
+def _needed(component: Component, name: str, unit: str) -> float:
+    value = component.number(name, unit)
+    if value is None:
+        raise InputError(f"{name} is missing", str(component), "", "Complete it in the program")
+    return value
+
+
+def _require_gear(found: StageGear, gear: Component) -> None:
+    """Refuse figures that no gear has, before anything is computed with them."""
+    limits = {
+        "normal_module": (found.normal_module, 1e-6, 1.0),
+        "normal_pressure_angle": (found.normal_pressure_angle, 0.01, 1.2),
+        "helix_angle": (abs(found.helix_angle), 0.0, 1.4),
+        "profile_shift_coefficient": (abs(found.profile_shift_coefficient), 0.0, 10.0),
+    }
+    for name, (value, low, high) in limits.items():
+        if not low <= value <= high:
+            why = f"Gears have {low:g} to {high:g} (SI, radians)"
+            raise InputError(f"{name} = {value:g}", str(gear), why)
+
+
+def read_rexs(path: str | PathLike[str]) -> GearboxModel:
+    """Read a gearbox model in the REXS format, XML, JSON or zip.
+
+    Parameters
+    ----------
+    path : path
+        File that another gear program has written.
+
+    Returns
+    -------
+    GearboxModel
+        Every cylindrical stage with its figures.
+
+    Raises
+    ------
+    InputError
+        If the file is no REXS model, is damaged, or a stage lacks what makes a gear.
+
+    Read are REXS 1.0 to 1.6. Source: rexs.info, model of REXS 1.4.
+    """
+    return GearboxModel(read_file(path), str(path))

@@ -1,0 +1,303 @@
+"""What a REXS file holds: components with their values, relations and load cases.
+
+REXS is the open exchange format of gearbox models (rexs.info). One model is written as XML
+(``.rexs``), as JSON (``.rexsj``), or as one of both in a zip (``.rexsz``). Both are brought into
+the form that JSON has, and read from there.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import zipfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from io import BytesIO
+from os import PathLike
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from tribodyn import units
+from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.stored import LARGEST, read_bytes
+
+#: Spellings of units that differ from ours, without blanks.
+_UNITS = {
+    "C": "degC", "°": "deg", "mum": "um", "1/min": "rpm", "none": "", "Nm": "N*m",
+    "kg/dm^3": "kg/dm^3", "N/(mmmum)": "N/mm/um", "kgm^2": "kg*m^2",
+}  # fmt: skip
+_REMEDY = "Write it again with the program that it comes from"
+#: Components of one model at most: real gearboxes have some hundred.
+_MOST = 100_000
+
+
+@dataclass(frozen=True)
+class Value:
+    """One value of a component, as written: a number, a flag, a text, or None for an array."""
+
+    content: float | bool | str | None
+    unit: str = ""
+
+
+@dataclass
+class Component:
+    """A part of the gearbox."""
+
+    id: int
+    kind: str
+    name: str
+    values: dict[str, Value] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.id}" + (f' "{self.name}"' if self.name else "")
+
+    def number(self, name: str, unit: str) -> float | None:
+        """A finite number in an SI unit; None where the file has none."""
+        value = self.values.get(name)
+        if value is None or value.content is None or value.content == "":
+            return None
+        content = value.content
+        if isinstance(content, bool | str) or not math.isfinite(content):
+            raise InputError(f"{name} = {content}", str(self), "It is no number", _REMEDY)
+        written = "".join(value.unit.split())
+        written = _UNITS.get(written, written)
+        try:
+            return units.parse(f"{content!r} {written}".strip(), unit)
+        except units.UnitProblemError as error:
+            what = f'{name} = {content:g} "{value.unit}"'
+            raise InputError(what, str(self), str(error), _REMEDY) from None
+
+    def flag(self, name: str) -> bool:
+        """A value that is true."""
+        value = self.values.get(name)
+        return value is not None and value.content in (True, 1.0)
+
+
+@dataclass(frozen=True)
+class Relation:
+    """How components belong together: their numbers by the part that they play."""
+
+    kind: str
+    refs: tuple[tuple[str, int], ...]
+
+    def of(self, role: str) -> int | None:
+        """Number of the component that plays a part."""
+        return next((number for name, number in self.refs if name == role), None)
+
+
+@dataclass
+class RexsFile:
+    """A REXS model as it stands in its file."""
+
+    version: str
+    application: str
+    components: dict[int, Component]
+    relations: list[Relation]
+    load_cases: dict[int, dict[int, Component]]
+
+    def related(self, kind: str, **roles: int) -> Iterator[Relation]:
+        """Relations of one kind in which these components play these parts."""
+        for relation in self.relations:
+            if relation.kind == kind and all(relation.of(r) == n for r, n in roles.items()):
+                yield relation
+
+    def of_kind(self, *kinds: str) -> list[Component]:
+        """Components of some kinds, in the order of their numbers."""
+        return sorted((c for c in self.components.values() if c.kind in kinds), key=lambda c: c.id)
+
+
+def read_file(path: str | PathLike[str]) -> RexsFile:
+    """Read a REXS file; what it holds decides, not its name."""
+    place = str(path)
+    try:
+        content = read_bytes(Path(path), "rexs")
+    except TypeError:
+        why = "Wanted: the place of a file"
+        raise InputError(f"path = {path!r}", Argument("path"), why) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"cannot be read: {reason}", place) from None
+    try:
+        return model_of(_tree(content, place), place)
+    except RecursionError:
+        raise InputError("its parts are nested too deeply", place, "", _REMEDY) from None
+
+
+def _tree(content: bytes, place: str) -> dict[str, Any]:
+    """The model in the form that JSON has."""
+    if content[:4] == b"PK\x03\x04":
+        content = _unzipped(content, place)
+    try:
+        if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
+            tree = json.loads(content.decode("utf-8-sig"))["model"]
+        else:
+            parser = ElementTree.XMLParser(target=_NoDoctype())
+            tree = _from_xml(ElementTree.fromstring(content, parser), place)
+    except (KeyError, TypeError):
+        raise InputError("it is JSON without a REXS model", place, "", _REMEDY) from None
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("it is no REXS file", place, str(error), _REMEDY) from None
+    if not isinstance(tree, dict):
+        raise InputError("it holds no REXS model", place, "", _REMEDY)
+    return tree
+
+
+def _unzipped(content: bytes, place: str) -> bytes:
+    """The one model in a zip."""
+    try:
+        with zipfile.ZipFile(BytesIO(content)) as archive:
+            names = [n for n in archive.namelist() if n.lower().endswith((".rexs", ".rexsj"))]
+            if len(names) != 1:
+                what = f"the zip holds {len(names) or 'no'} REXS models"
+                why = "Wanted: one file that ends in .rexs or .rexsj"
+                raise InputError(what, place, why, "Take the model that you mean out of it")
+            with archive.open(names[0]) as member:
+                found = member.read(LARGEST["rexs"] + 1)
+    except InputError:
+        raise
+    # A damaged zip makes the library stumble in many ways.
+    except Exception as error:
+        raise InputError("it is a damaged zip", place, str(error), _REMEDY) from None
+    if len(found) > LARGEST["rexs"]:
+        what = f"its model is larger than {LARGEST['rexs'] / 1e6:g} MB"
+        raise InputError(what, place, "It is no gearbox", _REMEDY)
+    return found
+
+
+class _NoDoctype(ElementTree.TreeBuilder):
+    """Builds a tree, but of no document that declares entities of its own."""
+
+    def doctype(self, *_: Any) -> None:
+        raise ValueError("It declares a document type, which no REXS file has")
+
+
+def _from_xml(root: ElementTree.Element, place: str) -> dict[str, Any]:
+    if root.tag != "model":
+        raise InputError(f"it is XML of a <{root.tag}>, not of a REXS model", place, "", _REMEDY)
+    spectrum = root.find("load_spectrum")
+    cases = [] if spectrum is None else spectrum.findall("load_case")
+    return {
+        **root.attrib,
+        "relations": [
+            {**relation.attrib, "refs": [ref.attrib for ref in relation.iter("ref")]}
+            for relation in root.iter("relation")
+        ],
+        "components": _xml_components(root.find("components")),
+        "load_spectrum": {
+            "load_cases": [{**c.attrib, "components": _xml_components(c)} for c in cases]
+        },
+    }
+
+
+def _xml_components(parent: ElementTree.Element | None) -> list[dict[str, Any]]:
+    found = [] if parent is None else parent.findall("component")
+    return [
+        {
+            **component.attrib,
+            "attributes": [
+                {**a.attrib, "text": None if len(a) else (a.text or "").strip()}
+                for a in component.findall("attribute")
+            ],
+        }
+        for component in found
+    ]
+
+
+def model_of(tree: dict[str, Any], place: str) -> RexsFile:
+    """The model of a tree in the form that JSON has."""
+    components = _components(tree.get("components"), place)
+    if not components:
+        raise InputError("the model has no components", place, "", _REMEDY)
+    relations = [
+        Relation(
+            str(item.get("type", "")),
+            tuple(
+                (str(ref.get("role", "")), _id(ref, place)) for ref in _dicts(item, "refs", place)
+            ),
+        )
+        for item in _dicts(tree, "relations", place)
+    ]
+    spectrum = tree.get("load_spectrum") or {}
+    cases = {
+        _id(item, place): _components(item.get("components"), place)
+        for item in _dicts(spectrum, "load_cases", place)
+    }
+    _require_known(components, relations, cases, place)
+    application = f"{tree.get('applicationId', '')} {tree.get('applicationVersion', '')}".strip()
+    return RexsFile(str(tree.get("version", "")), application, components, relations, cases)
+
+
+def _require_known(
+    components: dict[int, Component],
+    relations: list[Relation],
+    cases: dict[int, dict[int, Component]],
+    place: str,
+) -> None:
+    """Refuse a model that names components which it does not have."""
+    named = {number for relation in relations for _, number in relation.refs}
+    named |= {number for case in cases.values() for number in case}
+    missing = sorted(named - components.keys())
+    if missing:
+        some = ", ".join(str(number) for number in missing[:5])
+        what = f"relations or load cases name components that are not there: {some}"
+        raise InputError(what, place, "", _REMEDY)
+
+
+def _components(items: Any, place: str) -> dict[int, Component]:
+    found: dict[int, Component] = {}
+    for item in _dicts({"components": items}, "components", place):
+        number = _id(item, place)
+        if number in found:
+            raise InputError(f"two components have the number {number}", place, "", _REMEDY)
+        values = {
+            str(a.get("id", "")): Value(_content(a), str(a.get("unit", "")))
+            for a in _dicts(item, "attributes", place)
+        }
+        found[number] = Component(
+            number, str(item.get("type", "")), str(item.get("name", "")), values
+        )
+    return found
+
+
+def _dicts(parent: Any, name: str, place: str) -> list[dict[str, Any]]:
+    items = parent.get(name) if isinstance(parent, dict) else None
+    if items is None:
+        return []
+    if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
+        raise InputError(f"{name} is no list of objects", place, "", _REMEDY)
+    if len(items) > _MOST:
+        raise InputError(f"there are {len(items)} {name}", place, f"At most {_MOST} are read")
+    return items
+
+
+def _id(item: dict[str, Any], place: str) -> int:
+    try:
+        return int(item["id"])
+    except (KeyError, TypeError, ValueError, OverflowError):
+        problem = Problem(f"an id is no whole number: {item.get('id')!r}", place, "", _REMEDY)
+        raise InputError(problem) from None
+
+
+def _content(attribute: dict[str, Any]) -> float | bool | str | None:
+    """Number, flag or text; XML writes all of them as text."""
+    others = [v for name, v in attribute.items() if name not in ("id", "unit")]
+    content = others[0] if len(others) == 1 else None
+    if isinstance(content, bool) or content is None or isinstance(content, list | dict):
+        return content if isinstance(content, bool) else None
+    if isinstance(content, str) and content in ("true", "false"):
+        return content == "true"
+    try:
+        return float(content)
+    except (ValueError, OverflowError):
+        return str(content)
+
+
+def kinds(components: Iterable[Component]) -> dict[str, int]:
+    """How many components of each kind there are."""
+    counts: dict[str, int] = {}
+    for component in components:
+        counts[component.kind] = counts.get(component.kind, 0) + 1
+    return dict(sorted(counts.items()))

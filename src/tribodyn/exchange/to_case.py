@@ -1,0 +1,239 @@
+"""The case of a spur stage of a REXS model, and the keys that REXS has a place for."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from tribodyn.errors import InputError
+from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear
+from tribodyn.exchange.rexs_file import model_of
+from tribodyn.exchange.write import WHOLE_CASE, tree_of
+from tribodyn.lubricant import Lubricant
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.read import read_case
+
+#: Values closer than this are the same: files carry decimal fractions of millimetres.
+_SAME = 1e-9
+_MODELS = {
+    "film.model": "moes", "stiffness.model": "fe2d", "friction.law": "xu-2007",
+    "dynamics.model": "spur-6dof", "dynamics.mesh_law": "force-law",
+}  # fmt: skip
+_ASSUMED = {
+    "dynamics.bearing_stiffness": (500e6, "a usual stiffness of shaft and bearings together"),
+    "dynamics.backlash": (0.1e-3, "a usual play"),
+    "gears.driver": ("pinion", "the file says of no torque where it comes from"),
+    "lubricant.name": ("ISO VG 220", "a usual gear oil"),
+    "lubricant.temperature": (333.15, "a usual temperature of gear oil"),
+}  # fmt: skip
+_NOT_THERE = "not in the REXS file; "
+
+
+def case_from_rexs(
+    model: GearboxModel, stage: int | None = None, load_case: int | None = None, *,
+    changes: dict[str, Any] | None = None,
+) -> Case:  # fmt: skip
+    """Case of a spur stage of a gearbox model under one load.
+
+    Parameters
+    ----------
+    model : GearboxModel
+        What :func:`read_rexs` has read.
+    stage, load_case : int, optional
+        Numbers; not needed where there is one stage, and the first load case is taken.
+    changes : dict, optional
+        Values by dotted key that replace those of the file, as in :meth:`Case.replace`.
+
+    Returns
+    -------
+    Case
+        What the file does not say is marked as assumed. A file that we wrote gives back the whole
+        case, with what another program has changed in it; ``model.remarks`` tells of that.
+
+    Raises
+    ------
+    InputError
+        If the stage is helical, has a ring gear or is part of a planetary stage, or speed and
+        torque are not known.
+    """
+    return _case(model, model.stage(stage), model.load(load_case), dict(changes or {}))
+
+
+def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]) -> Case:
+    _require_spur(model, stage)
+    found, notes = _values(model, stage, load)
+    for unit in model.file.of_kind("gear_unit"):
+        if WHOLE_CASE in unit.values:
+            known = read_case(str(unit.values[WHOLE_CASE].content), f"{model.path}: {WHOLE_CASE}")
+            return _updated(model, known, found).replace(changes)
+    data: dict[str, Any] = {**found, **_MODELS, **changes}
+    for key in ("operation.speed", "operation.torque"):
+        if key not in data:
+            what = f"the speed and torque of stage {stage.id} are not known"
+            remedy = 'Give both: --set "operation.speed=1500 rpm" --set "operation.torque=100 N*m"'
+            raise InputError(what, model.path, "No load case gives them", remedy)
+    oil = any(key.startswith("lubricant.") for key in data)
+    rough = any("roughness" in key for key in data)
+    for key, (value, reason) in _ASSUMED.items():
+        if key not in data and not (oil and key.startswith("lubricant.")):
+            data[key] = value
+            notes[key] = _NOT_THERE + reason
+    if not rough:
+        for gear in ("pinion", "wheel"):
+            data[f"gears.{gear}.roughness_ra"] = 0.4e-6
+            notes[f"gears.{gear}.roughness_ra"] = _NOT_THERE + "ground flanks"
+    title = f"Stage {stage.id}: {stage.gear_1.name or 'gear 1'}, {stage.gear_2.name or 'gear 2'}"
+    origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
+    kept = {key: note for key, note in notes.items() if key not in changes}
+    return Case(title=title, origin=origin, **_nested(data), assumed=kept)
+
+
+def _require_spur(model: GearboxModel, stage: Stage) -> None:
+    what = ""
+    if stage.planetary:
+        what = f"stage {stage.id} is part of a planetary stage"
+    elif min(stage.gear_1.teeth, stage.gear_2.teeth) < 0:
+        what = f"stage {stage.id} has a ring gear"
+    elif max(abs(stage.gear_1.helix_angle), abs(stage.gear_2.helix_angle)) > 1e-6:
+        angle = math.degrees(abs(stage.gear_1.helix_angle))
+        what = f"stage {stage.id} is helical, with a helix angle of {angle:g} deg"
+    if what:
+        why = "Computed are external spur pairs on fixed axes"
+        raise InputError(what, model.path, why, "Its figures are listed without --out")
+
+
+def in_order(stage: Stage) -> tuple[StageGear, StageGear]:
+    """Pinion and wheel: the pinion has fewer teeth."""
+    one, two = stage.gear_1, stage.gear_2
+    return (one, two) if one.teeth <= two.teeth else (two, one)
+
+
+def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
+    """Values of the case that the file gives, in SI, and notes on those that it gives by half."""
+    pinion, wheel = in_order(stage)
+    data: dict[str, Any] = {
+        "gears.normal_module": pinion.normal_module,
+        "gears.normal_pressure_angle": pinion.normal_pressure_angle,
+        "gears.center_distance": stage.center_distance,
+        **_rack(model, pinion, wheel),
+        **_material(model, pinion),
+    }
+    for name, gear in (("pinion", pinion), ("wheel", wheel)):
+        data |= {
+            f"gears.{name}.{key}": value
+            for key in (
+                "teeth", "profile_shift_coefficient", "face_width", "tip_diameter", "roughness_ra"
+            )
+            if (value := getattr(gear, key)) is not None
+        }  # fmt: skip
+    shaft = model.shaft_of(pinion.id)
+    if shaft in load.speeds and shaft in load.torques:
+        data["operation.speed"] = load.speeds[shaft]
+        data["operation.torque"] = load.torques[shaft]
+        data["operation.speed_of"] = "pinion"
+        data["gears.driver"] = _driver(model, stage, load)
+    oil, notes = _oil(model, load)
+    return data | oil, notes
+
+
+def _rack(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dict[str, float]:
+    """Basic rack of both gears where the same rack-shaped tool cuts them."""
+    tools = []
+    for gear in (pinion, wheel):
+        for relation in model.file.related("ordered_reference", origin=gear.id):
+            tool = model.file.components[relation.of("referenced") or gear.id]
+            if tool.kind == "rack_shaped_tool":
+                dedendum = tool.number("addendum_coefficient_reference_profile", "")
+                round_ = tool.number("tip_radius_factor", "")
+                tools.append((dedendum, round_))
+    if len(tools) == 2 and tools[0] == tools[1] and None not in tools[0]:
+        dedendum, round_ = tools[0]
+        return {
+            "gears.dedendum_coefficient": float(dedendum or 0.0),
+            "gears.rack_tip_radius_coefficient": float(round_ or 0.0),
+        }
+    return {}
+
+
+def _material(model: GearboxModel, gear: StageGear) -> dict[str, float]:
+    for origin in (gear.id, model.shaft_of(gear.id)):
+        for relation in model.file.related("reference", origin=origin) if origin else ():
+            part = model.file.components[relation.of("referenced") or gear.id]
+            if part.kind == "material":
+                found = {
+                    "material.youngs_modulus": part.number("elastic_modulus", "Pa"),
+                    "material.poissons_ratio": part.number("poisson_ratio", ""),
+                    "material.density": part.number("density", "kg/m^3"),
+                }
+                return {key: value for key, value in found.items() if value is not None}
+    return {}
+
+
+def _driver(model: GearboxModel, stage: Stage, load: Load) -> str:
+    """The gear nearer to the shaft with the given torque; the other one if that brakes."""
+    pinion, _ = in_order(stage)
+    gears = {model.shaft_of(g.id): g.id for g in (stage.gear_1, stage.gear_2)}
+    steps, seen = {load.source}, {load.source}
+    while steps and not steps & gears.keys():
+        steps = {
+            other
+            for s in model.stages
+            for a, b in ((s.gear_1, s.gear_2), (s.gear_2, s.gear_1))
+            if model.shaft_of(a.id) in steps and (other := model.shaft_of(b.id)) not in seen
+        }
+        seen |= steps
+    near = next(gears[shaft] for shaft in steps & gears.keys())
+    return "pinion" if (near == pinion.id) != load.driven else "wheel"
+
+
+def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
+    """Oil at its temperature, from its viscosities at 40 and 100 degC."""
+    for part in model.file.of_kind("lubricant"):
+        cold = part.number("viscosity_at_40_degree_celsius", "m^2/s")
+        warm = part.number("viscosity_at_100_degree_celsius", "m^2/s")
+        density = part.number("density_at_15_degree_celsius", "kg/m^3")
+        temperature = load.oil_temperature
+        if not (cold and warm and density and temperature):
+            continue
+        oil = Lubricant.from_temperature(
+            temperature, ((313.15, cold), (373.15, warm)), density, base_oil="mineral"
+        )
+        keys = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient",
+                "temperature_viscosity_coefficient", "temperature")  # fmt: skip
+        data = {f"lubricant.{key}": getattr(oil, key) for key in keys}
+        estimate = "as of a mineral oil, from the viscosity by AGMA 925"
+        notes = {"lubricant.pressure_viscosity_coefficient": _NOT_THERE + estimate}
+        return {key: value for key, value in data.items() if value is not None}, notes
+    return {}, {}
+
+
+def _updated(model: GearboxModel, case: Case, found: dict[str, Any]) -> Case:
+    """The case we wrote, with what another program has changed since."""
+    written = GearboxModel(model_of(tree_of(case), "the case in the file"))
+    before, _ = _values(written, written.stage(), written.load())
+    changes = {
+        key: value
+        for key, value in found.items()
+        if not _same(before.get(key), value) and not key.startswith("lubricant.")
+    }
+    for key, value in changes.items():
+        told = f"{value:.9g} (SI)" if isinstance(value, float) else value
+        model.remarks.append(f"{key} was changed to {told} by another program")
+    return case.replace(changes) if changes else case
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=_SAME, abs_tol=1e-15)
+    return bool(one == other)
+
+
+def _nested(data: dict[str, Any]) -> dict[str, Any]:
+    tree: dict[str, Any] = {}
+    for key, value in data.items():
+        place = tree
+        *tables, name = key.split(".")
+        for table in tables:
+            place = place.setdefault(table, {})
+        place[name] = value
+    return tree

@@ -1,0 +1,9 @@
+"""Hypoid pairs under load, and the mesh table that they fill.
+
+| module | what it answers |
+| --- | --- |
+| `cells` | contact lines of all pairs over a mesh cycle, cut into cells |
+| `loaded_contact` | load of every cell, stiffness, transmission error, pressure |
+| `friction` | film and friction of every cell, and what they sum up to |
+| `table` | the same as a mesh table for the dynamics |
+"""

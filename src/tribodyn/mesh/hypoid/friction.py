@@ -1,0 +1,338 @@
+"""Film and friction in every cell of a loaded hypoid pair, and what they sum up to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from typing import Any
+
+import numpy as np
+
+from tribodyn.checks import require_number
+from tribodyn.contact import effective_modulus
+from tribodyn.ehl import FILM_MODELS, hamrock_dowson_minimum, lubrication_regime
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    quiet,
+    require_between,
+    require_one_of,
+    shortened,
+)
+from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
+from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS, CellMotion, cell_motion
+from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.hypoid.cells import ContactCells
+from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wrench
+from tribodyn.mesh.hypoid.table import table_of
+from tribodyn.mesh.table import MeshTable
+from tribodyn.model import NO_OPTIONS
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array, Mask
+
+#: Film of the elliptical contact that each line is; other models are those of line contacts.
+ELLIPTICAL = "hamrock-dowson"
+#: Load per length over the greatest one from which on a law says where it is out of its range.
+_TOLD = 0.25
+_PHASES, _CELLS = ("phase",), ("phase", "pair", "cell")
+
+
+@record
+class HypoidFriction(Record):
+    """Film and friction of a hypoid pair over a mesh cycle; made by :func:`hypoid_friction`.
+
+    Cells that carry no load have no film and no friction: zero, and infinite film ratio.
+
+    Parameters
+    ----------
+    phase : array (phase,)
+        Mesh cycles from where a pair comes into contact.
+    sliding_speed, entrainment_speed : array (phase, pair, cell) [m/s]
+        Amount of the sliding; HALF the sum of the rolling speeds.
+    equivalent_radius : array (phase, pair, cell) [m]
+        Radius of the gap across the line.
+    minimum_film : array (phase, pair, cell) [m]
+        Least film; where the film model has none, the central one.
+    film_ratio : array (phase, pair, cell)
+        Film over composite roughness.
+    friction_coefficient : array (phase, pair, cell)
+        Friction force over normal force.
+    film_load_share : array (phase, pair, cell)
+        Part of the load on the film; 1 where the friction law knows no asperities.
+    friction_direction : array (phase, pair, cell, 3)
+        Unit vector of the friction force on the pinion, in the fixed frame.
+    pinion_friction, wheel_friction : array (phase, 6)
+        Force and moment of friction on each gear over the amount of the mesh force, in the frames
+        of :class:`HypoidLoadedContact`: three pure numbers and three levers in m.
+    power : array (phase,) [W]
+        Power lost by sliding.
+    mean_coefficient : array (phase,)
+        Friction forces of all cells over their normal forces.
+    pinion_speed : float [rad/s]
+        Speed of the pinion.
+    composite_roughness : float [m]
+        Root of the sum of squares of both roughnesses.
+    friction_law, film_model, entrainment : str
+        What was chosen.
+    loaded : HypoidLoadedContact
+        The contact under load.
+    """
+
+    phase: Array = quantity(*_PHASES, unit="1", axis=True)
+    sliding_speed: Array = quantity(*_CELLS, unit="m/s")
+    entrainment_speed: Array = quantity(*_CELLS, unit="m/s")
+    equivalent_radius: Array = quantity(*_CELLS, unit="m")
+    minimum_film: Array = quantity(*_CELLS, unit="m")
+    film_ratio: Array = quantity(*_CELLS, unit="1")
+    friction_coefficient: Array = quantity(*_CELLS, unit="1")
+    film_load_share: Array = quantity(*_CELLS, unit="1")
+    friction_direction: Array = quantity(*_CELLS, "component", unit="1")
+    pinion_friction: Array = quantity(*_PHASES, "component6", unit="1")
+    wheel_friction: Array = quantity(*_PHASES, "component6", unit="1")
+    power: Array = quantity(*_PHASES, unit="W")
+    mean_coefficient: Array = quantity(*_PHASES, unit="1")
+    pinion_speed: float = fact()
+    composite_roughness: float = fact()
+    friction_law: str = fact()
+    film_model: str = fact()
+    entrainment: str = fact()
+    loaded: HypoidLoadedContact = field()
+
+    @property
+    def mean_friction_coefficient(self) -> float:
+        """Mean over the cycle of friction over normal forces."""
+        return float(self.loaded.grid.mean(self.mean_coefficient))
+
+    @property
+    def minimum_film_ratio(self) -> float:
+        """Least film over the composite roughness."""
+        return float(self.film_ratio.min())
+
+    @property
+    def efficiency(self) -> float:
+        """What the teeth pass on of the power of the pinion, over the cycle."""
+        power = self.pinion_speed * self.loaded.pinion_torque
+        return 1.0 - float(self.loaded.grid.mean(self.power)) / power
+
+    @property
+    def lubrication_regime(self) -> Array:
+        """Regime of each cell: 0 boundary, 1 mixed, 2 full film; NaN where nothing is carried."""
+        loaded = self.loaded.cell_force > 0.0
+        return lubrication_regime(np.where(loaded, self.film_ratio, np.nan))
+
+    def table(self) -> MeshTable:
+        """Mesh table of the pair for the dynamics.
+
+        Returns
+        -------
+        MeshTable
+            Directions have twelve columns: three displacements and three rotations of each gear,
+            in the frames of :class:`HypoidLoadedContact`.
+        """
+        return table_of(self)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"HypoidFriction({self.friction_law}, mean coefficient "
+            f"{self.mean_friction_coefficient:.4g}, film ratio from {self.minimum_film_ratio:.3g}, "
+            f"efficiency {100.0 * self.efficiency:.2f} %)"
+        )
+
+
+def hypoid_friction(
+    loaded: HypoidLoadedContact,
+    pinion_speed: float,
+    *,
+    lubricant: Lubricant,
+    composite_roughness: float,
+    friction_law: str = "mixed-ehl",
+    friction_options: Mapping[str, Any] = NO_OPTIONS,
+    film_model: str = ELLIPTICAL,
+    entrainment: str = "contact",
+) -> HypoidFriction:
+    """Film and friction in every cell of a hypoid pair under load.
+
+    Parameters
+    ----------
+    loaded : HypoidLoadedContact
+        The contact under load.
+    pinion_speed : float
+        Speed of the pinion in its running sense [rad/s].
+    lubricant : Lubricant
+        Oil at working temperature.
+    composite_roughness : float
+        Root of the sum of squares of both roughnesses [m]; zero for ideal flanks.
+    friction_law, friction_options
+        Name in ``tribodyn.friction.LAWS``, and options of that law.
+    film_model : str
+        ``"hamrock-dowson"`` takes each line as an elliptical contact under its whole force, with
+        the radii of the gap in each cell; others are formulas of ``tribodyn.ehl.FILM_MODELS`` for
+        lines under the load per length of the cell.
+    entrainment : str
+        ``"contact"`` or ``"fixed_frame"``, as in :func:`tribodyn.gear.hypoid_kinematics`.
+
+    Returns
+    -------
+    HypoidFriction
+
+    Raises
+    ------
+    InputError
+        If an argument is wrong, or the law needs what a hypoid pair does not have.
+
+    Warns
+    -----
+    ModelWarning
+        Those of the law, for cells with at least a quarter of the greatest load per length.
+
+    Notes
+    -----
+    The friction force of a cell acts against its sliding. It moves the mesh by its sum and turns
+    both gears by its moments; the power of the moments is that of the forces.
+
+    Examples
+    --------
+    >>> import math
+    >>> from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
+    >>> from tribodyn.mesh import hypoid_loaded_contact
+    >>> blank = hypoid_blank(10, 43, 31.7e-3, 0.336, 47.7e-3, math.radians(46.0), 0.1143)
+    >>> ease_off = EaseOff(lengthwise_crowning=30e-6, profile_crowning=6e-6)
+    >>> loaded = hypoid_loaded_contact(hypoid_flanks(blank, ease_off=ease_off), 500.0, steps=16)
+    >>> oil = Lubricant(0.01, 769.0, 2e-8)
+    >>> rubbed = hypoid_friction(loaded, 314.16, lubricant=oil, composite_roughness=0.4e-6)
+    >>> round(rubbed.mean_friction_coefficient, 3)
+    0.03
+    """
+    for name, value, kind, maker in (
+        ("loaded", loaded, HypoidLoadedContact, "what hypoid_loaded_contact returns"),
+        ("lubricant", lubricant, Lubricant, "a Lubricant"),
+    ):
+        if not isinstance(value, kind):
+            raise InputError(
+                f"{name} = {shortened(repr(value))}", Argument(name), f"Wanted: {maker}"
+            )
+    speed = require_number("pinion_speed", pinion_speed)
+    require_between("pinion_speed", speed, 1e-9, 1e5, "rad/s", remedy="3000 rpm is 314.16 rad/s")
+    roughness = require_number("composite_roughness", composite_roughness)
+    require_between("composite_roughness", roughness, 0.0, 1e-4, "m", remedy="0.4 um is 0.4e-6")
+    chosen = require_one_of("entrainment", entrainment, ENTRAINMENTS)
+    cells, law = loaded.cells, LAWS[friction_law]
+    motion = cell_motion(cells.flanks.conjugate, cells.touch, cells.curvature, speed, chosen)
+
+    def rubbed(which: Mask) -> tuple[TribologicalContact, FrictionParts]:
+        film = _film(loaded, motion, which, lubricant, film_model)
+        contact = _contact(loaded, motion, which, film, lubricant, roughness)
+        told = law.told(contact, friction_options)
+        if isinstance(told, FrictionParts):
+            return contact, told
+        return contact, FrictionParts(told, np.zeros(told.shape), np.ones(told.shape))
+
+    width = loaded.line_force / cells.length
+    rubbed(width >= _TOLD * width.max())  # for what film and law have to say of them
+    with quiet():
+        contact, told = rubbed(width > 0.0)
+    return HypoidFriction(
+        phase=loaded.phase,
+        sliding_speed=cells.spread(motion.sliding_speed),
+        entrainment_speed=cells.spread(motion.entrainment_speed),
+        equivalent_radius=cells.spread(motion.equivalent_radius),
+        friction_direction=cells.spread(motion.friction_direction),
+        **_of_the_law(cells, width > 0.0, contact, told),
+        **_sums(loaded, motion, width > 0.0, told.coefficient),
+        pinion_speed=speed,
+        composite_roughness=roughness,
+        friction_law=friction_law,
+        film_model=film_model,
+        entrainment=chosen,
+        loaded=loaded,
+    )
+
+
+def _of_the_law(
+    cells: ContactCells, carry: Mask, contact: TribologicalContact, told: FrictionParts
+) -> dict[str, Array]:
+    """Film and friction of the cells that carry, laid out over all."""
+    known = {
+        "minimum_film": (contact.known("film_thickness"), 0.0),
+        "film_ratio": (contact.film_ratio, np.inf),
+        "friction_coefficient": (told.coefficient, 0.0),
+        "film_load_share": (told.film_load_share, 1.0),
+    }
+    found = {}
+    for name, (values, empty) in known.items():
+        whole = np.full(carry.shape, empty)
+        whole[carry] = values
+        found[name] = cells.spread(whole, empty)
+    return found
+
+
+def _sums(
+    loaded: HypoidLoadedContact, motion: CellMotion, carry: Mask, coefficient: Array
+) -> dict[str, Array]:
+    """Sum the friction forces up to forces, moments, power and one coefficient of each phase."""
+    cells, force = loaded.cells, loaded.line_force.copy()
+    force[carry] *= coefficient
+    rubbing = force[..., None] * motion.friction_direction
+    of_gears = {
+        f"{gear}_friction": cells.summed(sign * wrench(cells, rubbing, gear).sum(axis=1))
+        / loaded.mesh_force[:, None]
+        for gear, sign in (("pinion", 1.0), ("wheel", -1.0))
+    }
+    normal = cells.summed(loaded.line_force.sum(axis=1))
+    return of_gears | {
+        "power": cells.summed((force * motion.sliding_speed).sum(axis=1)),
+        "mean_coefficient": cells.summed(force.sum(axis=1)) / normal,
+    }
+
+
+def _film(
+    loaded: HypoidLoadedContact, motion: CellMotion, carry: Mask, oil: Lubricant, model: str
+) -> Array:
+    """Film of the cells that carry."""
+    cells, modulus = loaded.cells, effective_modulus(loaded.material, loaded.material)
+    radius, speed = motion.equivalent_radius[carry], motion.entrainment_speed[carry]
+    if model == ELLIPTICAL:
+        whole = np.broadcast_to(loaded.line_force.sum(axis=1)[:, None], carry.shape)[carry]
+        return hamrock_dowson_minimum(
+            whole,
+            radius,
+            cells.side_radius[carry],
+            speed,
+            oil.dynamic_viscosity,
+            oil.pressure_viscosity_coefficient,
+            modulus,
+        )
+    require_one_of("film_model", model, (ELLIPTICAL, *_formulas()))
+    load = (loaded.line_force / cells.length)[carry]
+    films = FILM_MODELS[model].films(load, radius, speed, oil, modulus)
+    return np.asarray(films.central_film if films.minimum_film is None else films.minimum_film)
+
+
+def _formulas() -> tuple[str, ...]:
+    """Film models that are formulas."""
+    return tuple(name for name in FILM_MODELS if FILM_MODELS[name].central is not None)
+
+
+def _contact(
+    loaded: HypoidLoadedContact,
+    motion: CellMotion,
+    carry: Mask,
+    film: Array,
+    oil: Lubricant,
+    roughness: float,
+) -> TribologicalContact:
+    """Cells that carry, as friction laws see them."""
+    cells = loaded.cells
+    return TribologicalContact(
+        load_per_width=(loaded.line_force / cells.length)[carry],
+        hertz_pressure=loaded.hertz_pressure[cells.in_contact][carry],
+        sliding_speed=motion.sliding_speed[carry],
+        entrainment_speed=motion.entrainment_speed[carry],
+        slide_to_roll_ratio=motion.slide_to_roll_ratio[carry],
+        equivalent_radius=motion.equivalent_radius[carry],
+        dynamic_viscosity=oil.dynamic_viscosity,
+        composite_roughness=roughness,
+        oil_density=oil.density,
+        film_thickness=film,
+    )

@@ -1,0 +1,366 @@
+"""Loaded tooth contact of a hypoid pair: which cells carry how much, and how far the wheel lags."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from functools import cached_property
+
+import numpy as np
+
+from tribodyn.checks import require_number, require_whole
+from tribodyn.contact import effective_modulus, hertz_line
+from tribodyn.errors import (
+    Argument,
+    ComputationError,
+    InputError,
+    require_between,
+    shortened,
+)
+from tribodyn.gear import HypoidFlanks, Material, Misalignment
+from tribodyn.gear.hypoid.envelope import cross
+from tribodyn.mesh.grid import PhaseGrid, phase_grid
+from tribodyn.mesh.hypoid.cells import ContactCells, contact_cells
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array
+
+#: Steps of Newton's method, which comes down a convex curve, and the torque that may be left.
+_STEPS, _CLOSE = 60, 1e-13
+_PHASES, _PAIRS, _CELLS = ("phase",), ("phase", "pair"), ("phase", "pair", "cell")
+
+
+@record
+class HypoidLoadedContact(Record):
+    """One mesh cycle of a hypoid pair under load; made by :func:`hypoid_loaded_contact`.
+
+    Pair ``i`` came into contact ``i`` cycles before phase 0. What belongs to pairs that are not in
+    contact is zero. Forces and levers are told in the frames of both gears: x along the common
+    perpendicular, y along the axis of the gear so that its running sense is positive, z across.
+
+    Parameters
+    ----------
+    phase : array (phase,)
+        Mesh cycles from where a pair comes into contact.
+    unloaded_rotation, loaded_rotation : array (phase,) [rad]
+        By how much the wheel lags behind the ratio without load, and under it.
+    mesh_force : array (phase,) [N]
+        Amount of the force of all cells together.
+    mesh_stiffness : array (phase,) [N/m]
+        That force over the way of the wheel on the line of action from the first touch on.
+    mesh_stiffness_tangent : array (phase,) [N/m]
+        Slope of that force there.
+    pinion_direction, wheel_direction : array (phase, 6)
+        Force and moment of the mesh on each gear over the amount of the force: three pure numbers
+        and three levers in m, normals out of the pinion. Moments are about the point where the
+        common perpendicular meets the axis.
+    load_share : array (phase, pair)
+        Part of the torque on each pair.
+    along, across : array (phase, pair, cell) [m]
+        Places of the cells on the wheel, along and across its pitch cone.
+    cell_force : array (phase, pair, cell) [N]
+        Force of each cell.
+    load_per_width : array (phase, pair, cell) [N/m]
+        Force over the length of the cell.
+    hertz_pressure : array (phase, pair, cell) [Pa]
+        Greatest pressure of a line contact under it.
+    pinion_torque : float [N*m]
+        Torque on the pinion.
+    line_stiffness : float [Pa]
+        Stiffness of the teeth per length of contact line.
+    grid : PhaseGrid
+        The phases.
+    cells : ContactCells
+        The contact lines.
+    material : Material
+        Material of both gears.
+    """
+
+    phase: Array = quantity(*_PHASES, unit="1", axis=True)
+    unloaded_rotation: Array = quantity(*_PHASES, unit="rad")
+    loaded_rotation: Array = quantity(*_PHASES, unit="rad")
+    mesh_force: Array = quantity(*_PHASES, unit="N")
+    mesh_stiffness: Array = quantity(*_PHASES, unit="N/m")
+    mesh_stiffness_tangent: Array = quantity(*_PHASES, unit="N/m")
+    pinion_direction: Array = quantity(*_PHASES, "component", unit="1")
+    wheel_direction: Array = quantity(*_PHASES, "component", unit="1")
+    load_share: Array = quantity(*_PAIRS, unit="1")
+    along: Array = quantity(*_CELLS, unit="m")
+    across: Array = quantity(*_CELLS, unit="m")
+    cell_force: Array = quantity(*_CELLS, unit="N")
+    load_per_width: Array = quantity(*_CELLS, unit="N/m")
+    hertz_pressure: Array = quantity(*_CELLS, unit="Pa")
+    pinion_torque: float = fact()
+    line_stiffness: float = fact()
+    grid: PhaseGrid = field()
+    cells: ContactCells = field()
+    material: Material = field()
+
+    @property
+    def wheel_torque(self) -> float:
+        """Torque on the wheel [N*m]; without friction that of the pinion times the ratio."""
+        return self.pinion_torque * self.cells.flanks.blank.ratio
+
+    @property
+    def wheel_lever(self) -> Array:
+        """Lever of the mesh force about the wheel's axis (phase,) [m]."""
+        return np.asarray(self.wheel_direction[:, 4])
+
+    @property
+    def unloaded_transmission_error(self) -> Array:
+        """Lag of the wheel without load, on the line of action (phase,) [m]."""
+        return self.wheel_lever * self.unloaded_rotation
+
+    @property
+    def loaded_transmission_error(self) -> Array:
+        """Lag of the wheel under load, on the line of action (phase,) [m]."""
+        return self.wheel_lever * self.loaded_rotation
+
+    @property
+    def mean_mesh_stiffness(self) -> float:
+        """Mean of the mesh stiffness over the cycle [N/m]."""
+        return float(self.grid.mean(self.mesh_stiffness))
+
+    @property
+    def mean_mesh_force(self) -> Array:
+        """Mean of the force on the teeth of the wheel in the frame of the pinion (3,) [N]."""
+        return self.grid.mean(self.mesh_force[:, None] * self.pinion_direction[:, :3])
+
+    @property
+    def maximum_pressure(self) -> float:
+        """Greatest Hertzian pressure on the flank [Pa]."""
+        return float(self.hertz_pressure.max())
+
+    @cached_property
+    def line_force(self) -> Array:
+        """Force of the cells of the lines (lines, cells)."""
+        return np.asarray(self.cell_force[self.cells.in_contact])
+
+    def under(self, pinion_torque: float) -> HypoidLoadedContact:
+        """Find the same contact under another torque.
+
+        Parameters
+        ----------
+        pinion_torque : float
+            Torque on the pinion in its running sense [N*m].
+
+        Returns
+        -------
+        HypoidLoadedContact
+
+        Raises
+        ------
+        InputError
+            If the torque is not positive.
+        """
+        torque = _required_torque(pinion_torque)
+        return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"HypoidLoadedContact({self.pinion_torque:.6g} N m, mean stiffness "
+            f"{self.mean_mesh_stiffness:.4g} N/m, pressure up to "
+            f"{self.maximum_pressure * 1e-9:.3g} GPa)"
+        )
+
+
+def hypoid_loaded_contact(
+    flanks: HypoidFlanks,
+    pinion_torque: float,
+    *,
+    misalignment: Misalignment | None = None,
+    material: Material | None = None,
+    line_stiffness: float = 14e9,
+    steps: int = 100,
+    cells: int = 48,
+) -> HypoidLoadedContact:
+    """Share the load of a hypoid pair among the cells of all its contact lines.
+
+    Parameters
+    ----------
+    flanks : HypoidFlanks
+        The flanks with their ease-off.
+    pinion_torque : float
+        Torque on the pinion in its running sense [N*m].
+    misalignment : Misalignment, optional
+        Displacements of both gears; none by default.
+    material : Material, optional
+        Material of both gears; steel by default.
+    line_stiffness : float
+        Force per length of contact line and approach of the teeth [Pa]; the default of
+        14 N/(mm um) has the order of the mesh stiffness of ISO 6336.
+    steps : int
+        Intervals of the mesh cycle, at least 16.
+    cells : int
+        Cells of each contact line, at least 4.
+
+    Returns
+    -------
+    HypoidLoadedContact
+
+    Raises
+    ------
+    InputError
+        If an argument is wrong.
+    ComputationError
+        If the flanks touch nowhere, or cut into each other where they carry.
+
+    Notes
+    -----
+    Each cell carries in proportion to its length and to what the rotation of the wheel leaves of
+    its gap. The gap is taken to first order along the contact lines of the conjugate flanks, whose
+    ends on both flanks are exact, and within a cell as straight, so that a cell may carry in part.
+    The rotation is that at which the moments of all cells balance the torque.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
+    >>> blank = hypoid_blank(10, 43, 31.7e-3, 0.336, 47.7e-3, math.radians(46.0), 0.1143)
+    >>> ease_off = EaseOff(lengthwise_crowning=30e-6, profile_crowning=6e-6)
+    >>> loaded = hypoid_loaded_contact(hypoid_flanks(blank, ease_off=ease_off), 500.0, steps=16)
+    >>> bool(loaded.mean_mesh_stiffness > 4e8)
+    True
+    """
+    if not isinstance(flanks, HypoidFlanks):
+        what = f"flanks = {shortened(repr(flanks))}"
+        raise InputError(what, Argument("flanks"), "Wanted: what hypoid_flanks returns")
+    for name, value, kind in (
+        ("misalignment", misalignment, Misalignment),
+        ("material", material, Material),
+    ):
+        if not isinstance(value, kind | None):
+            what = f"{name} = {shortened(repr(value))}"
+            raise InputError(what, Argument(name), f"Wanted: a {kind.__name__} or None")
+    torque = _required_torque(pinion_torque)
+    line_stiffness = require_number("line_stiffness", line_stiffness)
+    require_between(
+        "line_stiffness", line_stiffness, 1e6, 1e13, "Pa", remedy="14 N/(mm um) are 14e9"
+    )
+    for name, count, least in (("steps", steps, 16), ("cells", cells, 4)):
+        require_between(name, require_whole(name, count, least), least, 2000)
+    grid = phase_grid((0.0,), steps)
+    lines = contact_cells(flanks, misalignment or Misalignment(), grid.phase, cells)
+    return _loaded(lines, grid, torque, line_stiffness, material or Material())
+
+
+def _required_torque(pinion_torque: float) -> float:
+    torque = require_number("pinion_torque", pinion_torque)
+    require_between("pinion_torque", torque, 1e-6, 1e7, "N*m", remedy="Give its amount")
+    return torque
+
+
+def carried(cells: ContactCells, line_stiffness: float, lag: Array) -> tuple[Array, Array, Array]:
+    """Forces of the cells of a wheel that lags (p,) [rad], its torque, and the slope of that."""
+    over = cells.edge_lever * lag[cells.row, None] - cells.edge_gap
+    one, two = over[:, :-1], over[:, 1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turn = one / (one - two)
+    # The closed part of the cell, between shares of its length.
+    begin = np.where(one >= 0.0, 0.0, np.where(two > 0.0, turn, 1.0))
+    end = np.where(two >= 0.0, 1.0, np.where(one > 0.0, turn, begin))
+    closed, middle = end - begin, 0.5 * (begin + end)
+    spring = line_stiffness * cells.length * closed
+    lever = cells.edge_lever
+    force = spring * np.maximum(one + (two - one) * middle, 0.0)
+    slope = spring * (lever[:, :-1] + (lever[:, 1:] - lever[:, :-1]) * middle)
+    arm = cells.touch.lever
+    torque, rate = (cells.summed((each * arm).sum(axis=1)) for each in (force, slope))
+    return force, torque, rate
+
+
+def wheel_torque_at(loaded: HypoidLoadedContact, lag: Array) -> Array:
+    """Torque on a wheel that lags by some angles (..., phase) [rad]."""
+    lags = np.reshape(lag, (-1, loaded.phase.size))
+    torques = [carried(loaded.cells, loaded.line_stiffness, each)[1] for each in lags]
+    return np.reshape(torques, np.shape(lag))
+
+
+def first_touch(cells: ContactCells) -> Array:
+    """Lag of the wheel at which the first cell of each phase closes (p,) [rad]."""
+    least = np.full(cells.phase.size, np.inf)
+    np.minimum.at(least, cells.row, (cells.edge_gap / cells.edge_lever).min(axis=1))
+    return least
+
+
+def lag_under(cells: ContactCells, line_stiffness: float, wheel_torque: float) -> Array:
+    """Lag of the wheel at which the cells of each phase balance a torque (p,) [rad].
+
+    The torque is convex in the lag: from above Newton's method comes down to it.
+    """
+    spring = line_stiffness * (cells.length * cells.touch.lever**2).sum(axis=1)
+    most = np.zeros(cells.phase.size)
+    np.maximum.at(most, cells.row, (cells.edge_gap / cells.edge_lever).max(axis=1))
+    lag = most + 1.1 * wheel_torque / cells.summed(spring)
+    for _ in range(_STEPS):
+        _, torque, rate = carried(cells, line_stiffness, lag)
+        if np.max(np.abs(torque - wheel_torque)) < _CLOSE * wheel_torque:
+            break
+        lag = lag - (torque - wheel_torque) / rate
+    return lag
+
+
+def in_frame(vectors: Array, sense: float, gear: str) -> Array:
+    """Vectors of the fixed frame in that of a gear, whose y axis lies along its rotation."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    turned = (x, sense * y, sense * z) if gear == "pinion" else (x, -sense * z, sense * y)
+    return np.stack(turned, axis=-1)
+
+
+def wrench(cells: ContactCells, forces: Array, gear: str) -> Array:
+    """Force and moment (lines, cells, 6) of forces at the cells on a gear, in its frame."""
+    axes, position = cells.flanks.conjugate.axes, cells.touch.contact.wheel.position
+    arm = position - axes.origin if gear == "pinion" else position
+    sense = cells.flanks.conjugate.sense
+    parts = [in_frame(each, sense, gear) for each in (forces, cross(arm, forces))]
+    return np.concatenate(parts, axis=-1)
+
+
+def _loaded(
+    cells: ContactCells, grid: PhaseGrid, torque: float, line_stiffness: float, material: Material
+) -> HypoidLoadedContact:
+    wheel_torque = torque * cells.flanks.blank.ratio
+    lag, start = lag_under(cells, line_stiffness, wheel_torque), first_touch(cells)
+    force, balanced, rate = carried(cells, line_stiffness, lag)
+    normals = force[..., None] * cells.touch.contact.wheel.normal
+    pinion, wheel = (
+        cells.summed(wrench(cells, normals, gear).sum(axis=1)) for gear in ("pinion", "wheel")
+    )
+    amount = np.linalg.norm(pinion[:, :3], axis=-1)
+    lever = wheel[:, 4] / amount
+    width = force / cells.length
+    touch = cells.touch
+    return HypoidLoadedContact(
+        phase=grid.phase,
+        unloaded_rotation=start,
+        loaded_rotation=lag,
+        mesh_force=amount,
+        mesh_stiffness=amount / (lever * (lag - start)),
+        mesh_stiffness_tangent=rate / lever**2,
+        pinion_direction=pinion / amount[:, None],
+        wheel_direction=wheel / amount[:, None],
+        load_share=cells.spread((force * touch.lever).sum(axis=1)) / balanced[:, None],
+        along=cells.spread(touch.places[..., 0]),
+        across=cells.spread(touch.places[..., 1]),
+        cell_force=cells.spread(force),
+        load_per_width=cells.spread(width),
+        hertz_pressure=cells.spread(_pressure(cells, width, material)),
+        pinion_torque=torque,
+        line_stiffness=line_stiffness,
+        grid=grid,
+        cells=cells,
+        material=material,
+    )
+
+
+def _pressure(cells: ContactCells, load_per_width: Array, material: Material) -> Array:
+    """Greatest pressure of each cell."""
+    curvature, loaded = cells.curvature.tensor[..., 1, 1], load_per_width > 0.0
+    if np.any(curvature[loaded] <= 0.0):
+        raise ComputationError(
+            "the flanks cut into each other where they carry",
+            why="The gap across the contact line is curved the wrong way",
+            remedy="Give the pinion more teeth, a larger spiral angle or a smaller working depth",
+        )
+    radius = 1.0 / np.where(loaded, curvature, 1.0)
+    return hertz_line(
+        load_per_width, radius, effective_modulus(material, material)
+    ).maximum_pressure

@@ -1,0 +1,259 @@
+"""Gearbox models of other programs: figures, cases of spur stages, and what is refused."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
+from tribodyn.gear import zero_backlash_center_distance
+from tribodyn.lubricant import Lubricant
+
+MODELS = Path(__file__).parents[2] / "references" / "rexs"
+RPM = math.pi / 30.0
+
+
+@pytest.mark.parametrize("name", ["two_stages.rexs", "two_stages.rexsj"])
+def test_both_forms_of_one_gearbox_give_the_figures_of_its_data_sheet(name: str) -> None:
+    """Angles and sums of shifts follow from teeth, helix and distance alone, and must agree."""
+    model = read_rexs(MODELS / name)
+    assert sum(model.components.values()) == 49
+    one, two = model.stages
+    assert [(s.gear_1.teeth, s.gear_2.teeth) for s in (one, two)] == [(27, 51), (23, 34)]
+    for stage, angle, total, reference in (
+        (one, 22.8062, 0.46283, 187.9859), (two, 21.7751, 0.30148, 188.1078),
+    ):  # fmt: skip
+        assert math.degrees(stage.operating_pressure_angle) == pytest.approx(angle, abs=5e-5)
+        assert stage.shift_sum == pytest.approx(total, abs=5e-6)
+        assert stage.shift_sum == pytest.approx(
+            2 * stage.gear_1.profile_shift_coefficient, abs=5e-6
+        )
+        assert stage.reference_center_distance == pytest.approx(reference * 1e-3, abs=5e-8)
+    assert math.degrees(one.gear_1.helix_angle) == pytest.approx(21.0)
+    assert math.degrees(two.gear_1.helix_angle) == pytest.approx(-10.0)
+    rows = [
+        (0.20, 543.0, 567.0, 244.35, 287.47, 110.197, 194.465),
+        (0.30, 3456.0, 345.0, 1555.2, 1829.65, 701.365, 1237.702),
+        (0.35, 1234.0, 456.0, 555.3, 653.29, 250.429, 441.934),
+        (0.15, 789.0, 789.0, 355.05, 417.71, 160.121, 282.566),
+    ]
+    for load, (share, speed, torque, mesh, middle, second, last) in zip(
+        model.loads, rows, strict=True
+    ):
+        assert load.share == pytest.approx(share)
+        assert load.speeds == pytest.approx(
+            {12: speed * RPM, 13: middle * RPM, 14: last * RPM}, rel=2e-5
+        )
+        assert load.torques[12] == torque
+        assert load.torques[14] == pytest.approx(torque * 51 / 27 * 34 / 23)
+        assert 27 * load.speeds[12] / (2 * math.pi) == pytest.approx(mesh, rel=1e-5)
+        assert 23 * load.speeds[13] / (2 * math.pi) == pytest.approx(second, rel=1e-5)
+        assert load.oil_temperature == pytest.approx(343.15)
+    assert any("tip_diameter = 1 mm" in remark for remark in model.remarks)
+    assert two.gear_1.tip_diameter is None
+    with pytest.raises(InputError, match="stage 19 is helical, with a helix angle of 21 deg"):
+        case_from_rexs(model, 19)
+
+
+def test_xml_and_json_say_the_same() -> None:
+    one, other = (read_rexs(MODELS / f"two_stages.{end}") for end in ("rexs", "rexsj"))
+    assert one.stages == other.stages
+    assert one.loads == other.loads
+    assert one.remarks == other.remarks
+
+
+def test_a_planetary_gearbox_is_listed_and_not_computed() -> None:
+    model = read_rexs(MODELS / "planetary.rexsz")
+    assert sum(model.components.values()) == 97
+    assert [s.gear_2.teeth for s in model.stages] == [22, 22, 22, -61, -61, -61]
+    assert all(s.shift_sum == pytest.approx(0.0, abs=1e-12) for s in model.stages)
+    assert model.loads[0].torques == {34: pytest.approx(1591.549, abs=1e-3)}
+    told = model.remarks[-1]
+    assert "sun 17, 3 planets 22, ring 61" in told
+    assert "4.588" in told
+    assert told.endswith("equally spaced planets assemble")
+    with pytest.raises(InputError, match="stage 211 is part of a planetary stage"):
+        case_from_rexs(model, 211)
+
+
+@pytest.fixture
+def tree() -> dict[str, Any]:
+    """The gearbox with straight teeth on axes that fit them."""
+    held: dict[str, Any] = json.loads((MODELS / "two_stages.rexsj").read_text(encoding="utf-8"))
+    for part in held["model"]["components"]:
+        for attribute in part["attributes"]:
+            if attribute["id"] == "helix_angle_reference_diameter":
+                attribute["floating_point"] = 0.0
+            if attribute["id"] == "center_distance":
+                teeth, module, shift = (78, 4.5e-3, 0.46283) if part["id"] == 19 else (
+                    57, 6.5e-3, 0.30148
+                )  # fmt: skip
+                fitting = zero_backlash_center_distance(teeth, module, math.radians(20), shift)
+                attribute["floating_point"] = fitting * 1e3
+    return held
+
+
+def stored(tree: dict[str, Any], folder: Path) -> Path:
+    path = folder / "model.rexsj"
+    path.write_text(json.dumps(tree), encoding="utf-8")
+    return path
+
+
+def attribute(tree: dict[str, Any], number: int, name: str, case: int = 0) -> dict[str, Any]:
+    model = tree["model"]
+    parts = model["load_spectrum"]["load_cases"][case - 1] if case else model
+    (part,) = (p for p in parts["components"] if p["id"] == number)
+    return next(a for a in part["attributes"] if a["id"] == name)
+
+
+def test_a_spur_stage_becomes_a_case_that_tells_what_was_assumed(tree, tmp_path) -> None:
+    model = read_rexs(stored(tree, tmp_path))
+    case = case_from_rexs(model, 20, 3)
+    assert (case.gears.pinion.teeth, case.gears.wheel.teeth) == (23, 34)
+    assert case.gear_pair.pinion.normal_module == pytest.approx(6.5e-3)
+    assert case.gears.pinion.face_width == pytest.approx(74e-3)
+    assert case.operation.speed == pytest.approx(1234 * 27 / 51 * RPM)
+    assert case.operation.torque == pytest.approx(456 * 51 / 27)
+    assert case.gears.driver == "pinion"
+    assert case.material.youngs_modulus == pytest.approx(210e9)
+    points = ((313.15, 100e-6), (373.15, 11e-6))
+    oil = Lubricant.from_temperature(343.15, points, 880.0, base_oil="mineral")
+    assert case.lubricant_properties.dynamic_viscosity == pytest.approx(oil.dynamic_viscosity)
+    said = case.to_toml().partition("[assumed]")[2].partition("\n[")[0]
+    for key in ("bearing_stiffness", "backlash", "roughness_ra", "pressure_viscosity_coefficient"):
+        assert key in said
+    assert "speed" not in said
+
+
+def test_the_driver_follows_from_the_sign_of_the_torque(tree, tmp_path) -> None:
+    attribute(tree, 40, "torque_around_u_axis", case=1)["floating_point"] = -567.0
+    model = read_rexs(stored(tree, tmp_path))
+    assert [case_from_rexs(model, n, 1).gears.driver for n in (19, 20)] == ["wheel", "wheel"]
+    assert [case_from_rexs(model, n, 2).gears.driver for n in (19, 20)] == ["pinion", "pinion"]
+
+
+def test_what_the_file_lacks_is_asked_for(tree, tmp_path) -> None:
+    del tree["model"]["load_spectrum"]
+    model = read_rexs(stored(tree, tmp_path))
+    with pytest.raises(InputError, match="speed and torque of stage 19 are not known"):
+        case_from_rexs(model, 19)
+    changes = {"operation.speed": "1500 rpm", "operation.torque": "100 N*m"}
+    case = case_from_rexs(model, 19, changes=changes)
+    assert case.operation.torque == 100.0
+    assert case.lubricant.name == "ISO VG 220"
+    with pytest.raises(InputError, match="Stages: 19, 20"):
+        case_from_rexs(model)
+    with pytest.raises(InputError, match="there is no load case 7"):
+        case_from_rexs(model, 19, 7)
+
+
+def test_shifts_that_do_not_fit_the_distance_are_told(tree, tmp_path) -> None:
+    attribute(tree, 19, "center_distance")["floating_point"] += 0.1
+    told = read_rexs(stored(tree, tmp_path)).remarks
+    assert any("the profile shifts sum up to 0.4628" in remark for remark in told)
+
+
+@pytest.mark.parametrize("name", list(td.cases()))
+def test_a_case_reads_back_without_loss(name: str, tmp_path: Path) -> None:
+    case = td.load_case(name)
+    if case.gears.kind != "spur":
+        with pytest.raises(InputError, match="no cylindrical stage"):
+            write_rexs(case, tmp_path / "case.rexs")
+        return
+    for ending in ("rexs", "rexsj", "rexsz"):
+        path = tmp_path / f"case.{ending}"
+        write_rexs(case, path)
+        model = read_rexs(path)
+        assert model.remarks == []
+        assert case_from_rexs(model) == case
+
+
+def test_what_another_program_changed_is_taken_and_told(tmp_path: Path) -> None:
+    case = td.load_case("fzg-roughness")
+    path = tmp_path / "case.rexs"
+    write_rexs(case, path)
+    text = path.read_text(encoding="utf-8").replace(">90.0<", ">120.0<")
+    path.write_text(text.replace(">206000.0<", ">206000.00000001<"), encoding="utf-8")
+    model = read_rexs(path)
+    assert case_from_rexs(model) == case.replace({"operation.torque": 120.0})
+    assert model.remarks == ["operation.torque was changed to 120 (SI) by another program"]
+
+
+def test_nothing_is_replaced_unasked(tmp_path: Path) -> None:
+    case, path = td.load_case("fzg-roughness"), tmp_path / "case.rexs"
+    write_rexs(case, path)
+    with pytest.raises(InputError, match="exists already"):
+        write_rexs(case, path)
+    write_rexs(case, path, force=True)
+    with pytest.raises(InputError, match=r"Let it end in \.rexs, \.rexsj, \.rexsz"):
+        write_rexs(case, tmp_path / "case.xml")
+
+
+def bomb() -> bytes:
+    held = io.BytesIO()
+    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("model.rexs", b" " * 60_000_000)
+    return held.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "it is no REXS file"),
+        (b"\x00\xff", "it is no REXS file"),
+        (b"<model/>", "the model has no components"),
+        (b"<html></html>", "it is XML of a <html>"),
+        (b'<!DOCTYPE m [<!ENTITY a "b">]><model>&a;</model>', "declares a document type"),
+        (b"{}", "JSON without a REXS model"),
+        (b'{"model": []}', "holds no REXS model"),
+        (b'{"model": {"components": 3}}', "components is no list"),
+        (b'{"model": {"components": [{"id": "x"}]}}', "an id is no whole number"),
+        (b'{"model": {"components": [{"id": 1}, {"id": 1}]}}', "two components"),
+        (b'{"model":' * 100_000, "it is no REXS file|nested too deeply"),
+        (bomb(), "larger than 50 MB"),
+        (b"PK\x03\x04 cut off", "damaged zip"),
+    ],
+)  # fmt: skip
+def test_what_is_no_model_is_refused_in_words(content: bytes, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "model.rexs"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=told):
+        read_rexs(path)
+
+
+@pytest.mark.parametrize(
+    ("number", "name", "value", "told"),
+    [
+        (15, "normal_module", math.nan, "normal_module = nan"),
+        (15, "normal_module", -4.5, "normal_module = -0.0045"),
+        (15, "number_of_teeth", 27.5, "number_of_teeth = 27.5"),
+        (15, "face_width", "wide", "face_width = wide"),
+        (19, "center_distance", None, "center_distance is missing"),
+    ],
+)
+def test_impossible_values_are_refused(tree, tmp_path, number, name, value, told) -> None:
+    found = attribute(tree, number, name)
+    for key in ("floating_point", "integer"):
+        if key in found:
+            found[key] = value
+    with pytest.raises(InputError, match=told):
+        read_rexs(stored(tree, tmp_path))
+
+
+def test_units_are_those_that_the_file_names(tree, tmp_path) -> None:
+    found = attribute(tree, 19, "center_distance")
+    found["floating_point"] /= 25.4
+    found["unit"] = "in"
+    here = read_rexs(stored(tree, tmp_path)).stages[0].center_distance
+    assert here == pytest.approx(found["floating_point"] * 0.0254)
+    found["unit"] = "N m"
+    with pytest.raises(InputError, match=r'cylindrical_stage 19 .*"N m"'):
+        read_rexs(stored(tree, tmp_path))
