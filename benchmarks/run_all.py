@@ -21,6 +21,7 @@ SCRIPTS = (
     "film_batch",
     "friction_speed",
     "friction_experiment",
+    "losses_speed",
     "fe2d_speed",
     "stiffness_speed",
     "cold_start",

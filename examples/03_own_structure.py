@@ -45,7 +45,7 @@ system = System(
 
 pinion_speed = 900 * math.pi / 30  # rad/s
 mesh_frequency = pinion_speed * pair.pinion.teeth / (2 * math.pi)
-# the gears swing on their bearings up to 48 times in a mesh cycle: fine steps for six digits
+# the gears vibrate on their bearings up to 48 times in a mesh cycle: fine steps for six digits
 orbit = steady_state(system, mesh_frequency, steps=4096)
 
 samples = orbit.fine  # both ends and the middle of every step, so that jumps count on both sides

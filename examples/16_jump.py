@@ -46,7 +46,7 @@ print(f"verdicts                       {swept.verdicts()}")
 
 
 def free_frequency(speed):
-    """Frequency [Hz] and swing [m] of the free vibration that leaves contact at a speed [m/s]."""
+    """Frequency [Hz] and peak to peak [m] of the free vibration that begins at a speed [m/s]."""
     preload = LOAD / STIFFNESS
     reach = math.hypot(preload, speed / natural)
     contact = 2.0 / natural * (math.pi - math.acos(preload / reach))
@@ -54,13 +54,13 @@ def free_frequency(speed):
     return 1.0 / (contact + flight), reach + preload + speed**2 * MASS / (2.0 * LOAD)
 
 
-# The loudest motion lies on the backbone: the free vibration of the same swing.
+# The loudest motion lies on the backbone: the free vibration of the same amplitude.
 top = int(np.argmax(branch.peak_to_peak[:, 0]))
 speed = np.linspace(0.0, 2.0, 4001)
 frequency, swing = np.array([free_frequency(v) for v in speed]).T
 backbone = float(np.interp(branch.peak_to_peak[top, 0], swing, frequency))
 print(f"loudest motion                 {branch.mesh_frequency[top]:.1f} Hz")
-print(f"backbone at the same swing     {backbone:.1f} Hz")
+print(f"backbone at the same amplitude {backbone:.1f} Hz")
 
 # Which start comes to which motion, in the middle of the two turning points.
 middle = 0.5 * (folds[0] + folds[-1])

@@ -348,6 +348,15 @@ def convert(value: float, unit: str, to: str) -> float:
     return _by_pint(value, plain, wanted)
 
 
+def shown_in(value: float, unit: str) -> float:
+    """Return an SI value in one of its usual units; a unit that has no other is SI itself."""
+    plain = _plain(unit)
+    if plain == "%":
+        return 100.0 * value
+    si = "K" if plain == "degC" else next((s for s, u in _USUAL.items() if plain in u), plain)
+    return convert(value, si, plain)
+
+
 def format_quantity(value: float, unit: str, display_unit: str | None = None) -> str:
     """Write an SI float as text with a unit that :func:`parse` reads back.
 

@@ -176,6 +176,29 @@ def test_buttons_do_not_lie_under_the_menu(visit: Visit) -> None:
     assert overlaps == []
 
 
+def test_names_of_lines_cover_no_bar_no_button_and_no_other_name(visit: Visit) -> None:
+    covered = visit.page.evaluate(
+        """[...document.querySelectorAll('#figure-spectrum, #figure-bearing_spectrum')].flatMap(
+             figure => {
+               const notes = [...figure.querySelectorAll('.annotation-text')];
+               const others = [...notes,
+                 ...figure.querySelectorAll('.bars path, .updatemenu-button')];
+               return notes.flatMap(note => {
+                 const a = note.getBoundingClientRect();
+                 return others.filter(other => {
+                   const b = other.getBoundingClientRect();
+                   return other !== note && a.left < b.right && b.left < a.right
+                     && a.top < b.bottom && b.top < a.bottom;
+                 }).map(other => figure.id + ': ' + note.textContent + ' ' + other.textContent);
+               });
+             })"""
+    )
+    assert covered == []
+    assert visit.page.locator("#figure-spectrum .annotation-text").count() > 1
+    legend = visit.page.locator("#figure-spectrum .legendtext").all_text_contents()
+    assert any(name.endswith(" Hz") for name in legend)
+
+
 def test_legends_stand_below_on_a_narrow_screen(visit: Visit) -> None:
     if visit.page.viewport_size["width"] >= 720:
         return

@@ -90,7 +90,7 @@ def test_kills_at_any_moment(draws: Draws, tmp_path: Path, command: str) -> None
     words, last = _COMMANDS[command]
     place = tmp_path / "r"
     words = [*words, "--out", "r"]
-    for number, rng in enumerate(draws(3)):
+    for number, rng in enumerate(draws(2)):
         there = _is_whole(place, last)
         assert there == (number > 0)
         forced = [*words, "--force"] if there else words

@@ -120,7 +120,7 @@ def film(chance: random.Random) -> dict[str, Any]:
         "lubricant.name": chance.choice(OILS),
         "lubricant.temperature": f"{chance.uniform(40, 90):.3g} degC",
         "film.model": "newton",
-        "film.stiffness": chance.choice(["none", "tangent"]),
+        "film.stiffness": chance.choice(["none", "approach", "tangent"]),
         "film.positions": chance.choice([12, 30, 60]),
     }
 

@@ -11,7 +11,7 @@ _PATH = re.compile(rf"(?<![\w.$}}~\]/-])/(?:{_FOLDERS})/\w")
 _DRIVE = re.compile(r"(?<![\w])[A-Z]:\\{1,2}\w")
 _URL = re.compile(r"https?://([\w.-]+)(:\d+)?")
 
-#: Hosts that text may name: literature, standards of writing, licences, namespaces, and the example ones.
+#: Hosts that text may name: literature, standards of writing, licences, namespaces, examples.
 HOSTS = {
     "doi.org",
     "keepachangelog.com",

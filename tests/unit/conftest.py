@@ -112,6 +112,7 @@ def drawable() -> Any:
         mesh = mesh_of(case, film_model)
         return Result(
             coupling=None,
+            friction=None,
             case=case,
             mesh=mesh,
             response=response_of(mesh, names, periods=periods, steady=steady),

@@ -135,6 +135,8 @@ def test_goals_are_judged(
         ("bifurcation_speed", "6 degrees of freedom"),
         ("parameter_map", "6 x 6 points"),
         ("cold_start", "import tribodyn"),
+        ("losses_speed", "loss map"),
+        ("friction_speed", "plain formula"),
     ],
 )
 def test_quick_run_prints_its_table(

@@ -7,9 +7,18 @@ from types import ModuleType
 
 from tribodyn.cases.catalogue import case_files, cases
 from tribodyn.cases.load import load_case, run
+from tribodyn.cases.papers.comparison import PaperComparison, compare_with_paper
 from tribodyn.cases.stored_result import load_result
 
-__all__ = ["case_files", "cases", "load_case", "load_result", "run"]
+__all__ = [
+    "PaperComparison",
+    "case_files",
+    "cases",
+    "compare_with_paper",
+    "load_case",
+    "load_result",
+    "run",
+]
 
 
 class _Catalogue(ModuleType):

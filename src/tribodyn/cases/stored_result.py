@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from tribodyn.dynamics import Response, System
     from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.study.coupling import Coupling
 
 _REMEDY = "Give the directory that tribodyn run or Result.save wrote"
 #: Series without which a motion cannot be built again.
@@ -77,7 +78,7 @@ Give the directory that tribodyn run or Result.save wrote.
         raise InputError("this result cannot be read back", str(folder), why, remedy)
     _compare(folder, summary, data)
     try:
-        friction = _friction(mesh, data)
+        friction, coupling = _friction(mesh, data), _coupling(mesh, data)
         with placed(case), collected():
             damping = damping_of(case, mesh)
             system = system_of(case, mesh, damping, friction)
@@ -89,7 +90,7 @@ Give the directory that tribodyn run or Result.save wrote.
     except Exception as error:
         why = f"response.nc is damaged: {error or type(error).__name__}"
         raise InputError("this result cannot be read back", str(folder), why, _REMEDY) from None
-    result = Result(case, mesh, system, response, damping, told, friction)
+    result = Result(case, mesh, system, response, damping, told, friction, coupling=coupling)
     vars(result)["_summary"] = summary
     return result
 
@@ -142,6 +143,19 @@ def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
         return None
     facts = (float(data.attrs[f"friction_{name}"]) for name in ("load", "limit", "fit_error"))
     return MeshFriction(mesh.grid, data["friction_coefficients"].values, *facts)
+
+
+def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:
+    """How a coupled result came to agree; earlier versions kept nothing of it."""
+    from tribodyn.study.coupling import Coupling
+
+    if "coupling_loading" not in data:
+        return None
+    columns = {name.removeprefix("coupling_"): data[name].values
+               for name in map(str, data.data_vars) if name.startswith("coupling_")}  # fmt: skip
+    order = np.arange(1.0, data.sizes["pass"] + 1.0)
+    kind, tolerance = str(data.attrs["coupling_kind"]), float(data.attrs["coupling_tolerance"])
+    return Coupling(iteration=order, phase=mesh.phase, kind=kind, tolerance=tolerance, **columns)
 
 
 def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:

@@ -60,6 +60,11 @@ COMMANDS = (
         "Learn the steady response of a case, and predict it at once.",
     ),
     (
+        "paper",
+        "tribodyn.cli.experiment_command:paper",
+        "Lay the printed tables of a source beside what is computed.",
+    ),
+    (
         "compare",
         "tribodyn.cli.compare_command:compare",
         "Show what differs between two results.",

@@ -1,4 +1,4 @@
-"""``tribodyn experiment``: controlled experiments on one gear pair."""
+"""``tribodyn experiment`` and ``tribodyn paper``: what is published, judged by computation."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table, tell
 from tribodyn.cli.settings import changed_case
-from tribodyn.cli.sweep_command import ended, kept_study
+from tribodyn.cli.sweep_command import INTERRUPTED, ended, kept_study
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
+    from tribodyn.cases.papers.comparison import PaperComparison
     from tribodyn.study.studies.friction_experiment import FrictionExperiment
 
 _EXPERIMENTS = ("friction",)
@@ -102,3 +103,57 @@ def _options(roughness: str, laws: str) -> dict[str, Any]:
     if laws:
         options["laws"] = [name.strip() for name in laws.split(",")]
     return options
+
+
+def paper(
+    case: str | None = None,
+    /,
+    *,
+    all_: Annotated[bool, Parameter(name="--all", negative="")] = False,
+    out: Path | None = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Lay the printed tables of a source beside what is computed, with a verdict for each figure.
+
+    Parameters
+    ----------
+    case : str
+        Built-in case that stands for a source.
+    all_ : bool
+        All sources on one page.
+    out : Path
+        Directory to write; by default that of the case with "-paper", or "papers".
+    force : bool
+        Replace an earlier result in that directory.
+    json : bool
+        Write the rows as one JSON list to stdout.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    from tribodyn.cases.papers.printed import papers, printed_rows
+
+    if (case is None) != all_:
+        why = f"There are tables for {', '.join(papers())}"
+        what = "name one case, or all with --all"
+        raise InputError(what, "", why, "Write: tribodyn paper fzg-12dof")
+    names = [] if case is None else [case]
+    for name in names:
+        printed_rows(name)
+
+    def compute(**kept: Any) -> PaperComparison:
+        from tribodyn.cases.papers.comparison import compare_with_paper
+
+        return compare_with_paper(*names, partial=True, **kept)
+
+    target = out if out is not None else Path(f"{case}-paper" if case else "papers")
+    found: Any = kept_study(target, force, compute)
+    if json:
+        say_json(list(found.rows))
+    else:
+        say(f"{found.lead}\n{table([found.HEAD, *found.table()])}")
+    tell(f"Report: {target / 'report.html'}")
+    return 0 if found.complete else INTERRUPTED

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from cyclopts import Parameter
 
@@ -14,9 +14,12 @@ from tribodyn.cli.settings import changed_case, check_place, read_ranges
 if TYPE_CHECKING:
     from tribodyn.study.studies.sweep_result import Sweep
 
+#: A sweep, or what says like one how many of its ``points`` are done.
+Study = TypeVar("Study", bound=Any)
+
 
 #: Exit code of a sweep that was stopped by Ctrl-C; what was done is kept.
-_INTERRUPTED = 130
+INTERRUPTED = 130
 
 
 def sweep(
@@ -72,7 +75,7 @@ def sweep(
     return ended(found, target)
 
 
-def kept_study(target: Path, force: bool, compute: Callable[..., Sweep]) -> Sweep:
+def kept_study(target: Path, force: bool, compute: Callable[..., Study]) -> Study:
     """Compute a study whose parts are kept as they are finished, and save what is done."""
     from tribodyn.cli.bar import progress_bar
     from tribodyn.members import Members
@@ -84,7 +87,7 @@ def kept_study(target: Path, force: bool, compute: Callable[..., Sweep]) -> Swee
         show_resumed(members)
         if not found.complete:
             tell(
-                f"interrupted: {len(found.points)} of {found.failed.size} values are done and "
+                f"interrupted: {len(found.points)} of {found.asked} values are done and "
                 "being written; the same command with --force goes on from there; "
                 "Ctrl-C again stops at once"
             )
@@ -100,7 +103,7 @@ def ended(found: Sweep, target: Path) -> int:
     """Tell where the report is; exit code of the study."""
     tell(f"Report: {target / 'report.html'}")
     if not found.complete:
-        return _INTERRUPTED
+        return INTERRUPTED
     return 1 if all(point.failed for point in found.points) else 0
 
 

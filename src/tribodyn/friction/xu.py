@@ -11,7 +11,8 @@ from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.types import Array
 
-_B = (
+#: Constants b1 to b9 of the regression.
+CONSTANTS = (
     -8.916465,
     1.03303,
     1.036077,
@@ -116,7 +117,7 @@ def _regression(
     radius: Array,
 ) -> Array:
     """Evaluate the regression in its own units; an overflow becomes infinity."""
-    b1, b2, b3, b4, b5, b6, b7, b8, b9 = _B
+    b1, b2, b3, b4, b5, b6, b7, b8, b9 = CONSTANTS
     with np.errstate(over="ignore", invalid="ignore"):
         shear = ratio * pressure * np.log10(viscosity)
         f = b1 + b4 * shear + b5 * np.exp(-shear) + b9 * np.exp(roughness)
@@ -134,8 +135,7 @@ def _require_plausible(coefficient: Array, roughness: float) -> None:
         where="argument roughness",
         why="the regression grows with exp(exp(S)) and means nothing far beyond the 0.6 um "
         "and the other limits of its fit",
-        remedy="Check the units (roughness in m, viscosity in Pa*s, pressure in Pa), "
-        "or choose another friction law",
+        remedy="Check the roughness and its unit, or choose another friction law, such as mixed",
     )
 
 

@@ -52,7 +52,7 @@ class ProfileMap:
 
     Examples
     --------
-    A flank that stands 2 um proud at the tip.
+    A flank with 2 um of excess material at the tip.
 
     >>> chart = ProfileMap((10e-3, 20e-3), (0.0,), ((0.0,), (2e-6,)))
     >>> round(float(chart.at(15e-3, 0.0, base_radius=40e-3)) * 1e6, 9)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
 from tribodyn.contact import Kinematics, path_of_contact
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.errors import require_positive
+from tribodyn.errors import ModelWarning, collected, require_positive, warn
 from tribodyn.friction import pitch_point
 from tribodyn.gear import Material, SpurPair
 from tribodyn.lubricant import Lubricant
@@ -25,7 +25,13 @@ from tribodyn.mesh.loads import (
     tribological_contact,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.sharing import Teeth, ToothContact, shared_load_columns, teeth_of
+from tribodyn.mesh.sharing import (
+    Teeth,
+    ToothContact,
+    ToothModel,
+    shared_load_columns,
+    teeth_of,
+)
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
@@ -230,16 +236,46 @@ def loaded_mesh(
     pinion_speed, pinion_torque = operation
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
-    cycle = mesh_cycle(path_of_contact(pair), steps or _steps(pair, settings.stiffness_model))
-    normal_force = pinion_torque / pair.pinion.base_radius
-    places = (cycle.grid.phase, cycle.path, cycle.in_contact)
-    over = 1.0 if loading is None else loading[:, None]
-    teeth = teeth_of(cycle.contact, places, settings, normal_force, over)
+    cycle, teeth = _teeth(pair, settings, pinion_torque, steps, loading)
     motion = cycle.motion(pinion_speed)
     pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
     loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)
     warn_of_rigid_films(loads.film_at)
     return LoadedMesh(pair, settings, cycle, pairs, motion, teeth, loads, *operation, force_law)
+
+
+def _teeth(
+    pair: SpurPair, settings: ToothContact, torque: float, steps: int | None, loading: Array | None
+) -> tuple[MeshCycle, Teeth]:
+    """Teeth under load over one mesh cycle: the same object at every speed and with every oil."""
+    usual = _steps(pair, settings.stiffness_model)  # registers the models of others, too
+    steps = steps or usual
+    given = (pair, settings.teeth, torque, steps)
+    try:
+        hash(given)
+    except TypeError:  # an option is an array
+        return _loaded_teeth(*given, loading)
+    if loading is not None:
+        return _loaded_teeth(*given, loading)
+    cycle, teeth, told = _known_teeth(*given, MODELS.version)
+    for warning in told:
+        warn(warning.code, warning.message, stacklevel=4)
+    return cycle, teeth
+
+
+@lru_cache(maxsize=4)
+def _known_teeth(*given: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]]:
+    with collected() as told:
+        return (*_loaded_teeth(*given[:-1]), told)
+
+
+def _loaded_teeth(
+    pair: SpurPair, model: ToothModel, torque: float, steps: int, loading: Array | None = None
+) -> tuple[MeshCycle, Teeth]:
+    cycle = mesh_cycle(path_of_contact(pair), steps)
+    places = (cycle.grid.phase, cycle.path, cycle.in_contact)
+    over = 1.0 if loading is None else loading[:, None]
+    return cycle, teeth_of(cycle.contact, places, model, torque / pair.pinion.base_radius, over)
 
 
 def _steps(pair: SpurPair, model: str) -> int:

@@ -246,6 +246,17 @@ class MeshColumns(Record):
         return self.by_share(self._directed_friction)
 
     @property
+    def asperity_friction_sum(self) -> Array | None:
+        """Part of ``friction_sum`` from asperities (n,); None where the friction law has none."""
+        part = self.asperity_friction_coefficient
+        if part is None:
+            return None
+        if self.friction_direction is None:
+            return self.by_share(self.sliding_direction * part)
+        each = (part * self.load_share)[:, :, None] * self.friction_direction
+        return self._of(each.sum(axis=1), "pinion_x")
+
+    @property
     def friction_moment_pinion(self) -> Array:
         """Friction moment on the pinion over total normal force (n,) [m]."""
         if self.friction_direction is not None:

@@ -96,6 +96,8 @@ class MeshFunctions:
 
 #: The sums of a mesh table that act on a structure, in this order.
 CHANNELS = ("friction_sum", "friction_moment_pinion", "friction_moment_wheel")
+#: Part of the first of them that asperities cause, where the friction law tells.
+ASPERITIES = "asperity_friction_sum"
 #: Loads over the nominal load at which a mesh is looked at: dense where friction laws bend.
 LOADS = (0.04, 0.12, 0.27, 0.48, 0.74, 1.0, 1.3, 1.65, 2.05, 2.45, 2.8, 3.0)
 _TERMS = 7
@@ -109,9 +111,9 @@ class MeshFriction:
     ----------
     grid : PhaseGrid
         Knots on the mesh phase, twice at each event.
-    coefficients : array (n, terms, 3)
-        Coefficients ``c_k`` of the sum of friction over normal force [1], and of its moments on
-        pinion and wheel over it [m].
+    coefficients : array (n, terms, 3 or 4)
+        Coefficients ``c_k`` of the sum of friction over normal force [1], of its moments on pinion
+        and wheel over it [m], and of the part of the sum from asperities where that is known [1].
     load : float [N]
         Nominal normal force of all pairs.
     limit : float
@@ -132,14 +134,20 @@ class MeshFriction:
         Parameters
         ----------
         name : str
-            One of ``CHANNELS``.
+            One of ``CHANNELS``, or ``"asperity_friction_sum"`` where ``splits``.
 
         Returns
         -------
         PhaseFunction
             Gives arrays whose last axis is the power of the load.
         """
-        return PhaseFunction(self.grid, self.coefficients[:, :, CHANNELS.index(name)])
+        place = (*CHANNELS, ASPERITIES).index(name)
+        return PhaseFunction(self.grid, self.coefficients[:, :, place])
+
+    @property
+    def splits(self) -> bool:
+        """Whether the part of the friction that asperities cause is known."""
+        return bool(self.coefficients.shape[-1] > len(CHANNELS))
 
     def value(self, name: str, phase: ArrayLike, normal_force: ArrayLike) -> Array:
         """Friction sum at a phase under a load.
@@ -147,7 +155,7 @@ class MeshFriction:
         Parameters
         ----------
         name : str
-            One of ``CHANNELS``.
+            As for ``channel``.
         phase : float or array
             Mesh phase.
         normal_force : float or array [N]
@@ -208,7 +216,9 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
     """
     ratio = np.array([table.total_normal_force for table in tables]) / nominal.total_normal_force
     _check(tables, nominal, ratio)
-    sums = np.array([[getattr(table, name) for name in CHANNELS] for table in tables])
+    split = all(getattr(table, ASPERITIES) is not None for table in tables)
+    names = (*CHANNELS, ASPERITIES) if split else CHANNELS
+    sums = np.array([[getattr(table, name) for name in names] for table in tables])
     powers = ratio[:, None] ** np.arange(_TERMS)
     by_force = np.linalg.lstsq(
         ratio[:, None] * powers, ratio[:, None] * sums.reshape(ratio.size, -1), rcond=None
@@ -217,9 +227,10 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
     force = ratio[:, None, None] * sums
     largest = np.abs(force).max(axis=(0, 2))[None, :, None]
     fit = np.abs(apart.reshape(force.shape)) / np.where(largest > 0.0, largest, 1.0)
+    fit = fit[:, : len(CHANNELS)]
     return MeshFriction(
         grid=nominal.grid,
-        coefficients=np.moveaxis(by_force.reshape(_TERMS, 3, -1), -1, 0),
+        coefficients=np.moveaxis(by_force.reshape(_TERMS, len(names), -1), -1, 0),
         load=nominal.total_normal_force,
         limit=float(ratio.max()),
         fit_error=float(fit.max()),

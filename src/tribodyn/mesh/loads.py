@@ -282,5 +282,5 @@ def _unsettled(what: str) -> ComputationError:
         what,
         where="film stiffness in series with the teeth",
         why="The film of a lightly loaded pair is softer than its teeth",
-        remedy='Give more torque, or set film.stiffness = "none"',
+        remedy='Set film.stiffness = "none", or "approach" where it is another one',
     )

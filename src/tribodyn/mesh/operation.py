@@ -211,7 +211,7 @@ def _shares(pair: SpurPair, settings: ToothContact, places: PathPositions, torqu
     path, in_contact = contact.pair_paths(phase)
     found = []
     for force in torque / pair.pinion.base_radius:
-        teeth = teeth_of(contact, (phase, path, in_contact), settings, force)
+        teeth = teeth_of(contact, (phase, path, in_contact), settings.teeth, force)
         share = teeth.shared_load().share[np.arange(age.size), number]
         found.append(share)
     return np.array(found)

@@ -30,6 +30,14 @@ _LARGEST_ROUGHNESS = 1e-4
 IN_SERIES = ("approach", "tangent", "secant")
 
 
+class ToothModel(NamedTuple):
+    """How the teeth give way, whatever the gears and their load."""
+
+    material: Material
+    name: str
+    options: tuple[tuple[str, Any], ...]
+
+
 @dataclass(frozen=True, eq=False)
 class ToothContact:
     """Settings of a tooth contact, whatever the gears, their speed and their load."""
@@ -48,6 +56,12 @@ class ToothContact:
         require_between(
             "composite_roughness", self.composite_roughness, 0.0, _LARGEST_ROUGHNESS, "m"
         )
+
+    @property
+    def teeth(self) -> ToothModel:
+        """What of it the teeth alone depend on."""
+        options = tuple(sorted(self.stiffness_options.items()))
+        return ToothModel(self.material, self.stiffness_model, options)
 
     @cached_property
     def film(self) -> dict[str, Any]:
@@ -115,6 +129,17 @@ class Teeth:
 
     def shared_load(self, film: FilmSprings | None = None) -> SharedLoad:
         """Share the load among the pairs, each with its film in series."""
+        return self._dry if film is None else self._shared(film)
+
+    @cached_property
+    def _dry(self) -> SharedLoad:
+        return self._shared(None)
+
+    @cached_property
+    def _dry_law(self) -> tuple[Array, Array, float]:
+        return force_ramps(self.problem, self.normal_force)
+
+    def _shared(self, film: FilmSprings | None) -> SharedLoad:
         problem = self.with_film(film)
         solved = problem.at_loads(self._totals)
         force = np.einsum("s,psn->pn", problem.widths, solved.load[0])
@@ -138,7 +163,17 @@ class Teeth:
         self, shared: SharedLoad, film: FilmSprings | None, *, fitted: bool
     ) -> tuple[Array, Array]:
         """Force law as ramps: where each begins [m], and its stiffness [N/m]."""
-        return force_ramps(self.with_film(film), self.normal_force)
+        problem = self.with_film(film)
+        law = self._dry_law if film is None else force_ramps(problem, self.normal_force)
+        place, slope, error = law
+        if error > (LARGEST_ERROR if problem.widths.size == 1 else LARGEST_GRADUAL_ERROR):
+            warn(
+                "force-law",
+                f"the force law of the mesh is {100.0 * error:.2g} % off the loaded tooth "
+                f"contact with {place.shape[1]} ramps; smoother flanks are closer",
+                stacklevel=4,
+            )
+        return place, slope
 
     def with_film(self, film: FilmSprings | None) -> ContactProblem:
         """Put the films in series with the teeth."""
@@ -184,7 +219,7 @@ class Teeth:
         """Load for which film and friction of a pair are found at least [N/m]."""
         return self.least_share * self.normal_force / float(self.problem.widths.sum())
 
-    @property
+    @cached_property
     def bends(self) -> tuple[float, ...]:
         """Mesh phases, no events, at which a pair begins or ceases to carry."""
         carries = self.problem.at_loads(self._totals).load[0].any(axis=1)
@@ -192,7 +227,7 @@ class Teeth:
         turns = (carries[1:] != carries[:-1]).any(axis=1) & (np.diff(phase) > 0.0)
         return tuple(float(bend) for bend in 0.5 * (phase[1:] + phase[:-1])[turns])
 
-    @property
+    @cached_property
     def maximum_single_pair_stiffness(self) -> float:
         """Greatest stiffness of one pair that carries the whole force alone [N/m]."""
         compliance, width = self.problem.compliance, float(self.problem.widths.sum())
@@ -211,7 +246,7 @@ class SpringTeeth(Teeth):
     coupled = False
     least_share = 0.0
 
-    def shared_load(self, film: FilmSprings | None = None) -> SharedLoad:
+    def _shared(self, film: FilmSprings | None) -> SharedLoad:
         """Share the load among springs of teeth and film; each begins where its film does."""
         each, problem = self.stiffness, self.with_film(film)
         if film is not None:
@@ -242,7 +277,7 @@ class SpringTeeth(Teeth):
         first = shared.transmission_error - np.ravel(self.force) / whole
         return first[:, None], whole[:, None]
 
-    @property
+    @cached_property
     def bends(self) -> tuple[float, ...]:
         """None: every pair carries wherever it is in contact."""
         return ()
@@ -251,12 +286,12 @@ class SpringTeeth(Teeth):
 def teeth_of(
     contact: PathOfContact,
     places: tuple[Array, Array, Mask],
-    settings: ToothContact,
+    settings: ToothModel,
     normal_force: float,
     loading: Array | float = 1.0,
 ) -> Teeth:
     """Teeth of a mesh by the stiffness model of the settings, whose stiffness is that at 1."""
-    model, options = settings.stiffness_model, settings.stiffness_options
+    model, options = settings.name, dict(settings.options)
     chosen, pair = MODELS[model], contact.pair
     phase, path, in_contact = places
     given = {**chosen.options, **options}
@@ -283,10 +318,10 @@ def teeth_of(
 def shared_load_columns(
     teeth: Teeth, shared: SharedLoad, film: FilmSprings | None, *, force_law: bool
 ) -> dict[str, Any]:
-    """Columns of the mesh table that follow from teeth and films under load."""
+    """Columns of the mesh table that follow from teeth and films under load, its own copies."""
     ramps = teeth.ramps(shared, film, fitted=force_law)
     without_film = shared if film is None else teeth.shared_load()
-    return {
+    columns: dict[str, Any] = {
         "stiffness": shared.stiffness,
         "tooth_stiffness": without_film.stiffness,
         "corner_share": shared.corner_share,
@@ -298,16 +333,16 @@ def shared_load_columns(
         "load_share": shared.share,
         "normal_force": teeth.force * shared.share,
     }
+    return {name: np.copy(values)[()] for name, values in columns.items()}
 
 
-def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Array]:
-    """Fit ramps to the force over the deflection of a mesh."""
+def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Array, float]:
+    """Fit ramps to the force over the deflection of a mesh; at last their greatest error."""
     parts = problem.compliance
     if parts.logarithm == 0.0 and not problem.places.contact.pair.has_modification:
         # Springs that all touch at once: one ramp, exactly.
-        return problem.least_gap[:, None], problem.tangent_at(
-            np.where(problem.places.on_path, 1.0, 0.0)
-        )[:, None]
+        whole = problem.tangent_at(np.where(problem.places.on_path, 1.0, 0.0))
+        return problem.least_gap[:, None], whole[:, None], 0.0
     last = problem.at_loads(np.array([_LAST * total_force]))
     first = problem.least_gap
     approach = first + _LOOKED_AT[:, None] * (last.approach[0] - first)
@@ -324,14 +359,7 @@ def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Arr
         if error.max() < _AIM or worst in chosen or len(chosen) >= _MOST:
             break
         chosen = sorted([*chosen, worst])
-    if error.max() > (LARGEST_ERROR if problem.widths.size == 1 else LARGEST_GRADUAL_ERROR):
-        warn(
-            "force-law",
-            f"the force law of the mesh is {100.0 * error.max():.2g} % off the loaded tooth "
-            f"contact with {place.shape[1]} ramps; smoother flanks are closer",
-            stacklevel=4,
-        )
-    return place, slope
+    return place, slope, float(error.max())
 
 
 def _kinks(problem: ContactProblem, most: Array) -> tuple[Array, Array]:

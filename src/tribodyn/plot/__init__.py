@@ -29,7 +29,13 @@ from tribodyn.plot.mesh.table import (
     static_stiffness,
     static_transmission_error,
 )
-from tribodyn.plot.motion.courses import acceleration, bearing_force, mesh_force, transmission_error
+from tribodyn.plot.motion.courses import (
+    acceleration,
+    bearing_force,
+    friction_force,
+    mesh_force,
+    transmission_error,
+)
 from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
@@ -78,6 +84,7 @@ __all__ = [
     "friction",
     "friction_claims",
     "friction_effect",
+    "friction_force",
     "friction_from_loss",
     "friction_harmonics",
     "gear_pair",

@@ -8,6 +8,7 @@ from typing import Any
 
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
+from tribodyn.plot.look.style import TOP
 
 #: Order of the figures in the report.
 SECTIONS = (
@@ -23,6 +24,7 @@ SECTIONS = (
     "film_pressure",
     "film_stiffness",
     "mesh_force",
+    "friction_force",
     "transmission_error",
     "acceleration",
     "spectrum",
@@ -56,10 +58,9 @@ def script_json(text: str) -> str:
 
 def drawn_block(name: str, heading: str, drawn: Any, caption: str) -> Block:
     """A section with a figure, whose title the page prints itself and can break into lines."""
-    title, saved = drawn.layout.title.text, drawn.layout.margin.t - _MARGIN
-    drawn.layout.update(
-        title=None, margin={"t": _MARGIN}, height=drawn.layout.height - saved, overwrite=False
-    )
+    title, saved = drawn.layout.title.text, TOP - _MARGIN
+    top, height = drawn.layout.margin.t - saved, drawn.layout.height - saved
+    drawn.layout.update(title=None, margin={"t": top}, height=height, overwrite=False)
     height, json = round(drawn.layout.height), script_json(drawn.to_json())
     return Block(name, heading, caption, title=title, height=height, json=json)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -228,6 +229,42 @@ def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
         more="The figures of every steady state are in sweep.csv and sweep.nc.",
     )  # fmt: skip
     return _write(Path(path), found.case, page)
+
+
+@report_of("PaperComparison")
+def write_paper_report(found: Any, path: str | os.PathLike[str]) -> Path:
+    """Write printed tables beside what is computed to a file.
+
+    Parameters
+    ----------
+    found : PaperComparison
+        What :func:`tribodyn.cases.compare_with_paper` returns.
+    path : path
+        File to write; an existing one is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    one = len(found.papers) == 1
+    counts = Counter(row["verdict"] for row in found.rows)
+    origins = zip(found.table(), found.rows, strict=True)
+    rows = [[*([] if one else [row["case"]]), *cells, row["reason"]] for cells, row in origins]
+    head = [*([] if one else ["Case"]), *found.HEAD, "Reason"]
+    odd = [f"{row['case']}, {row['table']}, {row['row']}: {row['verdict']}, expected was "
+           f"{row['expected']}" for row in found.surprises]  # fmt: skip
+    page = _Page(
+        kind="printed and computed", lead=f"{', '.join(found.papers)}: {found.lead}", varied=[],
+        blocks=[], cards=[(name, str(count)) for name, count in counts.most_common()],
+        notice_heading="Not as expected", notices=odd, head=head, rows=rows,
+    )  # fmt: skip
+    return _write(Path(path), None, page)
 
 
 def _headed(words: str, unit: str) -> str:

@@ -141,9 +141,9 @@ class Sidebands(Record):
     phase : (2 * count + 1,) array
         Phase of the cosine at the first sample [rad].
     amplitude_modulation : float
-        Swing of the envelope over its mean, at the frequency of the modulation [-].
+        Amplitude of the envelope over its mean, at the frequency of the modulation [-].
     phase_modulation : float
-        Swing of the phase at that frequency [rad].
+        Amplitude of the phase at that frequency [rad].
     unit : str
         Unit of the signal.
     """
@@ -170,7 +170,7 @@ class Sidebands(Record):
 
     @property
     def frequency_swing(self) -> float:
-        """Swing of the instantaneous frequency [Hz]: phase modulation times its frequency."""
+        """Amplitude of the instantaneous frequency [Hz]: phase modulation times its frequency."""
         return self.phase_modulation * self.modulation
 
     @property

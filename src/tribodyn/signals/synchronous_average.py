@@ -52,8 +52,8 @@ class SynchronousAverage(Record):
         error = float(np.sqrt(np.mean(self.scatter**2)))
         return (
             (
-                f"SynchronousAverage({self.revolutions} revolutions, {self.teeth} teeth, swing "
-                f"{swing:.4g} {self.unit}, standard error {error:.2g} {self.unit})"
+                f"SynchronousAverage({self.revolutions} revolutions, {self.teeth} teeth, "
+                f"peak to peak {swing:.4g} {self.unit}, standard error {error:.2g} {self.unit})"
             )
             .replace(" ,", ",")
             .replace(" )", ")")

@@ -36,6 +36,8 @@ Follow = Callable[["Case", "MeshTable"], "Case"]
 _MOST, _LEAST_STEP = 60, 1.0 / 64.0
 #: Force over the nominal one below which film and friction are those of this force.
 _LIGHT = 0.04
+#: Distance of two samples below which they are one [mesh cycles].
+_SAME = 1e-9
 #: What changes in a pass, in the order of its row.
 _CHANGES = tuple(
     f"{name}_change" for name in ("load", "share", "film", "friction", "stiffness", "oil")
@@ -177,13 +179,19 @@ def balanced_load(case: Case, mesh: MeshTable) -> Array:
 
 def force_at_knots(mesh: MeshTable, response: Response) -> Array:
     """Force of a periodic motion at the knots of a mesh, on both sides of every event."""
+    from scipy.interpolate import Akima1DInterpolator
+
     samples, grid = response.fine, mesh.grid
     phase, force = one_sided_phase(samples), mesh_force(samples)
     found = np.empty(grid.phase.size)
     for knots in grid.segments:
-        first, last = grid.phase[knots][[0, -1]]
-        here = (phase > first) & (phase < last)
-        found[knots] = np.interp(grid.phase[knots], phase[here], force[here])
+        places = grid.phase[knots]
+        inside = np.flatnonzero((phase > places[0]) & (phase < places[-1]))
+        # A step ends where the next begins: of both sides one is enough.
+        here = inside[np.diff(phase[inside], prepend=-1.0) > _SAME]
+        # Chords would blunt the force at its peaks; it has kinks where flanks part.
+        curve = Akima1DInterpolator(phase[here], force[here], method="makima")
+        found[knots] = curve(np.clip(places, *phase[here[[0, -1]]]))
     return found
 
 

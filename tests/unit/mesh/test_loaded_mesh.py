@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +12,7 @@ import pytest
 from known_pairs import pair_of, standard, type_c
 from tribodyn.gear import FlankModification, Material
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh import MeshTable, build
+from tribodyn.mesh import MeshTable, build, sharing
 from tribodyn.mesh.sharing import LARGEST_ERROR, LARGEST_GRADUAL_ERROR
 from tribodyn.stiffness import loaded_contact
 
@@ -164,3 +166,30 @@ def test_harmonics_of_a_column():
     assert mesh.harmonics("static_transmission_error", 4) == pytest.approx(
         loaded.transmission_error_harmonics(4), rel=1e-3
     )
+
+
+def test_tables_at_all_speeds_share_the_teeth_and_nothing_that_changes(monkeypatch):
+    """Teeth are loaded once for a study of the speed; its tables are those of their own."""
+    pair = pair_of(
+        pinion_profile_shift_coefficient=0.1,
+        wheel_profile_shift_coefficient=0.2,
+        center_distance=None,
+    )
+    loaded, problem_of = [], sharing.mesh_problem
+
+    def counted(*args, **given):
+        loaded.append(args)
+        return problem_of(*args, **given)
+
+    monkeypatch.setattr(sharing, "mesh_problem", counted)
+    given = {"stiffness_model": "iso6336", "stiffness_options": {}}
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        tables = [table(pair, pinion_speed=speed, **given) for speed in (50.0, 100.0, 200.0)]
+        tables[0].stiffness[:] = 0.0
+        table(pair, pinion_torque=91.0, **given)
+        assert len(loaded) == 2
+        assert ["iso6336-range" in str(each.message) for each in told] == 4 * [True]
+        sys.modules["tribodyn.mesh.build"]._known_teeth.cache_clear()
+        assert tables[2] == table(pair, pinion_speed=200.0, **given)
+        assert len(loaded) == 3

@@ -26,6 +26,7 @@ NAMES = (
     "lubrication",
     "film_stiffness",
     "mesh_force",
+    "friction_force",
     "transmission_error",
     "acceleration",
     "spectrum",

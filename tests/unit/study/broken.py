@@ -146,8 +146,7 @@ BROKEN = (
            ("steps_per_mesh_cycle = 8", "64 to 262144")),
     # names
     Broken("misspelt-key", _MODULE, 'normal_modul = "4.5 mm"', "normal_modul",
-           ("gears.normal_modul", "unknown key", 'Did you mean "normal_module"?',
-            "normal_module is missing")),
+           ("gears.normal_modul", "unknown key", 'Did you mean "normal_module"?')),
     Broken("misspelt-table", "[operation]", "[operations]", "[operations]",
            ("operations", "unknown key", 'Did you mean "operation"?')),
     Broken("key-in-wrong-table", 'driver = "pinion"', 'driver = "pinion"\nface_width = "20 mm"',

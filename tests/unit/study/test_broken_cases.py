@@ -67,3 +67,28 @@ def test_a_missing_unit_has_one_remedy() -> None:
     with pytest.raises(InputError) as caught:
         read_case(SOUND.replace('"4.5 mm"', '"4.5"', 1), "pair.toml")
     assert str(caught.value).count("rite for example") == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("[operation]", "[operations]"),
+        ("[gears.pinion]", "[gear.pinion]"),
+        ("teeth = 16", "theeth = 16"),
+        ('torque = "90 N*m"', 'power = "8 kW"'),
+        ("bearing_stiffness =", "bearing_stiffness_pinion ="),
+        ('composite_roughness = "0.53 um"', 'composite_roughnes = "0.53 um"'),
+    ],
+)
+def test_what_is_misspelt_is_told_once_and_nothing_seems_to_be_missing(old: str, new: str) -> None:
+    with pytest.raises(InputError, match="unknown key") as caught:
+        read_case(SOUND.replace(old, new, 1), "pair.toml")
+    assert len(caught.value.problems) == 1
+
+
+def test_faults_within_a_misspelt_table_keep_their_lines() -> None:
+    text = SOUND.replace("[gears.pinion]", "[gear.pinion]").replace("teeth = 16", "teeth = 2")
+    with pytest.raises(InputError) as caught:
+        read_case(text, "pair.toml")
+    places = [str(problem.where) for problem in caught.value.problems]
+    assert places == ["pair.toml:8: gear", "pair.toml:9: gear.pinion.teeth"]

@@ -200,6 +200,23 @@ def test_the_document_behind_a_case_is_cited() -> None:
     assert "Values of the case" not in cite(case.replace({"origin": None}))
 
 
+def test_the_papers_behind_the_losses_are_cited() -> None:
+    case = td.load_case("fzg-roughness")
+    parts = {
+        "losses.pinion.bearing": ("NJ 406", "Rolling bearings, catalogue"),
+        "losses.wheel.seal_diameter": ("30 mm", "ISO/TR 14179"),
+        "losses.wheel.immersion": ("30 mm", "churning losses"),
+    }
+    plain, windage = cite(case), "Spur-gear-system efficiency"
+    for key, (value, paper) in parts.items():
+        sump = {"losses.oil_volume": "1.2 l"} if "immersion" in key else {}
+        told = cite(case.replace({key: value, **sump}))
+        assert (paper in told, windage in told) == (True, True)
+        assert (paper in plain, windage in plain) == (False, False)
+        others = [other for _, other in parts.values() if other != paper]
+        assert not any(other in told for other in others)
+
+
 def test_ra_becomes_rms_and_is_told(case: Any) -> None:
     ra = {f"gears.{gear}.roughness_ra": "0.4 um" for gear in ("pinion", "wheel")}
     rough = case.replace({"gears.composite_roughness": None, **ra})

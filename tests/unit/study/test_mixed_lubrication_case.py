@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,11 @@ import pytest
 import tribodyn as td
 from tribodyn.friction import LAWS
 from tribodyn.mesh import MeshTable
+from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.plot import FIGURES
 from tribodyn.study.pipeline.cautions import mesh_cautions
 from tribodyn.study.pipeline.run import rehearse
+from tribodyn.study.pipeline.series import mesh_force, one_sided_phase, signals
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _CASE = """
@@ -203,3 +206,45 @@ def test_smooth_flanks_have_no_asperities(tmp_path: Path) -> None:
     assert found.lubrication_regime is None
     assert np.all(np.asarray(found.film_load_share)[found.in_contact] == 1.0)
     assert found.mean_asperity_friction_coefficient == 0.0
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+@pytest.mark.parametrize("load", ["nominal", "dynamic"])
+def test_friction_force_of_the_motion_is_that_of_film_and_asperities(
+    load: str, tmp_path: Path
+) -> None:
+    case = case_of(tmp_path).replace({"dynamics.friction_load": load})
+    result = td.run(case)
+    fine = result.response.fine
+    found, force = signals(result, fine), mesh_force(fine)
+    names = ("friction_force", "film_friction_force", "asperity_friction_force")
+    whole, film, metal = (found[name][0] for name in names)
+    np.testing.assert_allclose(film + metal, whole, atol=1e-12 * np.abs(whole).max())
+    # Pair by pair, as the law itself has it: nothing of it comes from the sum of both.
+    mesh, phase = result.mesh, one_sided_phase(fine)
+    pairs = mesh.sliding_direction * mesh.asperity_friction_coefficient * mesh.load_share
+    wanted = PhaseFunction(mesh.grid, pairs)(phase).sum(axis=1) * force
+    apart = np.abs(metal - wanted).max() / np.abs(metal).max()
+    if load == "nominal":
+        assert apart < 1e-9
+        directions = np.zeros((*mesh.path.shape, 6))
+        directions[:, :, 0] = mesh.sliding_direction
+        table = dataclasses.replace(mesh, friction_direction=directions)
+        np.testing.assert_allclose(table.asperity_friction_sum, mesh.asperity_friction_sum)
+    else:  # the share of the asperities grows with the momentary load, by the whole law
+        assert 1e-3 < apart < 0.2
+        heavy = mesh_of(case, load=1.3)
+        name, places = "asperity_friction_sum", np.linspace(0.003, 0.993, 200)
+        value = result.friction.value(name, places, np.full(200, heavy.total_normal_force))
+        np.testing.assert_allclose(value, heavy.at(name, places), atol=5e-3 * np.abs(value).max())
+    figures = result.summary()
+    for name, signal in (("film", film), ("asperity", metal)):
+        rms = float(np.sqrt(np.sum(fine.weight * signal**2) / fine.weight.sum()))
+        assert figures[f"rms_{name}_friction_force"] == pytest.approx(rms, rel=1e-6)
+    assert [trace.name for trace in result.plot_friction_force().data] == [
+        "whole", "oil films", "asperities"
+    ]  # fmt: skip
+    if load == "dynamic":
+        again = td.load_result(result.save(tmp_path / "r"))
+        assert again.friction.splits
+        assert again.summary() == figures

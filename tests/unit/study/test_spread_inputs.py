@@ -59,7 +59,7 @@ def test_a_lane_is_the_run_of_its_case(cycles, lane):
 
 def test_a_torque_is_a_factor_only_where_the_contact_is_the_same():
     torque = {"operation.torque": np.array([140.0, 160.0])}
-    linear = CASE.replace({"stiffness.model": "rectangular"})
+    linear = CASE.replace({"stiffness.model": "rectangular", "stiffness.pair_stiffness": 2e8})
     assert set(lanes_of(linear, torque).factors) == {"force_scale"}
     built = lanes_of(CASE, torque)
     assert not built.factors
@@ -91,13 +91,18 @@ def test_rows_over_time_are_those_of_the_transient_run():
     assert np.allclose(data["time"][:3], [0.01, 0.02, 0.03])
     force = np.interp(data["time"][:3], response.time, response.contact_force.sum(axis=1))
     assert np.allclose(data["mesh_force"][:3], force, rtol=2e-4)
-    shaking = np.interp(
-        data["time"][:3], response.time, response.acceleration[:, response.index("pinion_y")]
-    )
-    assert np.allclose(data["acceleration"][:3], shaking, atol=2e-3 * np.abs(shaking).max())
+    acceleration = response.acceleration[:, response.index("pinion_y")]
+    shaking = [_cubic(response.time, acceleration, time) for time in data["time"][:3]]
+    assert np.allclose(data["acceleration"][:3], shaking, atol=5e-4 * np.abs(shaking).max())
     elastic = data["mesh_stiffness"] * data["backlash_function"]
     damped = data["mesh_force"] - elastic
     assert np.abs(damped).max() < 0.2 * data["mesh_force"].max()
+
+
+def _cubic(time, signal, at):
+    """Signal between its samples, which are coarse for the motion in the bearings."""
+    near = np.argsort(np.abs(time - at))[:4]
+    return np.polyval(np.polyfit(time[near] - at, signal[near], 3), 0.0)
 
 
 def test_a_table_tells_what_made_it(tmp_path):

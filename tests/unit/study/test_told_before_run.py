@@ -55,6 +55,15 @@ def test_models_and_speeds(model, speed):
         assert said.split(" ")[0] == _said(computed, case).split(" ")[0]
 
 
+@pytest.mark.parametrize("key", ["roughness_ra", "roughness_rms"])
+def test_a_refused_roughness_is_named_as_it_was_given(key):
+    given = {f"gears.{gear}.{key}": "3 um" for gear in ("pinion", "wheel")}
+    case = td.load_case("fzg-roughness").replace(
+        {"friction.law": "xu-2007", "gears.composite_roughness": None, **given}
+    )
+    assert f"gears.pinion.{key}: xu-2007" in _said(rehearse, case)
+
+
 def test_check_rehearses(tmp_path, capsys):
     path = tmp_path / "rough.toml"
     rough = td.load_case("fzg-roughness").replace({"gears.composite_roughness": "1.2 um"})

@@ -327,7 +327,7 @@ def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
         raise InputError(
             "the system falls over at rest: a stiffness is negative",
             where="System.stiffness",
-            why="A motion runs away from the static load without any swing",
+            why="A motion runs away from the static load without oscillating",
             remedy="Look for a wrong sign in the stiffness matrix or of a contact",
         )
     frequency = np.sqrt(np.where(rigid, 0.0, squares)) / (2.0 * np.pi)

@@ -84,7 +84,7 @@ def _harris_swings(study: HarrisMap) -> Row:
     inside = study.torque.min() < study.quietest_torque < study.torque.max()
     return Row(
         axis_label("torque", "Torque on the pinion"),
-        Panel(axis_label(_QUANTITY, "Swing, amplitude"), traces, {"rangemode": "tozero"}, 1.2),
+        Panel(axis_label(_QUANTITY, "Variation, amplitude"), traces, {"rangemode": "tozero"}, 1.2),
         {"rangemode": "tozero"},
         [("least", quietest)] if inside else (),
     )
@@ -94,18 +94,18 @@ def _harris_swings(study: HarrisMap) -> Row:
     "harris_map",
     heading="Transmission error over torque",
     caption="Above, the transmission error of the mesh at rest under rising torque; below, how far "
-    "it swings and how much of that falls on each mesh harmonic. Modified flanks are quietest at "
+    "it varies and how much of that falls on each mesh harmonic. Modified flanks are quietest at "
     "the torque for which they were made.",
     of="HarrisMap",
     made_by="Call tribodyn.harris_map(case) and its plot method.",
 )
 def harris_map(study: HarrisMap) -> Any:
-    """Draw the transmission error for each torque, and its swing and harmonics over the torque."""
+    """Draw the transmission error for each torque; its peak to peak and harmonics over torque."""
     swings = study.peak_to_peak_transmission_error
     least = rounded(_QUANTITY, float(np.min(swings)))
     quietest = torque_names(study.torque)[int(np.argmin(swings))]
     return stack_rows(
-        f"Quietest at {quietest}: there the transmission error swings by {least}",
+        f"Quietest at {quietest}: there the transmission error varies by {least}",
         [_curves(study), _harris_swings(study)],
     )
 
@@ -219,7 +219,7 @@ def tip_relief_map(study: TipReliefOptimum) -> Any:
         rounded(_QUANTITY, value) for value in (study.objective_before, study.objective)
     )
     made = stack_rows(
-        f"A tip relief of {amount} over {length} lowers the swing from {before} to {after}",
+        f"A tip relief of {amount} over {length} lowers the variation from {before} to {after}",
         [_map(study), _relief_swings(study), _courses(study)],
     )
     return made.update_layout(hovermode="closest")

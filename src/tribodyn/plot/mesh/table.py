@@ -59,7 +59,7 @@ def mesh_stiffness(mesh: MeshTable) -> Any:
         traces.append(line(at, shown, f"tooth pair {number}", color, unit=unit, dash="dash"))
     least, greatest = (rounded("mesh_stiffness", f(mesh.mesh_stiffness)) for f in (np.min, np.max))
     return stack(
-        f"The mesh stiffness swings between {least} and {greatest}",
+        f"The mesh stiffness varies between {least} and {greatest}",
         axis_label("mesh_phase", "Mesh cycles"),
         [Panel(axis_label("mesh_stiffness"), traces, {"rangemode": "tozero"}, height=1.3)],
         {**event_lines(mesh_events(mesh)), "xaxis": {"range": [0, CYCLES]}},

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.plot.look.labels import axis_label, axis_words, display_unit, displayed, rounded
 from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, line
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.study.pipeline import series
@@ -84,9 +84,55 @@ def mesh_force(result: Result) -> Any:
     ]
     low, high = (rounded("mesh_force", float(f(motion.measured(force)))) for f in (np.min, np.max))
     return stack(
-        f"The mesh force swings between {low} and {high}{motion.window}",
+        f"The mesh force varies between {low} and {high}{motion.window}",
         motion.label,
         [Panel(axis_label("mesh_force"), traces, {"rangemode": "tozero"}, height=1.3)],
+        motion.layout(),
+    )
+
+
+def _friction_caption(result: Result) -> str:
+    split = "film_friction_force" in series.friction_forces(result, result.response.fine)
+    parts = (
+        "What the oil films and what the asperities cause of it add up to the whole."
+        if split
+        else f'The friction law "{result.mesh.friction_law}" does not tell films from asperities; '
+        '"mixed", "mixed-ehl" and "mixed-solved" do.'
+    )
+    return (
+        "Friction of all tooth pairs across the line of action, each pair with its direction of "
+        f"sliding: it follows the force of the running gears. {parts}"
+    )
+
+
+@run_drawing(
+    "friction_force",
+    heading="Friction force",
+    caption=_friction_caption,
+    missing=lambda result: (
+        "" if np.any(result.mesh.friction_coefficient) else 'friction.law is "none".'
+    ),
+)
+def friction_force(result: Result) -> Any:
+    """Draw the friction force of all tooth pairs, and its parts from films and asperities."""
+    motion, unit = Motion(result), display_unit("friction_force")
+    found = series.friction_forces(result, result.response.fine)
+    shown = (
+        ("friction_force", "whole", TOTAL),
+        ("film_friction_force", "oil films", PAIR_COLORS[2]),
+        ("asperity_friction_force", "asperities", WHEEL),
+    )
+    traces = [
+        line(*motion.curve("friction_force", found[name][0]), words, color, unit=unit)
+        for name, words, color in shown
+        if name in found
+    ]
+    force = motion.measured(found["friction_force"][0])
+    low, high = (rounded("friction_force", float(f(force))) for f in (np.min, np.max))
+    return stack(
+        f"The friction force goes from {low} to {high}{motion.window}",
+        motion.label,
+        [Panel(axis_label("friction_force"), traces, {"zeroline": True}, height=1.3)],
         motion.layout(),
     )
 

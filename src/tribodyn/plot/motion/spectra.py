@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from tribodyn.analysis import Spectrum, amplitude_spectrum
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import TOTAL, button_row
+from tribodyn.plot.look.style import MUTED, TOP, TOTAL, Trace, button_row
 from tribodyn.plot.mesh.cycle import run_drawing
 from tribodyn.plot.motion.courses import DIRECTIONS, GEARS, words_of
 from tribodyn.plot.motion.motion import Motion, no_translation
@@ -28,6 +29,8 @@ _DECADES = 4.0
 _SEEN = 1.8
 #: Left end of the axis of the orders, and the part of it within which marks share a name.
 _FIRST, _APART = 0.4, 0.04
+#: Height of two rows of numbers above the panels [px].
+_NAMES = 30
 
 
 def _no_harmonics(result: Result) -> str:
@@ -93,26 +96,43 @@ def _strongest(panel: Panel) -> str:
     return f"{bars['x'][top]:g} ({frequency} {display_unit('frequency')})"
 
 
-def _natural(result: Result, last: float) -> dict[str, Any]:
-    """Mark the natural frequencies as far as the harmonics go, their names within the panel."""
-    modes, marks = result.natural_modes, dict[float, list[str]]()
-    for hertz in modes.frequency[modes.rigid :]:
+def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
+    """Mark the natural frequencies as far as the harmonics go; their numbers stand in the legend.
+
+    Numbers of neighbours stand together, above the panels, where no bar reaches.
+    """
+    modes, places = result.natural_modes, list[tuple[str, float]]()
+    legend: list[Trace] = []
+    for number, hertz in enumerate(modes.frequency[modes.rigid :], start=1):
         place = float(hertz) / result.mesh.mesh_frequency
         if _FIRST < place <= last:
-            near = [at for at in marks if place - at < _APART * last]
-            told = rounded("frequency", float(hertz))
-            marks.setdefault(place, []).append("" if near else told)
-            for at in near[:1]:
-                marks[at].append(told)
-    lines = event_lines((", ".join(filter(None, names)), at) for at, names in marks.items())
-    upright = {"textangle": -90, "yanchor": "top", "xanchor": "left", "yshift": 0,
-               "bgcolor": "rgba(255, 255, 255, 0.75)"}  # fmt: skip
-    lines["annotations"] = [{**note, **upright} for note in lines["annotations"] if note["text"]]
-    return lines
+            places.append((str(number), place))
+            name = f"{number}: {rounded('frequency', float(hertz))}"
+            look = {"color": MUTED, "width": 1, "dash": "dot"}
+            legend.append({"type": "scatter", "mode": "lines", "x": [None], "y": [None],
+                           "name": name, "line": look})  # fmt: skip
+    lines, groups = event_lines(places), list[list[tuple[str, float]]]()
+    for mark in places:
+        if groups and mark[1] - groups[-1][0][1] < _APART * last:
+            groups[-1].append(mark)
+        else:
+            groups.append([mark])
+    told = [(", ".join(name for name, _ in group), group[0][1]) for group in groups]
+    share = (places[-1][1] - places[0][1]) / last if len(places) > 1 else 1.0
+    lines["annotations"] = event_lines(told, share)["annotations"]
+    return lines, legend
 
 
-def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> dict[str, Any]:
-    """Layout of a figure of harmonics, with buttons for a linear and a logarithmic scale."""
+def _drawn(title: str, result: Result, panels: list[Panel]) -> Any:
+    """Draw a figure of harmonics, with buttons for a linear and a logarithmic scale."""
+    layout, legend = _harmonic_layout(result, panels)
+    panels[0] = replace(panels[0], traces=[*panels[0].traces, *legend])
+    drawn = stack(title, "Mesh harmonic", panels, layout)
+    drawn.update_layout(margin={"t": TOP + _NAMES}, height=drawn.layout.height + _NAMES)
+    return drawn
+
+
+def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> tuple[dict[str, Any], list[Trace]]:
     ends = [_last_order(panels, decades) + 0.6 for decades in (_SEEN, _DECADES)]
     linear: dict[str, Any] = {"xaxis.range": [_FIRST, ends[0]]}
     logarithmic: dict[str, Any] = {"xaxis.range": [_FIRST, ends[1]]}
@@ -122,7 +142,9 @@ def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> dict[str, Any]:
         logarithmic |= {f"{axis}.type": "log", f"{axis}.range": _decades(panel)}
     orders = {"range": [_FIRST, ends[0]], "showgrid": False}
     menu = button_row([("linear", linear), ("logarithmic", logarithmic)])
-    return {"xaxis": orders, "updatemenus": [menu], **_natural(result, ends[0])}
+    menu["pad"] = {"b": 6 + _NAMES}
+    lines, legend = _natural(result, ends[0])
+    return {"xaxis": orders, "updatemenus": [menu], **lines}, legend
 
 
 def _last_order(panels: Sequence[Panel], decades: float) -> float:
@@ -152,7 +174,8 @@ def _decades(panel: Panel) -> list[float]:
     "spectrum",
     heading="Spectra",
     caption="How strong each mesh harmonic is. Harmonic 1 is the mesh frequency, the teeth that "
-    "pass in a second. Dotted lines are natural frequencies: a bar near one is amplified by it. "
+    "pass in a second. Dotted lines are natural frequencies, numbered as in the "
+    "table of figures: a bar near one is amplified by it. "
     "The buttons switch to a logarithmic scale, on which small harmonics show.",
     missing=_no_harmonics,
 )
@@ -168,12 +191,8 @@ def spectrum(result: Result) -> Any:
         ),
         *_gear_panels(result, "acceleration"),
     ]
-    return stack(
-        f"Mesh harmonic {_strongest(panels[0])} is the strongest in the transmission error",
-        "Mesh harmonic",
-        panels,
-        _harmonic_layout(result, panels),
-    )
+    title = f"Mesh harmonic {_strongest(panels[0])} is the strongest in the transmission error"
+    return _drawn(title, result, panels)
 
 
 def _no_bearing_harmonics(result: Result) -> str:
@@ -191,9 +210,5 @@ def _no_bearing_harmonics(result: Result) -> str:
 def bearing_spectrum(result: Result) -> Any:
     """Draw the mesh harmonics of the bearing forces."""
     panels = _gear_panels(result, "bearing_force")
-    return stack(
-        f"Mesh harmonic {_strongest(panels[0])} is the strongest on the pinion's bearing",
-        "Mesh harmonic",
-        panels,
-        _harmonic_layout(result, panels),
-    )
+    title = f"Mesh harmonic {_strongest(panels[0])} is the strongest on the pinion's bearing"
+    return _drawn(title, result, panels)

@@ -36,7 +36,7 @@ from tribodyn.study.case.sections import (
     Solver,
     Stiffness,
 )
-from tribodyn.study.case.values import Plain, read_fields
+from tribodyn.study.case.values import Plain, as_meant, as_typed, read_fields
 
 if TYPE_CHECKING:
     from tribodyn.gear import Material, SpurPair
@@ -97,6 +97,7 @@ class Case(Section, whole=True):
         found = list(unsound(data))
         if found:
             raise InputError((source or Source()).place(found))
+        data, misspelt, meant = as_meant(data)
         given = Given(data if source is not None else plain(data))
         source = source or Source()
         stated, found = read_stated(given)
@@ -105,7 +106,7 @@ class Case(Section, whole=True):
         chosen = choices(given)
         vars(self).update(read_fields(type(self), body, "", chosen, found))
         found = [fault for fault in found if is_needed(fault[0], given.get("gears.kind"))]
-        found += reason_faults(marks)
+        found += [*misspelt, *reason_faults(marks)]
         readable = not any(key.startswith("gears") for key, _ in found)
         found += cross_problems(given, chosen, {key for key, _ in found})
         if not found:
@@ -114,7 +115,7 @@ class Case(Section, whole=True):
             told = {key for key, _ in found}
             found += [fault for fault in derive.gear_problems(self.gears) if fault[0] not in told]
         if found:
-            raise InputError(source.place(found))
+            raise InputError(source.place(as_typed(found, meant)))
         self._source, self._assumed = source, dict(marks)
         self._stated, stale = settled(self, self._effective, given, stated)
         for key in stale:

@@ -254,7 +254,11 @@ def _key_in(case: Case, problem: Problem) -> str:
         for option, known in (model.declared if model else {}).items():
             if argument.name == (known.argument or option):
                 return f"{name}.{option}"
-    return _argument_keys().get(argument.name, "")
+    key = _argument_keys().get(argument.name, "")
+    if key == "gears.composite_roughness" and key not in case._given:
+        heights = [f"gears.pinion.roughness_{kind}" for kind in ("ra", "rms")]
+        return next((height for height in heights if height in case._given), key)
+    return key
 
 
 @contextmanager

@@ -340,6 +340,57 @@ def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:
     return found
 
 
+def _meant(name: str, section: type[Section]) -> str:
+    """Key of a table that an unknown one stands for; empty where nobody can tell."""
+    known = section.known().keys
+    if said := word(name):
+        return said.key if said.key in known else ""
+    for gear in ("pinion", "wheel"):
+        inner = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
+        if inner != name and inner in known:
+            return inner
+    return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)), "")
+
+
+def as_meant(
+    data: Mapping[str, Any], path: tuple[str, ...] = ()
+) -> tuple[dict[str, Any], Found, dict[str, str]]:
+    """Tell unknown keys and put them where they belong, so that nothing seems to be missing.
+
+    The third has them by where they belong: what is wrong there has been told.
+    """
+    section = section_at(path)
+    known = section.known().keys if section else {}
+    result: dict[str, Any] = {}
+    found: Found = []
+    places: dict[str, str] = {}
+    for name, value in data.items():
+        strange = section is not None and name not in known and (path or name != "assumed")
+        meant = _meant(name, section) if strange and section else ""
+        inner, table = known.get(meant or name), isinstance(value, Mapping)
+        # A value that is there goes before one that is taken for it; tables are put together.
+        if (meant in data or meant in result) and not (table and isinstance(inner, Table)):
+            meant = ""
+        if meant:
+            found.append((".".join((*path, name)), unknown((*path, name), value)))
+            places[".".join((*path, meant))] = found[-1][0]
+        key = meant or name
+        if table and isinstance(inner, Table):
+            value, more, others = as_meant(value, (*path, key))
+            found, places = [*found, *more], places | others
+            value = {**value, **result.get(key, {})} if key in result else value
+        result[key] = value
+    return result, found, places
+
+
+def as_typed(found: Found, meant: Mapping[str, str]) -> Iterator[tuple[str, Problem]]:
+    """Faults with the keys that the user typed, without those of values told as misspelt."""
+    for key, problem in found:
+        if key not in meant:
+            place = next((place for place in meant if key.startswith(f"{place}.")), "")
+            yield meant.get(place, "") + key[len(place) :], problem
+
+
 def unknown(path: tuple[str, ...], value: Any) -> Problem:
     """Say that there is no such key, naming the nearest or the table that has it."""
     *table, name = path

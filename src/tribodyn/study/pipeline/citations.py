@@ -51,6 +51,7 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
     keys += _METHODS.get(case.solver.method, ())
     if case.friction.variant == "he-singh":
         keys.append("he-gunda-singh")
+    keys += _loss_papers(case)
     own = {
         "type": "misc",
         "author": "The tribodyn developers",
@@ -62,6 +63,18 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
         | {key: _library()[key] for key in dict.fromkeys(keys)}
         | unlisted
     )
+
+
+def _loss_papers(case: Case) -> list[str]:
+    """Papers behind the losses beside the teeth that a case counts."""
+    box = case.gearbox
+    if box is None:
+        return []
+    shafts, used = (box.pinion, box.wheel), list[str]()
+    used += ["skf"] if any(each.bearing for each in shafts) else []
+    used += ["iso-14179"] if any(each.seal_diameter for each in shafts) else []
+    used += ["changenet-velex"] if any(each.immersion for each in shafts) else []
+    return [*used, "anderson-loewenthal"] if box.windage else used
 
 
 def _is_built_in(model: Model) -> bool:

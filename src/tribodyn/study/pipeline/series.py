@@ -97,14 +97,34 @@ def _told(unit: str, words: str) -> dict[str, str]:
     return {"units": unit, "long_name": words}
 
 
+def _sided(samples: Any) -> Array:
+    """Phase of samples, of which the fine ones know the side of an event on which they stand."""
+    fine = hasattr(samples, "weight")
+    return one_sided_phase(samples) if fine else np.asarray(samples.phase)
+
+
+def friction_forces(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
+    """Friction force of all pairs, and what of it films and asperities cause where that is told."""
+    from tribodyn.mesh.functions import ASPERITIES
+
+    force, phase, law = mesh_force(samples), _sided(samples), result.friction
+    if law is None:
+        rubbing = result.mesh.functions().friction_sum(phase) * force
+        split = result.mesh.asperity_friction_coefficient is not None
+        metal = result.mesh.at(ASPERITIES, phase) * force if split else None
+    else:
+        rubbing = law.value("friction_sum", phase, force) * force
+        metal = law.value(ASPERITIES, phase, force) * force if law.splits else None
+    found = {"friction_force": (rubbing, "N", "friction force of all tooth pairs")}
+    if metal is not None:
+        found["film_friction_force"] = (rubbing - metal, "N", "part of it that the oil films cause")
+        found["asperity_friction_force"] = (metal, "N", "part of it that the asperities cause")
+    return found
+
+
 def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals that figures draw, on the samples: values, unit and meaning by name."""
-    force = mesh_force(samples)
-    phase = np.asarray(samples.phase)
-    if result.friction is None:
-        rubbing = result.mesh.functions().friction_sum(phase) * force
-    else:
-        rubbing = result.friction.value("friction_sum", phase, force) * force
+    force, phase = mesh_force(samples), _sided(samples)
     static = result.mesh.at("static_transmission_error", phase) + result.static_error(phase)
     found = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
@@ -114,7 +134,7 @@ def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
             "lag of the driven gear on the line of action, from first contact of the flanks",
         ),
         "static_transmission_error": (static, "m", "the same at rest under the nominal load"),
-        "friction_force": (rubbing, "N", "friction force of all tooth pairs"),
+        **friction_forces(result, samples),
     }
     forces = support_forces(result.system, samples)
     for gear in ("pinion", "wheel"):
@@ -204,6 +224,12 @@ def _ends(result: Result) -> dict[str, Any]:
         told = {"long_name": "friction over powers of the load: force [1], moments [m]"}
         dims = ("knot", "power", "channel")
         found["friction_coefficients"] = (dims, friction.coefficients, told)
+    if (coupling := result.coupling) is not None:
+        told = _told("1", "change of each quantity from one pass of the coupling to the next")
+        found |= {f"coupling_{each.name}": ("pass", getattr(coupling, each.name), told)
+                  for each in fields(coupling) if each.name.endswith("_change")}  # fmt: skip
+        told = _told("1", "force of all pairs over that of the torque alone, by phase of the mesh")
+        found["coupling_loading"] = ("knot", coupling.loading, told)
     return found
 
 
@@ -223,6 +249,9 @@ def _facts(result: Result) -> dict[str, Any]:
     if result.friction is not None:
         names = ("load", "limit", "fit_error")
         facts |= {f"friction_{name}": getattr(result.friction, name) for name in names}
+    if result.coupling is not None:
+        facts |= {f"coupling_{name}": getattr(result.coupling, name)
+                  for name in ("kind", "tolerance")}  # fmt: skip
     facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
     facts["figures"] = len(result.summary())
     return {**facts, **result.summary()}

@@ -18,6 +18,7 @@ from tribodyn.study.pipeline.series import (
     centre_column,
     compression,
     first_touch,
+    friction_forces,
     is_steady,
     measured,
     mesh_force,
@@ -266,8 +267,9 @@ def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     wheel_speed = mesh.pinion_speed / result.case.gear_ratio
     lost = mesh.pinion_speed * friction("friction_moment_pinion")
     lost = lost - wheel_speed * friction("friction_moment_wheel")
+    forces = friction_forces(result, samples)
     return {
-        "rms_friction_force": rms(samples, friction("friction_sum")),
+        **{f"rms_{name}": rms(samples, values) for name, (values, *_) in forces.items()},
         "mean_friction_power": mean(samples, lost),
     }
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from tribodyn.study.studies.friction_claims import Claim
 
 #: Laws that are compared; ``constant`` takes COEFFICIENTS, and the mean of MIXED at each roughness.
-LAWS = ("none", "constant", "benedict-kelly", "xu-2007", "mixed-ehl", "ehl")
+LAWS = ("none", "constant", "benedict-kelly", "xu-2007", "mixed", "mixed-ehl", "ehl")
 #: Coefficients of the sources: the measured one of the rig, and three that were compared.
 COEFFICIENTS = (0.035, 0.05, 0.15, 0.25)
 #: Composite roughnesses [m]: those of the sources that the laws know, and some beside them.

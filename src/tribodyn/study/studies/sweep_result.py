@@ -75,9 +75,14 @@ class Sweep(Record):
         return tuple(len(axis.values) for axis in self.axes)
 
     @property
+    def asked(self) -> int:
+        """Number of values of the grid."""
+        return prod(self.shape)
+
+    @property
     def complete(self) -> bool:
         """Whether every value was reached."""
-        return len(self.points) == prod(self.shape)
+        return len(self.points) == self.asked
 
     @cached_property
     def figures(self) -> tuple[str, ...]:

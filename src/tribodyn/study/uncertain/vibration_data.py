@@ -132,8 +132,10 @@ def data_set(kind: str, case: Case, columns: dict[str, Array], settings: dict[st
     """Columns with their units and their origin."""
     from tribodyn.study.case.provenance import spec_of
 
-    units = {name: (spec.unit or "1") for name in columns if (spec := spec_of(case, name))}
-    units |= {name: unit for name, unit in {**_KNOWN, **SIGNALS}.items() if name in columns}
+    known = {**_KNOWN, **SIGNALS}
+    specs = {name: spec_of(case, name) for name in columns}
+    units = {name: known.get(name) or (spec.unit if spec else "") or "1"
+             for name, spec in specs.items()}  # fmt: skip
     told = json.dumps({"made_by": kind, **settings}, sort_keys=True)
     return DataSet(columns, units, case.to_toml(), told, tribodyn.__version__)
 

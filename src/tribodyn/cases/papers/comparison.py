@@ -1,0 +1,191 @@
+"""Printed tables of one source or of all, each row beside what is computed."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+from tribodyn.cases.papers.printed import PrintedRow, papers, printed_rows
+from tribodyn.cases.papers.verdict import deviation, verdicts
+from tribodyn.drawing import write_report_of
+from tribodyn.members import Members
+from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Record, record
+from tribodyn.study.pipeline.save import new_directory
+
+
+@record
+class PaperComparison(Record):
+    """What :func:`compare_with_paper` returns.
+
+    Parameters
+    ----------
+    papers : tuple of str
+        Cases of the sources.
+    rows : tuple of dict
+        ``case``, ``table``, ``row``, ``unit``, ``printed``, ``computed``, ``deviation`` (computed
+        over printed, less 1; None where one is no number), ``expected``, ``verdict`` and
+        ``reason``.
+    points : tuple of str
+        Computations that are done.
+    asked : int
+        Computations that there are.
+    """
+
+    papers: tuple[str, ...]
+    rows: tuple[dict[str, Any], ...]
+    points: tuple[str, ...]
+    asked: int
+    HEAD: ClassVar[tuple[str, ...]] = (
+        "Table", "Row", "Unit", "Printed", "Computed", "Deviation [%]", "Verdict"
+    )  # fmt: skip
+
+    @property
+    def complete(self) -> bool:
+        """Whether every computation was reached."""
+        return len(self.points) == self.asked
+
+    @property
+    def surprises(self) -> tuple[dict[str, Any], ...]:
+        """Rows whose verdict is not the one that is expected."""
+        return tuple(row for row in self.rows if row["verdict"] != row["expected"])
+
+    @property
+    def lead(self) -> str:
+        """Verdicts counted, in a line."""
+        counts = Counter(row["verdict"] for row in self.rows)
+        told = ", ".join(f"{count} {name}" for name, count in counts.most_common())
+        odd = f"; {len(self.surprises)} not as expected" if self.surprises else ""
+        return f"{len(self.rows)} printed figures: {told}{odd}"
+
+    def table(self) -> Iterator[list[str]]:
+        """Rows as text under ``HEAD``.
+
+        Yields
+        ------
+        list of str
+        """
+        for row in self.rows:
+            apart = "" if row["deviation"] is None else f"{100.0 * row['deviation']:+.3g}"
+            odd = "" if row["verdict"] == row["expected"] else f" (expected {row['expected']})"
+            yield [row["table"], row["row"], row["unit"], _text(row["printed"]),
+                   _text(row["computed"]), apart, row["verdict"] + odd]  # fmt: skip
+
+    def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write ``report.html`` and ``rows.csv`` into a new directory.
+
+        Parameters
+        ----------
+        directory : str or path
+            Directory to make.
+        force : bool
+            Replace an earlier result.
+
+        Returns
+        -------
+        Path
+            The directory.
+
+        Raises
+        ------
+        InputError
+            If the place is taken or cannot be written to.
+        """
+        with new_directory(Path(directory), force=force) as place:
+            text = io.StringIO()
+            writer = csv.DictWriter(text, list(self.rows[0]) if self.rows else ["table"])
+            writer.writeheader()
+            writer.writerows(self.rows)
+            (place / "rows.csv").write_text(text.getvalue(), encoding="utf-8")
+            write_report_of(self, place / "report.html")
+        return Path(directory)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"PaperComparison({self.lead})"
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, list):
+        return " to ".join(f"{each:.6g}" for each in value)
+    return value if isinstance(value, str) else f"{value:.5g}"
+
+
+def compare_with_paper(
+    *names: str,
+    partial: bool = False,
+    progress: Progress = SILENT,
+    members: Members | None = None,
+) -> PaperComparison:
+    """Compute what the sources of built-in cases print, and lay it beside.
+
+    Parameters
+    ----------
+    *names : str
+        Cases that stand for a source, such as ``"fzg-12dof"``; all of them by default.
+    partial : bool
+        Return the rows that are done when the computation is interrupted with Ctrl-C.
+    progress : Progress
+        Told how many computations are done; silent by default.
+    members : tribodyn.members.Members, optional
+        Keeps every computation as it is finished, and has those that a killed process finished.
+
+    Returns
+    -------
+    PaperComparison
+        One row for each printed figure. The verdict is ``"value"`` where the printed one is met
+        within its tolerance, ``"trend"`` where its series or its word runs the same way, and else
+        ``"cannot-reproduce"``.
+
+    Raises
+    ------
+    InputError
+        If no printed tables are known for a name.
+
+    Notes
+    -----
+    Equal computations are done once, and cases that differ in friction and motion alone share
+    the loads of their teeth and their oil films.
+
+    Examples
+    --------
+    >>> found = compare_with_paper("fzg-12dof")
+    >>> sorted(found.rows[0])[:4]
+    ['case', 'computed', 'deviation', 'expected']
+    """
+    import tribodyn
+    from tribodyn.cases.papers.jobs import Jobs, asked_by, value_of
+
+    chosen = tuple(dict.fromkeys(names)) or tuple(papers())
+    rows = [row for name in chosen for row in printed_rows(name)]
+    jobs = Jobs(rows)
+    told = {"study": "paper", "version": tribodyn.__version__, "options": list(chosen),
+            "case": "", "over": sorted(jobs.names.values())}  # fmt: skip
+    kept = (Members() if members is None else members).begin(told)
+    found = jobs.done(kept, partial, progress)
+    done = [row for row in rows if all(jobs.names[each] in found for each in asked_by(row))]
+    values = [value_of(row, jobs, found) for row in done]
+    return PaperComparison(
+        chosen, tuple(_rows(done, values)), tuple(found), len(set(jobs.names.values()))
+    )
+
+
+def _rows(
+    rows: Sequence[PrintedRow], values: Sequence[tuple[float | str | None, str]]
+) -> Iterator[dict[str, Any]]:
+    computed = [value for value, _ in values]
+    judged = verdicts(rows, computed)
+    for row, (value, failed), verdict in zip(rows, values, judged, strict=True):
+        yield {
+            "case": row.paper, "table": row.table, "row": row.row, "unit": row.unit,
+            "printed": row.printed, "computed": value, "deviation": deviation(row, value),
+            "expected": row.expected, "verdict": verdict,
+            "reason": f"{row.reason} {failed}".strip(),
+        }  # fmt: skip

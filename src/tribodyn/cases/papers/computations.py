@@ -1,0 +1,275 @@
+"""Computations by name: each gives figures of a case in SI, which printed ones are laid beside."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import collected
+from tribodyn.model import Registry
+from tribodyn.study.case.derive import mesh_law_of, placed, unused_lubricant
+from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.pipeline.first_look import operating_figures
+from tribodyn.study.pipeline.run import computed
+from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
+    from tribodyn.mesh.build import LoadedMesh
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.pipeline.result import Result
+
+Figures = Mapping[str, float]
+#: Takes a case, where mesh tables come from, and the arguments of the row.
+Computation = Callable[..., Figures]
+COMPUTATIONS: Registry[Computation] = Registry("computation")
+
+#: Keys without which loads and films of a mesh are what they are.
+_AFTER = ("friction.", "solver.", "losses.", "operation.torque_balance", "title", "origin")
+_GEARS = ("pinion", "wheel")
+#: A hair inside the path of contact [base pitches].
+_INSIDE = 1e-9
+_HARMONICS = 22
+
+
+def loads_of(case: Case) -> str:
+    """What loads and films of a mesh depend on, as text."""
+    known = [(key, str(value)) for key, value in case.values() if not key.startswith(_AFTER)]
+    return str([(k, v) for k, v in known if k[:9] != "dynamics." or k == "dynamics.mesh_law"])
+
+
+class Meshes:
+    """Mesh tables; cases that differ in friction and motion alone share their loads and films."""
+
+    def __init__(self) -> None:
+        self._loaded: dict[str, LoadedMesh] = {}
+
+    def table(self, case: Case) -> MeshTable:
+        """Mesh table of a case."""
+        from tribodyn.mesh.build import loaded_mesh
+
+        if case.mesh_table is not None:
+            return mesh_of(case)
+        key = loads_of(case)
+        if key not in self._loaded:
+            self._loaded[key] = loaded_mesh(
+                case.gear_pair, contact_settings(case), (case.pinion_speed, case.pinion_torque),
+                force_law=mesh_law_of(case) == "force-law",
+            )  # fmt: skip
+        return self._loaded[key].table(contact_settings(case))
+
+
+@COMPUTATIONS.register("check")
+def _check(case: Case, meshes: Meshes) -> Figures:
+    """Numbers of the case itself, its geometry, and solid bodies of the same gears."""
+    from tribodyn.contact import effective_modulus
+
+    pair, steel = case.gear_pair, case.material_properties
+    numbers = {key: float(v) for key, v in case.values()
+               if isinstance(v, int | float) and not isinstance(v, bool)}  # fmt: skip
+    bodies = {f"gears.{gear}.{key}": None for gear in _GEARS
+              for key in ("mass", "moment_of_inertia")}  # fmt: skip
+    solid = geometry(case.replace(bodies))
+    oil = operating_figures(case)
+    if "oil_viscosity" in oil:
+        oil["oil_kinematic_viscosity"] = oil["oil_viscosity"] / oil["oil_density"]
+    path = pair.pinion.base_radius * math.tan(pair.operating_pressure_angle)
+    curvature = path * path * case.gear_ratio / (path + path * case.gear_ratio)
+    return {
+        **numbers,
+        **geometry(case),
+        **oil,
+        **{f"solid_{name}": solid[name] for name in solid if name.startswith(("mass", "moment"))},
+        "effective_modulus": effective_modulus(steel, steel),
+        "equivalent_radius_pitch_point": curvature,
+        "pinion_torque": case.pinion_torque,
+        "wheel_torque": case.pinion_torque * case.gear_ratio,
+        "pinion_speed": case.pinion_speed,
+        "wheel_speed": case.pinion_speed / case.gear_ratio,
+        "mesh_frequency": case.pinion_speed * pair.pinion.teeth / (2.0 * math.pi),
+    }
+
+
+@COMPUTATIONS.register("mesh")
+def _mesh(case: Case, meshes: Meshes) -> Figures:
+    """Friction at five places of the path: ends, single contact, recess, pitch point."""
+    with placed(case), collected():
+        mesh = meshes.table(case)
+    ratio = case.gear_pair.transverse_contact_ratio
+    ages = {"start": _INSIDE, "single": 0.5 * ratio, "double": 0.5 * (1.0 + ratio),
+            "end": ratio - _INSIDE}  # fmt: skip
+    friction = {
+        f"friction_{place}": float(mesh.at("friction_coefficient", age % 1.0)[int(age)])
+        for place, age in ages.items()
+    }
+    at_pitch_point = mesh.at_pitch_point("friction_coefficient")
+    return {
+        **friction,
+        "friction_pitch_point": math.nan if at_pitch_point is None else at_pitch_point,
+        "mean_friction_coefficient": mesh.mean_friction_coefficient,
+    }
+
+
+@COMPUTATIONS.register("run")
+def _run(case: Case, meshes: Meshes) -> Figures:
+    """The summary of a run, and of both gears the acceleration in both directions together."""
+    known = None if case.gears.kind != "spur" else lambda: meshes.table(case)
+    result = computed(case, known=known)
+    multipliers = np.abs(result.response.floquet_multipliers)
+    figures = result.summary()
+    mode = figures.get("mesh_natural_frequency", math.nan)
+    return {
+        **figures,
+        **_accelerations(result),
+        "resonance_order": mode / figures["mesh_frequency"],
+        "largest_multiplier": float(multipliers.max()) if multipliers.size else math.nan,
+    }
+
+
+def _accelerations(result: Result) -> dict[str, float]:
+    from tribodyn.analysis import alternating_rms, mesh_harmonics
+    from tribodyn.study.pipeline.series import centre_column, measured
+
+    samples, figures = measured(result.response), dict[str, float]()
+    for gear in _GEARS:
+        places = [centre_column(result.response.names, gear, letter) for letter in "xy"]
+        columns = [place for place in places if place is not None]
+        if len(columns) < len(places):
+            continue
+        signal = samples.acceleration[:, columns]
+        figures[f"acceleration_{gear}"] = float(np.hypot(*alternating_rms(samples, signal)))
+        harmonics = np.abs(mesh_harmonics(samples, signal, _HARMONICS))
+        for order in (1, _HARMONICS):
+            across, along = harmonics[order - 1]
+            figures[f"acceleration_{gear}_harmonic_{order}"] = float(np.hypot(across, along))
+            figures[f"acceleration_oloa_{gear}_harmonic_{order}"] = float(across)
+            figures[f"acceleration_loa_{gear}_harmonic_{order}"] = float(along)
+    return figures
+
+
+@COMPUTATIONS.register("line-contact")
+def _line_contact(
+    case: Case, meshes: Meshes, *, torque: float, speed: float, source_domain: bool = False
+) -> Figures:
+    """Film of one pair that carries all at the pitch point, at a torque [N*m] and speed [rpm]."""
+    from tribodyn.contact import effective_modulus
+    from tribodyn.ehl import solve_line_contact
+
+    here = case.replace({"operation.torque": torque, "operation.speed": speed * math.pi / 30.0})
+    given = _check(here, meshes)
+    load = here.pinion_torque / here.gear_pair.pinion.base_radius / given["common_face_width"]
+    path = here.gear_pair.pinion.base_radius * math.tan(given["operating_pressure_angle"])
+    steel, oil = here.material_properties, here.lubricant_properties or unused_lubricant()
+    options: dict[str, Any] = {"domain": (-2.5, 1.5), "inlet": "zero"} if source_domain else {}
+    with collected():
+        film = solve_line_contact(
+            load, given["equivalent_radius_pitch_point"], here.pinion_speed * path,
+            oil, effective_modulus(steel, steel), nodes=1025, **options,
+        )  # fmt: skip
+    rising = np.diff(film.pressure) > 0.0
+    peaks = 1 + np.flatnonzero(rising[:-1] & ~rising[1:])
+    return {
+        "central_film": film.central_film,
+        "minimum_film": film.minimum_film,
+        "constriction": 1.0 - film.minimum_film / film.central_film,
+        "hertz_pressure": film.hertz_pressure,
+        "maxima": float(peaks.size),
+        "spike_position": float(film.position[peaks[-1]] / film.half_width),
+        "spike_height": float(film.pressure[peaks[-1]] / film.hertz_pressure),
+        "spike_pressure": float(film.pressure[peaks[-1]]),
+    }
+
+
+@COMPUTATIONS.register("stability")
+def _stability(
+    case: Case, meshes: Meshes, *, over: str, between: list[str], points: int, steps: int
+) -> Figures:
+    """Where along a key the motion stops to have one period, and the step of that integration."""
+    from tribodyn.study.studies.bifurcation import bifurcation
+
+    first, last = between
+    with collected():
+        found = bifurcation(case, over, (first, last), points, steps=steps, cycles=32, keep=16)
+    other = np.flatnonzero(found.period[0] != 1)
+    at = int(other[0]) if other.size else -1
+    return {
+        "last_regular": float(found.parameter[at - 1]) if at > 0 else math.nan,
+        "first_irregular": float(found.parameter[at]) if at >= 0 else math.nan,
+        "irregular": float(other.size),
+        "step_number": float(found.step_number[at]) if at >= 0 else math.nan,
+        "irregular_with_half_the_step": float(np.count_nonzero(found.refined_period != 1)),
+    }
+
+
+@COMPUTATIONS.register("rig")
+def _rig(case: Case, meshes: Meshes, *, slave: str = "QJ 308") -> Figures:
+    """Torque that the motor of a back-to-back rig has to bring up."""
+    from tribodyn.study.studies.losses import rig_power_flow
+
+    bearings = {f"losses.{gear}.bearing": slave for gear in _GEARS}
+    with collected():
+        flow = rig_power_flow(case, case.replace(bearings))
+    return {"torque_loss": flow.motor_power / case.operation.speed}
+
+
+@COMPUTATIONS.register("modes")
+def _modes(case: Case, meshes: Meshes) -> Figures:
+    """Natural frequencies, and what the gears have of the mode next to the fifth mesh harmonic."""
+    from tribodyn.dynamics import natural_modes
+    from tribodyn.study.pipeline.assembly import whole_system
+
+    with placed(case), collected():
+        mesh = meshes.table(case)
+        found = natural_modes(whole_system(case, mesh))
+    near = int(np.argmin(np.abs(found.frequency - 5.0 * mesh.mesh_frequency)))
+    gears = [name.startswith(_GEARS) for name in found.names]
+    return {
+        "first_elastic": float(found.frequency[found.rigid]),
+        "next_to_fifth_harmonic": float(found.frequency[near]),
+        "kinetic_share_of_gears": float(found.kinetic_share[near, gears].sum()),
+        "strain_share_of_mesh": float(found.strain_share[near, -found.contacts :].sum()),
+    }
+
+
+@COMPUTATIONS.register("arithmetic")
+def _arithmetic(
+    case: Case, meshes: Meshes, *, first: float, second: float, level: float = 0.95
+) -> Figures:
+    """What follows from two printed numbers alone."""
+    from scipy.stats import norm
+
+    return {
+        "error_over_first": abs(second - first) / first,
+        "error_over_second": abs(second - first) / second,
+        "change": second / first - 1.0,
+        "product": first * second,
+        "ratio": second / first,
+        "before_reduction": first / (1.0 - second),
+        "half_width_of_band": float(norm.ppf(0.5 + 0.5 * level)) * second,
+        "deviation_of_outputs": math.sqrt(first / (1.0 - second)) if second < 1.0 else math.nan,
+    }
+
+
+@COMPUTATIONS.register("seal")
+def _seal(case: Case, meshes: Meshes) -> Figures:
+    """Factor of the loss of a seal over diameter squared and speed."""
+    from tribodyn.losses import seal_loss
+
+    return {"factor": float(seal_loss(0.03, 1400.0 * math.pi / 30.0)) / (30.0**2 * 1400.0)}
+
+
+@COMPUTATIONS.register("xu")
+def _xu(case: Case, meshes: Meshes) -> Figures:
+    """Constants of the regression of Xu and Kahraman as published."""
+    from tribodyn.friction.xu import CONSTANTS
+
+    return {f"b{number}": value for number, value in enumerate(CONSTANTS, 1)}
+
+
+def figures_of(name: str, case: Case, meshes: Meshes, given: Mapping[str, Any]) -> Figures:
+    """Figures of a computation, those that are numbers."""
+    found = COMPUTATIONS[name](case, meshes, **given)
+    return {key: value for key, value in found.items() if math.isfinite(value)}

@@ -1,0 +1,103 @@
+"""``tribodyn paper``: printed tables beside what is computed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tribodyn.cases import compare_with_paper
+from tribodyn.cases.papers import printed
+from tribodyn.cli import call
+from tribodyn.errors import ModelWarning
+from tribodyn.members import Members
+
+_KEYS = ["table", "row", "printed", "computed", "deviation", "expected", "verdict", "reason"]
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Any], Path]:
+    import contextlib
+    import io
+
+    folder, text = tmp_path_factory.mktemp("paper") / "there", io.StringIO()
+    with contextlib.redirect_stdout(text):
+        assert call(["paper", "fzg-12dof", "--json", "--out", str(folder)]) == 0
+    return json.loads(text.getvalue()), folder
+
+
+def test_rows_have_the_promised_keys_and_a_page(shown: tuple[list[Any], Path]) -> None:
+    rows, folder = shown
+    assert all(set(_KEYS) <= set(row) for row in rows)
+    assert len(rows) == len(printed.printed_rows("fzg-12dof"))
+    assert {row["verdict"] for row in rows} == set(printed.VERDICTS)
+    page = (folder / "report.html").read_text("utf-8")
+    assert "cannot-reproduce" in page
+    assert (folder / "rows.csv").read_text("utf-8").count("fzg-12dof") == len(rows)
+
+
+def test_computed_figures_are_those_of_a_run(shown: tuple[list[Any], Path]) -> None:
+    from tribodyn.cases import load_case, run
+
+    row = next(row for row in shown[0] if row["row"] == "fifth harmonic, constant")
+    with pytest.warns(ModelWarning):
+        figures = run(load_case("fzg-12dof-light")).summary()
+    assert row["computed"] == 1e6 * figures["dynamic_transmission_error_harmonic_5"]
+    assert row["deviation"] == pytest.approx(row["computed"] / 14.82 - 1.0)
+
+
+def test_every_verdict_of_the_rig_is_the_expected_one(shown: tuple[list[Any], Path]) -> None:
+    assert [row for row in shown[0] if row["verdict"] != row["expected"]] == []
+
+
+@pytest.mark.parametrize("words", [[], ["fzg-12dof", "--all"], ["fzg-12-dof"]])
+def test_what_is_no_paper_is_told(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["paper", *words]) == 2
+    assert "There are tables for fzg-12dof" in capsys.readouterr().err
+
+
+def test_a_verdict_follows_the_computed_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    row = {"table": "T", "compute": "check", "of": "pinion_torque", "unit": "N*m", "case": "",
+           "expected": "value", "reason": "-", "paper": "fzg-12dof"}  # fmt: skip
+
+    def verdict(value: Any, **more: Any) -> str:
+        made = printed.PrintedRow(**{**row, "row": "R", "case": "fzg-12dof", "printed": value},
+                                  **more)  # fmt: skip
+        monkeypatch.setattr("tribodyn.cases.papers.comparison.printed_rows", lambda _: (made,))
+        return str(compare_with_paper("fzg-12dof").rows[0]["verdict"])
+
+    torque = {"along": {"operation.torque": ["90 N*m", "172 N*m"]}}
+    assert verdict(172) == "value"
+    assert verdict(170) == "cannot-reproduce"
+    assert verdict([100, 180]) == "value"
+    assert verdict([10, 100]) == "cannot-reproduce"
+    assert verdict("rises", **torque) == "trend"
+    assert verdict("falls", **torque) == "cannot-reproduce"
+
+
+def test_an_interrupted_comparison_goes_on_from_there(tmp_path: Path) -> None:
+    class Stopping:
+        def __init__(self, after: int) -> None:
+            self.left = after
+
+        def start(self, task: str, total: int | None = None) -> None:
+            self.total = total
+
+        def advance(self, steps: int = 1) -> None:
+            self.left -= steps
+            if self.left < 0:
+                raise KeyboardInterrupt
+
+        def finish(self) -> None:
+            self.total = None
+
+    with Members(tmp_path / "there") as members:
+        begun = compare_with_paper("fzg-12dof", partial=True, progress=Stopping(2), members=members)
+    assert 0 < len(begun.points) < begun.asked
+    assert 0 < len(begun.rows) < len(printed.printed_rows("fzg-12dof"))
+    with Members(tmp_path / "there") as members:
+        whole = compare_with_paper("fzg-12dof", members=members)
+        assert len(members) == len(begun.points)
+    assert whole.complete

@@ -1,0 +1,39 @@
+"""The printed tables of all sources: their data, and the verdict of every row."""
+
+from __future__ import annotations
+
+import pytest
+
+from tribodyn.cases import cases, compare_with_paper
+from tribodyn.cases.papers.computations import COMPUTATIONS
+from tribodyn.cases.papers.jobs import Jobs
+from tribodyn.cases.papers.printed import NEITHER, VERDICTS, papers, printed_rows
+from tribodyn.cases.papers.verdict import course, signs
+
+
+@pytest.mark.parametrize("paper", papers())
+def test_tables_are_whole(paper: str) -> None:
+    rows = printed_rows(paper)
+    assert paper in cases()
+    assert len({(row.table, row.row) for row in rows}) == len(rows)
+    for row in rows:
+        assert row.expected in VERDICTS
+        assert row.reason.endswith(".")
+        assert row.compute in COMPUTATIONS if row.compute else row.expected == NEITHER
+        assert not row.along or row.is_word
+    # every case with its changes can be made, and equal ones are computed once
+    jobs = Jobs(rows)
+    assert len(set(jobs.names.values())) < len(jobs.asked)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("paper", [name for name in papers() if name != "fzg-12dof"])
+def test_every_verdict_is_the_expected_one(paper: str) -> None:
+    assert compare_with_paper(paper).surprises == ()
+
+
+def test_courses_of_figures() -> None:
+    assert course([1.0, 2.0, 3.0], 0.0) == "rises"
+    assert course([3.0, 1.0, 1.005, 2.0], 0.01) == "falls, then rises"
+    assert course([1.0, 1.001], 0.01) == "stays"
+    assert signs([4.7, 4.0, 4.1], 0.03) == [-1, 0]
