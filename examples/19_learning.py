@@ -1,9 +1,9 @@
 """Learning a vibration: the data set of a published study, the honest one beside it, and a map.
 
 The published inputs hold mesh stiffness and compression of the mesh, whose product is the force
-but for damping, and its rows meet five phases of the mesh cycle only. The honest table has the whole
-cycle, and inputs that are known before anything is computed; its runs stay together in the split.
-Then a network learns the rms of the mesh force over the operating point, and answers at once.
+but for damping, and its rows meet five phases of the mesh cycle only. The honest table has the
+whole cycle, and inputs that are known before anything is computed; its runs stay together in the
+split. Then a network learns the rms of the mesh force over the operating point.
 
 Figures go into the folder ``figures``, or into the one that is named behind the script.
 """
@@ -54,8 +54,9 @@ steady = surrogate.train(points, features=list(over), targets=["rms_mesh_force"]
                          training=surrogate.Training(shares=(7, 1, 2)))  # fmt: skip
 torque = np.linspace(0.6, 1.4, 1000)
 force = steady.predict({"force_scale": torque, "friction_scale": 1.0, "operation.speed": 146.6})
+rms = force["rms_mesh_force"]
 print(f"steady, 128 points: R2 {steady.errors['rms_mesh_force'].determination:.5f}, "
-      f"1000 forces from {force['rms_mesh_force'][0]:.0f} to {force['rms_mesh_force'][-1]:.0f} N")  # fmt: skip
+      f"1000 forces from {rms[0]:.0f} to {rms[-1]:.0f} N")  # fmt: skip
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
 folder.mkdir(parents=True, exist_ok=True)

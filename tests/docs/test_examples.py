@@ -228,6 +228,15 @@ def losses(text: str) -> None:
         assert low <= 0.05 * (1.0 - 5.0 / torque) <= high
 
 
+def learning(text: str) -> None:
+    rows = {line.split(",")[0] + line.split(":")[0].split()[-1]: line for line in text.splitlines()}
+    for name in ("acceleration", "mesh_force"):
+        assert figure(rows[f"published{name}"], "R2 ") > 0.996
+        assert "(table over the phase 0.99" in rows[f"honest{name}"]
+    assert figure(rows["honestmesh_force"], "R2 ") > 0.99
+    assert figure(text, "steady, 128 points: R2 ") > 0.99
+
+
 EXPECTED: dict[str, Callable[[str], None]] = {
     "01_first_light.py": first_light,
     "02_roughness_study.py": roughness_study,
@@ -247,6 +256,7 @@ EXPECTED: dict[str, Callable[[str], None]] = {
     "16_jump.py": jump,
     "17_mesh_table.py": mesh_table,
     "18_losses.py": losses,
+    "19_learning.py": learning,
 }
 
 

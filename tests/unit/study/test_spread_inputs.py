@@ -18,6 +18,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 CASE = td.load_case("fzg-film").replace(
     {"film.model": "none", "stiffness.model": "analytic", "solver.steps_per_mesh_cycle": 512}
 )
+LINEAR = CASE.replace({"stiffness.model": "rectangular", "stiffness.pair_stiffness": 2e8})
 SCALES = {"stiffness_scale": "1 +- 2 %", "friction_scale": "1 +- 5 %"}
 
 
@@ -59,8 +60,7 @@ def test_a_lane_is_the_run_of_its_case(cycles, lane):
 
 def test_a_torque_is_a_factor_only_where_the_contact_is_the_same():
     torque = {"operation.torque": np.array([140.0, 160.0])}
-    linear = CASE.replace({"stiffness.model": "rectangular", "stiffness.pair_stiffness": 2e8})
-    assert set(lanes_of(linear, torque).factors) == {"force_scale"}
+    assert set(lanes_of(LINEAR, torque).factors) == {"force_scale"}
     built = lanes_of(CASE, torque)
     assert not built.factors
     assert built.members[0].case.operation.torque == 140.0
@@ -127,12 +127,12 @@ def test_a_table_tells_what_made_it(tmp_path):
 
 
 def test_operating_points_are_rows():
-    data = td.operating_data(CASE, {"force_scale": "0.5 .. 1.5", "friction_scale": 1.0}, 4, seed=1)
-    order = np.argsort(data["force_scale"])
-    assert np.all(np.diff(data["rms_mesh_force"][order]) > 0.0)
-    # The spring of closed teeth is linear: force over torque is the same.
-    ratio = data["mean_mesh_force"] / data["force_scale"]
-    assert np.allclose(ratio, ratio[0], rtol=1e-6)
+    data = td.operating_data(LINEAR, {"operation.torque": "80 N*m .. 220 N*m"}, 4, seed=1)
+    assert (data.units["operation.torque"], data.units["rms_mesh_force"]) == ("N*m", "N")
+    # The springs of closed teeth are linear: force over torque is the same.
+    for name in ("mean_mesh_force", "rms_mesh_force", "rms_acceleration_loa_pinion"):
+        ratio = data[name] / data["operation.torque"]
+        assert np.allclose(ratio, ratio[0], rtol=1e-6)
 
 
 @pytest.mark.parametrize(

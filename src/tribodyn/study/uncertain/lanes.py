@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.errors import InputError, Problem, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
 #: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
 _COARSER, _FEWEST = 4, 512
-#: Phases at which two tooth contacts are compared, and the difference that counts as none.
-_LOOK, _SAME = np.linspace(0.0, 1.0, 65)[:-1] + 1e-4, 1e-12
+#: Steps on which two structures are compared, and the relative difference that counts as none.
+_LOOK, _SAME = 64, 1e-12
 
 
 @dataclass(frozen=True)
@@ -114,14 +115,20 @@ def _contact_without_load(case: Case, torques: Array) -> bool:
     if not contact_without_speed(case):
         return False
     with placed(case), quiet():
-        ends = [built(case.replace({"operation.torque": float(each)})).mesh
-                for each in (np.min(torques), np.max(torques), case.operation.torque)]  # fmt: skip
-    rows = [np.hstack([np.asarray(mesh.at(name, _LOOK)).reshape(_LOOK.size, -1)
-                       for name in ("mesh_stiffness", "friction_sum", "friction_moment_pinion",
-                                    "friction_moment_wheel", "load_share")])
-            for mesh in ends]  # fmt: skip
-    size = np.abs(rows[0]).max(axis=0) + 1e-300
-    return all(np.all(np.abs(each - rows[0]) <= _SAME * size) for each in rows[1:])
+        torques = np.array([np.min(torques), np.max(torques), case.operation.torque])
+        systems = [built(case.replace({"operation.torque": float(each)})).system
+                   for each in torques]  # fmt: skip
+    # The structure under a torque of one, which is all that may be left of the torque.
+    rows = []
+    for system, torque in zip(systems, torques, strict=True):
+        nodes = compile_system(system, _LOOK)[1]
+        rows.append(nodes._replace(force=nodes.force / torque))
+    return all(
+        one.shape == other.shape
+        and np.allclose(one, other, _SAME, _SAME * np.abs(one).max(initial=0))
+        for each in rows[1:]
+        for one, other in zip(rows[0], each, strict=True)
+    )
 
 
 def _steps(members: list[Member], frequency: Array, factors: dict[str, Array]) -> Index:
