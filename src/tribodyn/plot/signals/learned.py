@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
 #: Most points of one target, harmonics of the spectrum, and the share of the variants between ends.
-_POINTS, _HARMONICS, _SHARE = 2000, 8, 0.95
+_POINTS, _HARMONICS, _SHARE = 2000, 12, 0.95
 _LIGHT, _DARK = "rgba(0, 114, 178, 0.16)", "rgba(0, 114, 178, 0.45)"
 
 
@@ -118,6 +118,6 @@ def surrogate(result: Surrogate) -> Any:
                 traces.append({**edge, "showlegend": shown})
         label = str(name).replace("_", " ") + (f" [{unit}]" if unit not in ("", "1") else "")
         rows.append(Row(f"Computed {label}", Panel("Learned", traces)))
-        words.append(f"{name} {result.errors[str(name)].determination:.4f}")
+        words.append(f"{str(name).replace('_', ' ')} {result.errors[str(name)].determination:.4f}")
     title = f"R² over {result.true.shape[1]} held-out rows: {', '.join(words[:3])}"
     return stack_rows(title, rows, {"hovermode": "closest"})

@@ -12,9 +12,9 @@ from tribodyn.errors import Argument, InputError, Problem, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
-from tribodyn.study.uncertain.lanes import lanes_of
+from tribodyn.study.uncertain.lanes import draw, lanes_of
 from tribodyn.types import Array
-from tribodyn.uncertainty import Band, bootstrap_band, sample
+from tribodyn.uncertainty import Band, bootstrap_band
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -216,11 +216,11 @@ def ensemble(
     >>> found.mesh_force.shape
     (8, 256)
     """
-    given = dict(getattr(case, "uncertain", {}) if distributions is None else distributions)
+    given = dict(case.uncertain if distributions is None else distributions)
     if not given:
         why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
         raise InputError(Problem("nothing is spread", Argument("distributions"), why, remedy))
-    drawn = sample(given, require_whole("size", size, 3), method=method, seed=seed)  # type: ignore[arg-type]
+    drawn = draw(case, given, require_whole("size", size, 3), method=method, seed=seed)
     lanes = lanes_of(case, drawn, progress)
     signals = steady_cycles(lanes, _PLACES, progress)
     return CaseEnsemble(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.dynamics.equations.program import compile_system
-from tribodyn.errors import InputError, Problem, quiet
+from tribodyn.errors import Argument, InputError, Problem, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
@@ -17,6 +17,7 @@ from tribodyn.study.case.provenance import effective, spec_of
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.grid import Member, built, contact_without_speed, varied
 from tribodyn.types import Array, Index
+from tribodyn.uncertainty import distribution, sample
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import LaneParameters
@@ -53,6 +54,19 @@ class Lanes:
         return self.parameters().table(self.count)
 
 
+def draw(
+    case: Case, spread: Mapping[str, Any], size: int, *, method: Any = "monte-carlo", seed: int
+) -> dict[str, Array]:
+    """Values of keys of a case and of factors, each in the unit that it has there."""
+    known = {}
+    for key, text in spread.items():
+        spec = None if key in SCALES else spec_of(case, str(key))
+        if spec is None and key not in SCALES:
+            case.replace({str(key): text}, by="distributions")  # tells which keys there are
+        known[str(key)] = distribution(str(key), text, spec.unit if spec else "")
+    return sample(known, size, method=method, seed=seed)
+
+
 def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILENT) -> Lanes:
     """Lanes of a case for values by key, all (lanes,), or by name of a factor."""
     count = len(next(iter(values.values())))
@@ -87,9 +101,7 @@ def _check_key(case: Case, key: str, column: Array) -> None:
     spec = spec_of(case, key)
     value = effective(case).get(key)
     if spec is None or isinstance(value, bool | str) or spec.kind == "file":
-        where = "argument distributions"
-        if spec is None:
-            case.replace({key: float(np.min(column))}, by="")  # tells which keys there are
+        where = Argument("distributions")
         what, why = f"{key} cannot be spread", "Numbers of the case can, and the factors "
         raise InputError(Problem(what, where, why + ", ".join(SCALES), "Name one of these"))
     for end in (np.min(column), np.max(column)):

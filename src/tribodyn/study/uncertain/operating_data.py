@@ -11,9 +11,8 @@ from tribodyn.checks import require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.uncertain.cycles import steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
-from tribodyn.study.uncertain.lanes import lanes_of
+from tribodyn.study.uncertain.lanes import draw, lanes_of
 from tribodyn.study.uncertain.vibration_data import data_set
-from tribodyn.uncertainty import sample
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -94,7 +93,7 @@ def operating_data(
     """
     ranges = dict(default_ranges(case) if over is None else over)
     count = require_whole("size", size)
-    drawn = sample(ranges, count, method="sobol", seed=seed)
+    drawn = draw(case, ranges, count, method="sobol", seed=seed)
     lanes = lanes_of(case, drawn, progress)
     cycles = steady_cycles(lanes, _PLACES, progress)
     mean, rms, _, high = cycles.figures["mesh_force"]

@@ -23,9 +23,8 @@ from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.uncertain.cycles import SIGNALS, signals_at, steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
-from tribodyn.study.uncertain.lanes import Lanes, lanes_of
+from tribodyn.study.uncertain.lanes import Lanes, draw, lanes_of
 from tribodyn.types import Array
-from tribodyn.uncertainty import sample
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -59,8 +58,9 @@ def vibration_data(
     distributions : mapping, optional
         Inputs that are spread, as :func:`tribodyn.uncertainty.sample` reads them: keys of the
         case, or the factors ``stiffness_scale``, ``damping_scale``, ``friction_scale``,
-        ``error_scale``, ``gap_scale`` and ``force_scale`` [-]. By default stiffness and friction
-        with a standard deviation of 0.83 %, cut at three of them.
+        ``error_scale``, ``gap_scale`` and ``force_scale`` [-]. By default those that the case
+        itself spreads; where it has none, stiffness and friction with a standard deviation of
+        0.83 %, cut at three of them.
     trajectories : int
         Repeated runs.
     over : {"time", "cycle"}
@@ -98,9 +98,9 @@ def vibration_data(
     require_flag("redraw", redraw)
     require_positive("interval", interval, "s")
     count, rows = require_whole("trajectories", trajectories), require_whole("samples", samples)
-    spread = dict(SPREAD if distributions is None else distributions)
+    spread = dict((case.uncertain or SPREAD) if distributions is None else distributions)
     again = rows if over == "time" and redraw else 1
-    drawn = sample(spread, count * again, seed=seed)
+    drawn = draw(case, spread, count * again, seed=seed)
     first = {name: values.reshape(count, again)[:, 0] for name, values in drawn.items()}
     lanes = lanes_of(case, first, progress)
     if over == "cycle":
