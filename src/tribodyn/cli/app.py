@@ -17,41 +17,53 @@ tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
 
 tribodyn --help shows all commands."""
 
-#: Command, place of its function, and one line of help.
+#: Command, its function within ``commands``, and one line of help.
 COMMANDS = (
-    ("cases", "tribodyn.cli.case_commands:cases", "List the built-in cases."),
-    ("run", "tribodyn.cli.run_command:run", "Compute a case and write its report."),
-    ("sweep", "tribodyn.cli.sweep_command:sweep", "Compute a case at many values of its keys."),
+    ("cases", "case_commands:cases", "List the built-in cases."),
+    ("run", "run_command:run", "Compute a case and write its report."),
+    (
+        "sweep",
+        "sweep_command:sweep",
+        "Compute a case at many values of its keys.",
+    ),
     (
         "bifurcation",
-        "tribodyn.cli.bifurcation_command:bifurcation",
+        "bifurcation_command:bifurcation",
         "Follow the motion of a case over one value.",
     ),
     (
         "modes",
-        "tribodyn.cli.study_commands:modes",
+        "study_commands:modes",
         "Find natural frequencies and critical speeds of a case.",
     ),
     (
         "harris",
-        "tribodyn.cli.study_commands:harris",
+        "study_commands:harris",
         "Find the static transmission error over the torque.",
     ),
-    ("relief", "tribodyn.cli.study_commands:relief", "Find the best tip relief of a case."),
-    ("run-up", "tribodyn.cli.study_commands:run_up", "March a case while its speed rises."),
+    (
+        "relief",
+        "study_commands:relief",
+        "Find the best tip relief of a case.",
+    ),
+    (
+        "run-up",
+        "study_commands:run_up",
+        "March a case while its speed rises.",
+    ),
     (
         "losses",
-        "tribodyn.cli.losses_commands:losses",
+        "losses_commands:losses",
         "Find losses and efficiency of a case over torque and speed.",
     ),
     (
         "friction-from-loss",
-        "tribodyn.cli.losses_commands:friction_from_loss",
+        "losses_commands:friction_from_loss",
         "Find friction coefficients from measured torque losses.",
     ),
     (
         "experiment",
-        "tribodyn.cli.experiment_command:experiment",
+        "experiment_command:experiment",
         "Judge published claims on one gear pair: friction.",
     ),
     (
@@ -61,33 +73,41 @@ COMMANDS = (
     ),
     (
         "paper",
-        "tribodyn.cli.experiment_command:paper",
+        "experiment_command:paper",
         "Lay the printed tables of a source beside what is computed.",
     ),
     (
         "compare",
-        "tribodyn.cli.compare_command:compare",
+        "compare_command:compare",
         "Show what differs between two results.",
     ),
-    ("check", "tribodyn.cli.case_commands:check", "Check a case and show its geometry."),
+    ("check", "case_commands:check", "Check a case and show its geometry."),
     (
         "import",
-        "tribodyn.cli.exchange_commands:import_",
+        "exchange_commands:import_",
         "List a gearbox model of another program (REXS), and make a case of it.",
     ),
     (
         "export",
-        "tribodyn.cli.exchange_commands:export",
+        "exchange_commands:export",
         "Write a case for other gear programs (REXS).",
     ),
-    ("new", "tribodyn.cli.case_commands:new", "Write a commented case file to start from."),
+    (
+        "new",
+        "case_commands:new",
+        "Write a commented case file to start from.",
+    ),
     (
         "explain",
-        "tribodyn.cli.explain_commands:explain",
+        "explain_commands:explain",
         "Explain a symbol, key, model or warning.",
     ),
-    ("units", "tribodyn.cli.explain_commands:units", "List the units and their spellings."),
-    ("cite", "tribodyn.cli.explain_commands:cite", "Print the papers behind a result."),
+    (
+        "units",
+        "explain_commands:units",
+        "List the units and their spellings.",
+    ),
+    ("cite", "explain_commands:cite", "Print the papers behind a result."),
 )
 
 
@@ -124,5 +144,5 @@ def make_app() -> App:
         help="Let the shell complete commands and options: bash, zsh or fish."
     )
     for name, place, help_text in COMMANDS:
-        app.command(place, name=name, help=help_text)
+        app.command(f"tribodyn.cli.commands.{place}", name=name, help=help_text)
     return app

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.ehl import lubrication_regime
-from tribodyn.mesh.gears import GearData, Gears, NoGears, place_of
+from tribodyn.mesh.gears import GearData, Gears, NoGears, coordinates_of
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
@@ -98,8 +98,8 @@ class MeshColumns(Record):
         Change of the compression with the coordinates ``pinion_x``, ``pinion_y``,
         ``pinion_theta``, ``wheel_x``, ``wheel_y``, ``wheel_theta`` [1 or m]: y along, x across
         the line of action. By default that of the base radii. Of gears that move in space the
-        coordinates are ``x, y, z, theta_x, theta_y, theta_z`` of pinion and wheel, each in a frame
-        whose y axis is that of the gear.
+        coordinates are ``x, y, z, theta_x, theta, theta_z`` of pinion and wheel, each in a frame
+        whose y axis is that of the gear; theta is about y.
     friction_direction : array (n, pairs, 6 or 12) or None
         Generalized force of one newton of friction of each contact, with the sign of sliding
         [1 or m]. Where None, friction acts across the line of action, with the radii of curvature
@@ -194,7 +194,7 @@ class MeshColumns(Record):
         return self._lever("wheel_theta")
 
     def _of(self, columns: Array, coordinate: str) -> Array:
-        return np.asarray(columns[..., place_of(coordinate, columns.shape[-1])])
+        return np.asarray(columns[..., coordinates_of(columns.shape[-1]).index(coordinate)])
 
     def _lever(self, coordinate: str) -> float:
         column = self._of(self.direction, coordinate)

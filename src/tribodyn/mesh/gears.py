@@ -16,24 +16,17 @@ from tribodyn.types import Array
 #: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
 COORDINATES = tuple(f"{gear}_{way}" for gear in ("pinion", "wheel") for way in ("x", "y", "theta"))
 
-#: The same of gears that move in space, each in a frame whose y axis is its own.
+#: The same of gears that move in space, each in a frame whose y axis is its own: theta is about y.
 SPATIAL_COORDINATES = tuple(
-    f"{gear}_{kind}{axis}"
+    f"{gear}_{way}"
     for gear in ("pinion", "wheel")
-    for kind in ("", "theta_")
-    for axis in "xyz"
+    for way in ("x", "y", "z", "theta_x", "theta", "theta_z")
 )
 
 
 def coordinates_of(count: int) -> tuple[str, ...]:
     """Names of this many coordinates."""
     return SPATIAL_COORDINATES if count == len(SPATIAL_COORDINATES) else COORDINATES
-
-
-def place_of(coordinate: str, count: int) -> int:
-    """Place of one of the :data:`COORDINATES` among this many; gears turn about their axis y."""
-    names = coordinates_of(count)
-    return names.index(coordinate if coordinate in names else f"{coordinate}_y")
 
 
 class NoGears:

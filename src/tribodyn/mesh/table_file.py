@@ -21,7 +21,6 @@ from tribodyn.mesh.gears import (
     GearData,
     NoGears,
     coordinates_of,
-    place_of,
 )
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.storage import (
@@ -86,7 +85,7 @@ class TableFile:
     def lever(self, coordinate: str) -> float:
         """Lever of the normal force on a gear, over the cycle [m]."""
         columns = self.direction("pinion")
-        column = columns[..., place_of(coordinate, columns.shape[-1])]
+        column = columns[..., coordinates_of(columns.shape[-1]).index(coordinate)]
         return abs(float(column if column.ndim == 0 else self.grid.mean(column)))
 
     def table(
@@ -447,9 +446,6 @@ def _stacked(
     if name in OF_THE_MESH:
         return parts[0, ""]
     if name in DIRECTIONS:
-        if strange := [c for _, c in parts if c not in space]:
-            why = "Coordinates in space have an axis each: theta_y is the rotation of a gear"
-            _refuse(place, f"{name} has the coordinate {strange[0]}", why, "Write theta_y")
         whole = np.zeros((rows, count, len(space)))
         for (contact, coordinate), values in parts.items():
             whole[:, contact, space.index(coordinate)] = values

@@ -17,6 +17,7 @@ from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid_blank import hypoid_blank
 from tribodyn.plot.gear.hypoid_contact import hypoid_contact
 from tribodyn.plot.gear.hypoid_flanks import ease_off, hypoid_pair
+from tribodyn.plot.gear.hypoid_loaded import hypoid_friction, hypoid_load, hypoid_pressure
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.coupling import coupling
@@ -91,7 +92,10 @@ __all__ = [
     "harris_map",
     "hypoid_blank",
     "hypoid_contact",
+    "hypoid_friction",
+    "hypoid_load",
     "hypoid_pair",
+    "hypoid_pressure",
     "line_contact",
     "load_sharing",
     "loaded_contact",

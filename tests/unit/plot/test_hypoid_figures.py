@@ -5,9 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from known_hypoids import h1043
-from tribodyn.errors import InputError
+from known_hypoids import eased, h1043
+from tribodyn.errors import InputError, quiet
 from tribodyn.gear import EaseOff, hypoid_flanks, tooth_contact
+from tribodyn.lubricant import Lubricant
+from tribodyn.mesh import hypoid_friction, hypoid_loaded_contact
 from tribodyn.plot import FIGURES
 
 EASE = EaseOff(lengthwise_crowning=30e-6, profile_crowning=8e-6, bias=6e-6)
@@ -66,6 +68,26 @@ def test_the_pattern_and_the_path_are_those_of_the_contact(contact):
     pitch = 360.0 / 43
     assert np.subtract(curves["pair after"].x, middle.x) == pytest.approx(pitch)
     assert f"{contact.peak_to_peak * 1e6:.3g} µrad" in figure.layout.title.text
+
+
+def test_figures_under_load_show_their_figures():
+    loaded = hypoid_loaded_contact(eased(), 500.0, steps=16, cells=12)
+    (heat, outline) = loaded.plot_pressure().data
+    assert 0.9 < np.nanmax(heat.z) * 1e9 / loaded.maximum_pressure <= 1.0
+    # What is drawn lies within the flank.
+    assert min(outline.x) <= min(heat.x) < max(heat.x) <= max(outline.x)
+    assert f"{loaded.maximum_pressure * 1e-9:.3g} GPa" in loaded.plot_pressure().layout.title.text
+    shares = [each for each in loaded.plot_load().data if each.name.startswith("pair")]
+    assert np.sum([each.y for each in shares], axis=0) == pytest.approx(100.0)
+    oil = Lubricant(0.01, 769.0, 2e-8)
+    for roughness, names in (
+        (0.4e-6, ["friction coefficient", "film ratio", "regimes"]),
+        (0.0, ["friction coefficient", "film"]),
+    ):
+        with quiet():
+            rubbed = hypoid_friction(loaded, 314.0, lubricant=oil, composite_roughness=roughness)
+        drawn = rubbed.plot_friction()
+        assert [each.name for each in drawn.data if "flank" not in each.name] == names
 
 
 def test_figures_of_other_results_are_refused(contact):

@@ -27,7 +27,7 @@ from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wrench
 from tribodyn.mesh.hypoid.table import table_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 #: Film of the elliptical contact that each line is; other models are those of line contacts.
@@ -130,6 +130,8 @@ class HypoidFriction(Record):
             in the frames of :class:`HypoidLoadedContact`.
         """
         return table_of(self)
+
+    plot_friction = drawn("hypoid_friction", "Draw friction and film over the flank.")
 
     def __repr__(self) -> str:
         """One line."""

@@ -20,7 +20,7 @@ from tribodyn.gear import HypoidFlanks, Material, Misalignment
 from tribodyn.gear.hypoid.envelope import cross
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.hypoid.cells import ContactCells, contact_cells
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array
 
 #: Steps of Newton's method, which comes down a convex curve, and the torque that may be left.
@@ -154,6 +154,9 @@ class HypoidLoadedContact(Record):
         torque = _required_torque(pinion_torque)
         return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
 
+    plot_pressure = drawn("hypoid_pressure", "Draw the pressure over the flank.")
+    plot_load = drawn("hypoid_load", "Draw load sharing, transmission error and stiffness.")
+
     def __repr__(self) -> str:
         """One line."""
         return (
@@ -213,6 +216,7 @@ def hypoid_loaded_contact(
 
     Examples
     --------
+    >>> import math
     >>> from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
     >>> blank = hypoid_blank(10, 43, 31.7e-3, 0.336, 47.7e-3, math.radians(46.0), 0.1143)
     >>> ease_off = EaseOff(lengthwise_crowning=30e-6, profile_crowning=6e-6)

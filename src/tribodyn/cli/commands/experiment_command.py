@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from tribodyn.cli.commands.sweep_command import INTERRUPTED, ended, kept_study
 from tribodyn.cli.screen import say, say_json, table, tell
 from tribodyn.cli.settings import changed_case
-from tribodyn.cli.sweep_command import INTERRUPTED, ended, kept_study
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:

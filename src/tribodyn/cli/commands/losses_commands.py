@@ -9,9 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribodyn.cli.commands.study_commands import Flag, Found, Output, Words, begun, finish
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import check_place, read_changes, read_ranges
-from tribodyn.cli.study_commands import Flag, Found, Output, Words, begun, finish
 from tribodyn.errors import InputError, Problem, collected
 from tribodyn.model import Option, number
 from tribodyn.study.case.values import FaultError, read_value

@@ -115,7 +115,7 @@ def _with_recording(
     first: Path, second: Path, pairs: tuple[dict[str, str], ...], options: Any, output: Any
 ) -> None:
     from tribodyn.cases.stored_result import load_result
-    from tribodyn.cli.study_commands import Found, finish
+    from tribodyn.cli.commands.study_commands import Found, finish
     from tribodyn.measurement import compare as compared
     from tribodyn.measurement import read
 

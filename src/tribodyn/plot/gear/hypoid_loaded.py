@@ -1,0 +1,186 @@
+"""A hypoid pair under load: pressure, friction and film on the flank, its load over the cycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.ehl.load_share import REGIME_LIMITS
+from tribodyn.plot.look.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.mesh import HypoidFriction, HypoidLoadedContact
+
+#: Points of a map along and across the flank.
+_GRID = (90, 45)
+_COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
+_ALONG = "Along the pitch cone of the wheel, towards the heel [mm]"
+_MADE_BY = "tribodyn.mesh.hypoid_loaded_contact makes one."
+
+
+def _outline(loaded: HypoidLoadedContact) -> Trace:
+    """Ends of all contact lines in the order of contact: the flank that both gears share."""
+    touch = loaded.cells.in_contact.T
+    ends = [
+        1e3 * np.concatenate([first, last[::-1], first[:1]])
+        for first, last in (
+            (cells[touch][:, 0], cells[touch][:, -1])
+            for cells in (np.swapaxes(each, 0, 1) for each in (loaded.along, loaded.across))
+        )
+    ]
+    outline = line(ends[0], ends[1], "flank of both gears", MUTED, unit="mm", dash="dash")
+    return outline | {"showlegend": False, "hoverinfo": "skip", "hovertemplate": None}
+
+
+def _flank(
+    loaded: HypoidLoadedContact, values: Array, name: str, unit: str, bar: tuple[float, float]
+) -> list[Trace]:
+    """Map of values of the cells that carry; ``bar`` is centre and length of its colour bar."""
+    from scipy.interpolate import griddata
+
+    carries = loaded.cell_force > 0.0
+    places = 1e3 * np.stack([loaded.along[carries], loaded.across[carries]], axis=-1)
+    x, y = (
+        np.linspace(low, high, count)
+        for low, high, count in zip(places.min(0), places.max(0), _GRID, strict=True)
+    )
+    shown = griddata(places, values[carries], tuple(np.meshgrid(x, y)))
+    heat: Trace = {
+        "type": "heatmap", "x": x, "y": y, "z": shown, "colorscale": _COLORS, "name": name,
+        "colorbar": {"title": {"text": unit}, "thickness": 14, "y": bar[0], "len": bar[1]},
+        "hovertemplate": f"along %{{x:.3g}} mm, across %{{y:.3g}} mm: %{{z:.3g}} {unit}"
+        "<extra></extra>", "showlegend": False, "hoverongaps": False,
+    }  # fmt: skip
+    return [heat, _outline(loaded)]
+
+
+def _regimes(heat: Trace) -> Trace:
+    """Lines between the lubrication regimes on a map of the film ratio."""
+    low, high = REGIME_LIMITS
+    levels = {"start": low, "end": high, "size": high - low, "coloring": "none", "showlabels": True}
+    return {
+        **{name: heat[name] for name in ("x", "y", "z")}, "type": "contour", "contours": levels,
+        "line": {"color": INK, "width": 1.5}, "showscale": False, "showlegend": False,
+        "hoverinfo": "skip", "name": "regimes",
+    }  # fmt: skip
+
+
+def _across() -> dict[str, Any]:
+    return {"scaleanchor": "x", "constrain": "domain"}
+
+
+@drawing(
+    "hypoid_pressure",
+    heading="Pressure on the flank",
+    caption="The flank of the wheel: greatest Hertzian pressure of every cell while its pair runs "
+    "through the mesh. What is blank never carries; the dashed line is the flank of both gears.",
+    of="HypoidLoadedContact",
+    made_by=_MADE_BY,
+)
+def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
+    """Draw the pressure over the flank: the contact pattern under load.
+
+    Parameters
+    ----------
+    loaded : HypoidLoadedContact
+        The contact under load.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    traces = _flank(loaded, 1e-9 * loaded.hertz_pressure, "pressure", "GPa", (0.5, 1.0))
+    title = (
+        f"Up to {loaded.maximum_pressure * 1e-9:.3g} GPa on the {loaded.cells.flanks.side} flank "
+        f"under {loaded.pinion_torque:.4g} N·m"
+    )
+    panel = Panel("Across, towards the tip [mm]", traces, _across(), height=1.6)
+    return stack_rows(title, [Row(_ALONG, panel)], {"hovermode": "closest"})
+
+
+@drawing(
+    "hypoid_load",
+    heading="Load sharing and transmission error",
+    caption="Over one mesh cycle: the part of the torque on each pair, by how much the wheel lags "
+    "without load and under it, and the mesh stiffness on the line of action.",
+    of="HypoidLoadedContact",
+    made_by=_MADE_BY,
+)
+def hypoid_load(loaded: HypoidLoadedContact) -> Any:
+    """Draw load shares, transmission error and stiffness over the mesh cycle.
+
+    Parameters
+    ----------
+    loaded : HypoidLoadedContact
+        The contact under load.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    phase, count = loaded.phase, loaded.load_share.shape[1]
+    shares = [
+        line(phase, 100.0 * loaded.load_share[:, i], f"pair {i + 1}", PAIR_COLORS[i % 4], unit="%")
+        for i in range(count)
+    ]
+    free, lag = 1e6 * loaded.unloaded_transmission_error, 1e6 * loaded.loaded_transmission_error
+    errors = [
+        line(phase, free - free.mean(), "without load", MUTED, unit="µm", dash="dash"),
+        line(phase, lag - lag.mean(), "under load", WHEEL, unit="µm"),
+    ]
+    stiffness = line(phase, 1e-6 * loaded.mesh_stiffness, "mesh", TOTAL, unit="N/µm")
+    panels = [
+        Panel("Part of the torque [%]", shares, {"rangemode": "tozero"}),
+        Panel("Lag less its mean [µm]", errors),
+        Panel("Stiffness [N/µm]", [stiffness], {"rangemode": "tozero"}),
+    ]
+    title = (
+        f"Transmission error of {np.ptp(lag):.3g} µm under {loaded.pinion_torque:.4g} N·m, "
+        f"{np.ptp(free):.3g} µm without load"
+    )
+    return stack(title, "Mesh cycle", panels)
+
+
+@drawing(
+    "hypoid_friction",
+    heading="Friction and film on the flank",
+    caption="The flank of the wheel: friction coefficient of every cell, and the film over the "
+    "composite roughness; lines at 0.2 and 2 part boundary, mixed and full film lubrication.",
+    of="HypoidFriction",
+    made_by="tribodyn.mesh.hypoid_friction makes one.",
+)
+def hypoid_friction(rubbed: HypoidFriction) -> Any:
+    """Draw friction coefficient and film ratio over the flank.
+
+    Parameters
+    ----------
+    rubbed : HypoidFriction
+        Film and friction of the cells.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    loaded, ratio = rubbed.loaded, np.minimum(rubbed.film_ratio, 1e3)
+    maps = [
+        ("friction coefficient", "", rubbed.friction_coefficient, (0.79, 0.42)),
+        ("film ratio", "", ratio, (0.21, 0.42)),
+    ]
+    if rubbed.composite_roughness == 0.0:  # Over smooth flanks the ratio has no bounds.
+        maps[1] = ("film", "µm", 1e6 * rubbed.minimum_film, maps[1][3])
+    traces = [_flank(loaded, values, name, unit, bar) for name, unit, values, bar in maps]
+    if rubbed.composite_roughness > 0.0:
+        traces[1].append(_regimes(traces[1][0]))
+    rows = [
+        Row(_ALONG, Panel(f"Across [mm], {each[0]}", shown, {}, height=1.4))
+        for each, shown in zip(maps, traces, strict=True)
+    ]
+    title = (
+        f"Mean friction coefficient {rubbed.mean_friction_coefficient:.3g} at "
+        f"{rubbed.pinion_speed:.4g} rad/s, film ratio from {rubbed.minimum_film_ratio:.3g}"
+    )
+    return stack_rows(title, rows, {"hovermode": "closest"})
