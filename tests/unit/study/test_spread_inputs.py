@@ -154,3 +154,27 @@ def test_operating_points_are_rows():
 def test_what_cannot_be_spread_is_told(make, match):
     with pytest.raises(InputError, match=match):
         make()
+
+
+def test_a_case_may_hold_spread_values():
+    case = LINEAR.replace(
+        {
+            "operation.torque": "150 N*m +- 2 %",
+            "dynamics.transmission_error_amplitude": "1 um .. 2 um",
+        }
+    )
+    assert case.operation.torque == 150.0
+    assert np.isclose(case.dynamics.transmission_error_amplitude, 1.5e-6)
+    assert set(case.uncertain) == {"operation.torque", "dynamics.transmission_error_amplitude"}
+    again = td.study.read_case(case.to_toml())
+    assert again == case
+    assert again.uncertain == case.uncertain
+    assert again != LINEAR.replace({"dynamics.transmission_error_amplitude": 1.5e-6})
+    settled = case.replace({"operation.torque": "140 N*m"})
+    assert list(settled.uncertain) == ["dynamics.transmission_error_amplitude"]
+    found = td.ensemble(settled, size=4, seed=2)
+    assert 1e-6 <= found.value.min() < found.value.max() <= 2e-6
+    with pytest.raises(InputError, match="wrong kind of quantity"):
+        case.replace({"operation.torque": "150 N*m +- 2 mm"})
+    with pytest.raises(InputError, match="whole number"):
+        case.replace({"gears.pinion.teeth": "16 +- 1"})
