@@ -68,7 +68,7 @@ COMMANDS = (
     ),
     (
         "surrogate",
-        "tribodyn.cli.commands.surrogate_command:surrogate",
+        "surrogate_command:surrogate",
         "Learn the steady response of a case, and predict it at once.",
     ),
     (
