@@ -157,12 +157,8 @@ def test_what_cannot_be_spread_is_told(make, match):
 
 
 def test_a_case_may_hold_spread_values():
-    case = LINEAR.replace(
-        {
-            "operation.torque": "150 N*m +- 2 %",
-            "dynamics.transmission_error_amplitude": "1 um .. 2 um",
-        }
-    )
+    error = "dynamics.transmission_error_amplitude"
+    case = LINEAR.replace({"operation.torque": "150 N*m +- 2 %", error: "1 um .. 2 um"})
     assert case.operation.torque == 150.0
     assert np.isclose(case.dynamics.transmission_error_amplitude, 1.5e-6)
     assert set(case.uncertain) == {"operation.torque", error}
