@@ -231,9 +231,13 @@ def losses(text: str) -> None:
 def learning(text: str) -> None:
     rows = {line.split(",")[0] + line.split(":")[0].split()[-1]: line for line in text.splitlines()}
     for name in ("acceleration", "mesh_force"):
-        assert figure(rows[f"published{name}"], "R2 ") > 0.996
+        share, _, off = re.findall(
+            r"R2 ([\d.]+)|0([.]\d+)\)|, ([\d.e-]+) %", rows[f"published{name}"]
+        )
+        assert float(share[0]) >= 0.996
+        assert float(off[2]) < 2.3
         assert "(table over the phase 0.99" in rows[f"honest{name}"]
-    assert figure(rows["honestmesh_force"], "R2 ") > 0.99
+    assert float(re.findall(r"R2 ([\d.]+)", rows["honestmesh_force"])[0]) > 0.99
     assert figure(text, "steady, 128 points: R2 ") > 0.99
 
 
