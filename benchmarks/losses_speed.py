@@ -8,13 +8,14 @@ the run without coupling, which is solved once and not in every pass.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
 from race import Goal, Runner, arguments, machine, print_goals, print_table, race
 from tribodyn import load_case, loss_map, run
-from tribodyn.errors import quiet
+from tribodyn.errors import ModelWarning
 from tribodyn.mesh.build import loaded_mesh
 from tribodyn.study.coupling import balanced_load
 from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
@@ -31,7 +32,8 @@ def main(words: Sequence[str] | None = None) -> None:
     quick = arguments(__doc__, words).quick
     rounds, count = (1, 2) if quick else (5, 8)
     print(machine())
-    with quiet():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
         times = race(_map(count), rounds) | race(_coupling(), rounds)
     pairs = (("loss map", "loop of runs"), ("static", "SciPy"), ("dynamic", "plain run"))
     rows = [

@@ -39,7 +39,12 @@ def test_claims_and_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert call(["experiment", "friction", "--out", str(place), *_FEW]) == 2
     assert "--force" in capsys.readouterr().err
     assert call(["experiment", "friction", "--out", str(place), "--force", *_FEW]) == 0
-    assert "holds" not in capsys.readouterr().out.splitlines()[5]
+    out = capsys.readouterr().out
+    assert "holds" not in out.splitlines()[5]
+    assert "The pinion drives, torque held: both" in out
+    none, xu = (line.split() for line in out.splitlines() if line.startswith(("  none ", "  xu-")))
+    assert float(none[1]) == 0.0 < float(xu[3])
+    assert float(xu[4]) < float(none[2])  # mean force: friction takes part of the torque
 
 
 @pytest.mark.parametrize(
@@ -99,5 +104,5 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(tmp_path: Path) 
     for key, row in before.items():  # the orbits are kept, and measured anew
         for name in ("mean_mesh_force [N]", "peak_mesh_force [N]"):
             assert float(row[name]) == pytest.approx(float(later[key][name]), rel=1e-9)
-    assert len(again) == 204
+    assert len(again) == 246
     assert sorted(os.listdir(tmp_path)) == ["part"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,16 +21,26 @@ from tribodyn.errors import (
     require_between,
     require_one_of,
     require_positive,
+    warn,
 )
 from tribodyn.friction.mesh_means.measured import FZG_POINTS
 from tribodyn.losses.gear_loss import gear_loss_factor
 from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
 
+_RPM = math.pi / 30.0
 #: Columns of a table and their units.
 COLUMNS = {"speed": "rad/s", "torque": "N*m", "torque_loss": "N*m"}
 #: Columns that a file may have besides.
 _MORE = {"other_loss": "N*m"}
+#: How a file may name each.
+_NAMED = {"speed": "speed [rpm]", **{n: f"{n} [N*m]" for n in (*list(COLUMNS)[1:], *_MORE)}}
+
+
+def _shown(value: float, unit: str) -> str:
+    """A value as users write it: speeds in rpm."""
+    rpm = unit == "rad/s"
+    return f"{value / _RPM:.6g} rpm" if rpm else f"{value:.6g} {unit}"
 
 
 @dataclass(frozen=True)
@@ -111,7 +121,10 @@ class PowerLossTable:
         limits = {"speed": "above 0", **dict.fromkeys((*COLUMNS, *_MORE)[1:], "not negative")}
         problems = [
             Problem(
-                f"{name} = {value:.6g} {unit}", self.place(row), f"It is finite and {limits[name]}"
+                f"{name} = {_shown(value, unit)}",
+                self.place(row),
+                f"A run has a {name.replace('_', ' ')} that is finite and {limits[name]}",
+                "Mend the row, or leave it out",
             )
             for name, unit in {**COLUMNS, **_MORE}.items()
             for row, value in enumerate(getattr(self, name))
@@ -186,9 +199,10 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
     ]
     if not numbered:
         raise InputError("the table is empty", str(file), "", "Write a head and its rows")
-    cells = csv.reader((line for _, line in numbered), delimiter=";" if ";" in text else ",")
+    part = next((sign for sign in ";\t" if sign in numbered[0][1]), ",")
+    cells = csv.reader((line for _, line in numbered), delimiter=part)
     (_, head), *lines = zip((n for n, _ in numbered), cells, strict=True)
-    columns, problems = _columns(file, head), list[Problem]()
+    columns, problems = _columns(file, head), _too_long(file, head, lines)
     values: dict[str, Any] = {
         name: _column(file, lines, column, problems) for name, column in columns.items()
     }
@@ -203,24 +217,48 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
     )
 
 
-def _columns(file: Path, head: Iterable[str]) -> Mapping[str, tuple[int, float]]:
+def _columns(file: Path, head: Sequence[str]) -> Mapping[str, tuple[int, float]]:
     """Place of each column and what its unit is in SI."""
-    found, known = {}, {**COLUMNS, **_MORE}
+    found, bare, known = {}, list[str](), {**COLUMNS, **_MORE}
     for place, cell in enumerate(head):
         name, _, unit = (part.strip() for part in cell.partition("["))
         if name in found:
             raise InputError(f"two columns {name}", f"{file}:1", "Each stands once", "Keep one")
         if name in known:
             written = unit.rstrip("] ") or known[name]
+            bare += [] if unit else [name]
             try:
                 found[name] = (place, units.parse(f"1 {written}", known[name]))
             except units.UnitProblemError as error:
                 raise InputError(f'column "{cell.strip()}"', f"{file}:1", str(error)) from None
     missing = [name for name in COLUMNS if name not in found]
     if missing:
-        remedy = "Name the columns: speed [rpm], torque [N*m], torque_loss [N*m]"
+        remedy = f"Name the columns: {', '.join(_NAMED[name] for name in COLUMNS)}"
         raise InputError(f"no column {', '.join(missing)}", f"{file}:1", "", remedy)
+    if bare:
+        taken = ", ".join(f"{name} in {known[name]}" for name in bare)
+        named = ", ".join(_NAMED[name] for name in bare)
+        warn(
+            "friction-from-loss",
+            f"{file}: columns without a unit are taken in SI: {taken}. Write {named}, for example",
+            stacklevel=4,
+        )
     return found
+
+
+def _too_long(
+    file: Path, head: Sequence[str], lines: Iterable[tuple[int, list[str]]]
+) -> list[Problem]:
+    """Rows with more cells than the head, as a comma as decimal sign makes them."""
+    return [
+        Problem(
+            f"{len(cells)} cells below {len(head)} columns", f"{file}:{number}",
+            "A comma as decimal sign parts a number in two",
+            "Write numbers with a point, or part the cells by semicolons",
+        )
+        for number, cells in lines
+        if any(cell.strip() for cell in cells[len(head):])
+    ]  # fmt: skip
 
 
 def _column(

@@ -17,6 +17,8 @@ from tribodyn.types import Array, Index
 _RPM = math.pi / 30.0
 #: Relative standard uncertainty up to which a value is sound, and beyond which it tells nothing.
 _SOUND, _LOST = 0.1, 0.3
+#: Coefficient above which a measurement of lubricated teeth is none.
+_MOST = 0.2
 #: Standard uncertainties by which a loss may lie below the loss without load, as scatter.
 _SCATTER = 3.0
 _SAME_SPEED = 0.01  # relative difference of speeds that count as one
@@ -114,7 +116,7 @@ def friction_from_power_loss(
     Warns
     -----
     ModelWarning
-        Code ``friction-from-loss`` naming the rows whose coefficient is negative.
+        Code ``friction-from-loss`` naming the rows whose coefficient is negative or above 0.2.
 
     Source: power balance of back-to-back rigs; uncertainty after the GUM (JCGM 100) and its
     supplement 1.
@@ -161,9 +163,9 @@ def friction_from_power_loss(
         low=mu - reach,
         high=mu + reach,
         sensitivity=slope,
-        verdict=tuple(_verdict(*row) for row in zip(mu, uncertainty, strict=True)),
+        verdict=tuple(_verdict(*row) for row in zip(mu, uncertainty, pairs, strict=True)),
     )
-    _warn_of_negative([table.place(point.rows[0]) for point in points], mu)
+    _warn_of_impossible([table.place(point.rows[0]) for point in points], mu)
     return found
 
 
@@ -284,9 +286,13 @@ def _drawn(
     return np.asarray(mu.std(axis=0, ddof=1))
 
 
-def _verdict(mu: float, uncertainty: float) -> str:
+def _verdict(mu: float, uncertainty: float, pair: tuple[_Point, _Point]) -> str:
     if mu <= 0.0:
         return "negative: what was taken off is more than the load adds"
+    if mu > _MOST:
+        return f"implausible: lubricated teeth have less than {_MOST:g}"
+    if uncertainty == 0.0 and any(math.isfinite(point.freedom) for point in pair):
+        return "unknown: the repeats do not differ, give torque_loss_uncertainty"
     relative = uncertainty / mu
     if relative <= _SOUND:
         return "sound"
@@ -294,8 +300,16 @@ def _verdict(mu: float, uncertainty: float) -> str:
     return f"{kind}: {100.0 * relative:.0f} % standard uncertainty"
 
 
-def _warn_of_negative(places: list[str], coefficients: Array) -> None:
-    rows = [place for place, mu in zip(places, coefficients, strict=True) if mu <= 0.0]
+def _warn_of_impossible(places: list[str], coefficients: Array) -> None:
+    named = list(zip(places, coefficients, strict=True))
+    if high := [f"{place} ({mu:.3g})" for place, mu in named if mu > _MOST]:
+        warn(
+            "friction-from-loss",
+            f"the friction coefficient of {', '.join(high)} is above {_MOST:g}, as of no "
+            "lubricated teeth. Check the units of torque and torque_loss, gear_loss_factor, "
+            "and whether bearings, seals and slave gears are in other_loss and gear_sets.",
+        )
+    rows = [place for place, mu in named if mu <= 0.0]
     if rows:
         warn(
             "friction-from-loss",

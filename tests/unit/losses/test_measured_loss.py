@@ -184,6 +184,32 @@ def test_csv_with_units_comments_and_other_columns(tmp_path):
     assert friction_from_power_loss(rows).friction_coefficient == pytest.approx([0.05])
 
 
+def test_columns_without_a_unit_are_told(tmp_path):
+    file = tmp_path / "losses.csv"
+    file.write_text("speed\ttorque [N*m]\ttorque_loss\n150\t5\t1\n")
+    with pytest.warns(ModelWarning, match=r"SI: speed in rad/s, torque_loss in N\*m"):
+        assert read_power_loss_table(file, H).speed == pytest.approx([150.0])
+
+
+def test_more_friction_than_lubricated_teeth_have_is_told_with_its_row():
+    rows = rows_of([400] * 3, [5.0, 50.0, 150.0], [1.0, 60.0, 4.0], torque_loss_uncertainty=0.05)
+    with pytest.warns(ModelWarning, match=r"friction-from-loss.*row 2 \(3\.9.*above 0\.2"):
+        found = friction_from_power_loss(rows)
+    assert found.friction_coefficient[0] == pytest.approx(59.0 / (50.0 * H))
+    assert found.verdict[0].startswith("implausible")
+    assert found.verdict[1] == "sound"
+
+
+def test_repeats_that_do_not_differ_tell_no_uncertainty():
+    rows = rows_of([400] * 4, [5.0, 5.0, 50.0, 50.0], [1.0, 1.0, 1.4, 1.4])
+    assert friction_from_power_loss(rows).verdict == (
+        "unknown: the repeats do not differ, give torque_loss_uncertainty",
+    )
+
+
+_HEAD = "speed [rpm], torque [N*m], torque_loss [N*m]"
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -191,6 +217,9 @@ def test_csv_with_units_comments_and_other_columns(tmp_path):
         ("speed [rpm], torque [N*m], torque_loss [N*m]\n1, x, 2\n1, 2\n", r"losses.csv:2: \"x\""),
         ("speed [m], torque [N*m], torque_loss [N*m]\n1, 2, 3\n", r'column "speed \[m\]"'),
         ("# nothing\n", "the table is empty"),
+        (f"{_HEAD}\n1400,5,1,0\n1400,50,1.4\n", r"losses.csv:2: 4 cells below 3 columns"),
+        (f"{_HEAD}\n1400; 5; 1\n", r'losses.csv:2: "1400; 5; 1" is no number'),
+        (_HEAD.replace(",", ";") + "\n1400;5;1,0\n", r'losses.csv:2: "1,0" is no number'),
     ],
 )
 def test_bad_files_name_their_line(tmp_path, text, message):

@@ -26,7 +26,7 @@ def case() -> Any:
 
 @pytest.fixture(scope="module")
 def found(case: Any) -> Any:
-    laws = ["constant", "benedict-kelly", "xu-2007", "mixed-ehl"]
+    laws = ["constant", "benedict-kelly", "xu-2007", "mixed", "mixed-ehl"]
     return friction_experiment(case, laws=laws, **_FEW)
 
 
@@ -38,8 +38,8 @@ def found(case: Any) -> Any:
         ("wheel", "load", "constant 0.25",
          {"friction.law": "constant", "friction.coefficient": 0.25,
           "gears.composite_roughness": "0.325 um"}),
-        ("wheel", "drive", "mixed-ehl 0.325 um",
-         {"friction.law": "mixed-ehl", "gears.composite_roughness": "0.325 um"}),
+        ("wheel", "drive", "mixed 0.325 um",
+         {"friction.law": "mixed", "gears.composite_roughness": "0.325 um"}),
     ],
 )  # fmt: skip
 def test_every_state_is_that_of_a_run_of_its_own(
@@ -71,6 +71,23 @@ def test_a_law_of_the_film_gets_a_solved_one(case: Any) -> None:
     chosen = module._with_film(case, ("none", "ehl"))
     assert (case.film.model, chosen.film.model) == ("dowson-higginson", "newton")
     assert module._with_film(case, ("none", "xu-2007")).film.model == "dowson-higginson"
+    dry = case.replace({"film.model": "none"})
+    films = [module._with_film(dry, ("none", law)).film.model for law in ("xu-2007", "mixed")]
+    assert films == ["none", "dowson-higginson"]
+
+
+def test_effects_are_those_of_each_law_at_the_roughness_of_the_case(case: Any, found: Any) -> None:
+    # 0.325 um is nearer to the 0.53 um of the case than 0.991 um.
+    names = [found.rubbing[k].name for k in found.nearest()]
+    assert names[1:] == [f"{law} 0.325 um" for law in ("benedict-kelly", "xu-2007", "mixed",
+                                                       "mixed-ehl")]  # fmt: skip
+    rows = {row[0]: row[1:] for row in found.effect_rows()}
+    assert list(rows) == ["none", *names]
+    place = (0, 2, found.index("mixed"))
+    told = [float(word) for word in rows["mixed 0.325 um"]]
+    wanted = [found["mean_friction_coefficient"][place], found["mean_mesh_force"][place]]
+    assert told[:2] == pytest.approx(wanted, rel=1e-3)
+    assert told[6] == pytest.approx(found["rms_bearing_force_oloa_pinion"][place], rel=1e-3)
 
 
 def test_without_friction_no_setting_differs(found: Any) -> None:

@@ -76,6 +76,10 @@ def experiment(
         names = ("claim", "verdict", "holds_where")
         rows = [["Claim", "Verdict", "Holds where"], *([c[n] for n in names] for c in claims)]
         say(f"{found.case.title}\n{found.lead}\n\n{table(rows)}")
+        if effects := list(found.effect_rows()):
+            driver, held = found.case.gears.driver, found.case.operation.torque_balance
+            say(f"\nThe {driver} drives, torque held: {held}\n")
+            say(table([found.EFFECT_HEAD, *effects]))
         for claim in claims:
             say(f"\n{claim['claim']} ({claim['source_of']})\n  printed:  {claim['printed']}\n"
                 f"  computed: {claim['computed']}\n  {claim['why']}.")  # fmt: skip

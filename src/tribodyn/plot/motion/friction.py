@@ -144,22 +144,16 @@ def friction_harmonics(found: FrictionExperiment) -> Any:
     names = [f"{_HARMONIC}{k}" for k in range(1, _HARMONICS + 1)]
     change = 100.0 * np.array([found.change(name) for name in names])
     column = found.axes[1].values.index(found.case.operation.torque_balance)
-    chosen: dict[str, tuple[float, int]] = {}
-    nearest = found.case.composite_roughness or 0.0
-    for k, one in enumerate(found.rubbing[1:], 1):
-        far = abs(one.roughness - nearest)
-        if one.law not in chosen or far < chosen[one.law][0]:
-            chosen[one.law] = (far, k)
+    drawn = found.nearest()
     colors, panels = (PINION, WHEEL, *PAIR_COLORS), []
     for row, driving in enumerate(DRIVING):
         bars = [
             {"type": "bar", "x": list(range(1, _HARMONICS + 1)), "y": change[:, row, column, k],
              "name": found.rubbing[k].name, "marker": {"color": colors[n % len(colors)]},
              "showlegend": row == 0, "hovertemplate": "%{y:.3g} %"}
-            for n, (_, k) in enumerate(chosen.values())
+            for n, k in enumerate(drawn)
         ]  # fmt: skip
         panels.append(Panel(f"Change, the<br>{driving} [%]", bars))
-    drawn = [k for _, k in chosen.values()]
     part = change[:, :, column, drawn]
     order, driver, place = np.unravel_index(int(np.nanargmax(np.abs(part))), part.shape)
     title = (

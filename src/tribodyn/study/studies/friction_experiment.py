@@ -41,6 +41,14 @@ COEFFICIENTS = (0.035, 0.05, 0.15, 0.25)
 ROUGHNESSES = (0.1e-6, 0.325e-6, 0.4e-6, 0.53e-6, 0.7e-6, 0.8e-6, 0.991e-6)
 DRIVERS, BALANCES = ("pinion", "wheel"), ("drive", "load", "both")
 NONE, CONSTANT, MIXED = "none", "constant", "mixed-ehl"
+#: Figures of the table of effects, and what they are multiplied by.
+_EFFECTS = {
+    "mean_friction_coefficient": 1.0, "mean_mesh_force": 1.0, "rms_mesh_force": 1.0,
+    "peak_to_peak_dynamic_transmission_error": 1e6, "dynamic_transmission_error_harmonic_1": 1e6,
+    "rms_bearing_force_loa_pinion": 1.0, "rms_bearing_force_oloa_pinion": 1.0,
+}  # fmt: skip
+#: Laws that need the thickness of the film.
+_ON_FILM = frozenset({"mixed", MIXED, "matsumoto"})
 _KEYS = ("gears.driver", "operation.torque_balance", "friction")
 
 
@@ -83,6 +91,11 @@ class FrictionExperiment(Sweep):
         "Source of", "Claim", "Printed", "Computed", "Verdict", "Holds where", "Why"
     )  # fmt: skip
 
+    EFFECT_HEAD: ClassVar[tuple[str, ...]] = (
+        "Friction", "mu", "mean force [N]", "rms force [N]", "error p-p [um]", "harmonic 1 [um]",
+        "bearing along, rms [N]", "across, rms [N]",
+    )  # fmt: skip
+
     @cached_property
     def claims(self) -> tuple[Claim, ...]:
         """What five sources claim of friction, each judged by this experiment."""
@@ -100,6 +113,31 @@ class FrictionExperiment(Sweep):
         for each in self.claims:
             yield (each.case, each.statement, each.printed, each.computed, each.verdict,
                    each.where, each.why)  # fmt: skip
+
+    def nearest(self) -> list[int]:
+        """Places of each law with friction, at the roughness nearest to that of the case."""
+        wanted, chosen = self.case.composite_roughness or 0.0, dict[str, int]()
+        for k, one in enumerate(self.rubbing):
+            known = self.rubbing[chosen.get(one.law, k)]
+            nearer = abs(one.roughness - wanted) < abs(known.roughness - wanted)
+            if one.law not in chosen or nearer:
+                chosen[one.law] = k
+        return [k for law, k in chosen.items() if law != NONE]
+
+    def effect_rows(self) -> Iterator[tuple[str, ...]]:
+        """Table under ``EFFECT_HEAD``: figures by law, driver and held torque as in the case.
+
+        Yields
+        ------
+        tuple of str
+        """
+        row, column = (axis.values.index(value) for axis, value in zip(
+            self.axes, (self.case.gears.driver, self.case.operation.torque_balance), strict=False
+        ))  # fmt: skip
+        for k in (self.index(NONE), *self.nearest()):
+            values = [self[name][row, column, k] * scale for name, scale in _EFFECTS.items()]
+            if np.isfinite(values).all():
+                yield (self.rubbing[k].name, *(f"{round(value, 9):.4g}" for value in values))
 
     @property
     def lead(self) -> str:
@@ -282,15 +320,15 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.friction import LAWS as KNOWN
 
-    if case.gears.kind == "table":
-        remedy = "Take a case whose gears are given"
-        what, why = 'gears.kind = "table"', "The teeth of another program carry no film here"
+    if case.gears.kind != "spur":
+        remedy = "Take a case of spur gears"
+        what, why = f'gears.kind = "{case.gears.kind}"', "The experiment solves films of spur gears"
         raise InputError(Problem(what, "argument case", why, remedy))
     changes: dict[str, Any] = {}
     solved = FILM_MODELS[case.film.model].method
     if any(KNOWN[name].needs_film for name in laws) and not solved:
         changes["film.model"] = "newton"
-    if MIXED in laws and case.film.model == "none":
+    if case.film.model == "none" and not _ON_FILM.isdisjoint(laws):
         changes.setdefault("film.model", "dowson-higginson")
     heights = [f"gears.{gear}.{name}" for gear in DRIVERS for name in ("roughness_rms",
                                                                        "roughness_ra")]  # fmt: skip
