@@ -7,8 +7,8 @@
 
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
-``analysis``, ``measurement``, ``uncertainty``, ``surrogate``,
-``study``, ``cases``, ``plot`` and ``report``.
+``analysis``, ``measurement``, ``uncertainty``,
+``exchange``, ``study``, ``cases``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         Result,
         bifurcation,
         campbell,
+        compare_results,
         comprehensive_stiffness,
         ensemble,
         film_over_operation,
@@ -53,6 +54,7 @@ __all__ = [
     "bifurcation",
     "campbell",
     "cases",
+    "compare_results",
     "comprehensive_stiffness",
     "ensemble",
     "film_over_operation",
@@ -81,6 +83,7 @@ _HOMES = {
     "Result": "study",
     "bifurcation": "study",
     "campbell": "study",
+    "compare_results": "study",
     "comprehensive_stiffness": "study",
     "ensemble": "study",
     "film_over_operation": "study",
@@ -102,9 +105,9 @@ _HOMES = {
 }
 
 _ROOMS = (
-    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
-    "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report", "stiffness",
-    "study", "surrogate", "uncertainty", "units",
+    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "exchange", "friction", "gear",
+    "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report",
+    "stiffness", "study", "surrogate", "uncertainty", "units",
 )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tribodyn.study.beside import ResultComparison, compare_results
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
     from tribodyn.study.pipeline.result import Result
@@ -36,9 +37,11 @@ __all__ = [
     "CaseEnsemble",
     "DataSet",
     "Result",
+    "ResultComparison",
     "Sweep",
     "bifurcation",
     "campbell",
+    "compare_results",
     "comprehensive_stiffness",
     "ensemble",
     "film_over_operation",
@@ -70,6 +73,8 @@ _HOMES = {
     "Case": "case.case",
     "bifurcation": "studies.bifurcation",
     "campbell": "studies.modes",
+    "ResultComparison": "beside",
+    "compare_results": "beside",
     "comprehensive_stiffness": "studies.static",
     "film_over_operation": "studies.static",
     "friction_experiment": "studies.friction_experiment",
