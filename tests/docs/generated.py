@@ -4,6 +4,7 @@ import importlib
 import inspect
 import re
 
+from contents import page as contents_page
 from pages import ROOT
 
 from tribodyn.study import Case
@@ -81,6 +82,7 @@ GENERATED = {
     "docs/case-file.md": (_start, _tables),
     "docs/bibliography.md": (_bibliography,),
     "docs/reference.md": (_reference,),
+    "docs/coverage.md": (contents_page,),
 }
 
 

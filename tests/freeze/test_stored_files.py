@@ -22,6 +22,11 @@ pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
 _ARCHIVE = Path(__file__).parent / "stored.zip"
 _RESULTS = sorted(COMMANDS)
+with zipfile.ZipFile(_ARCHIVE) as _archive:
+    #: Built-in cases of that state; later ones are not in it.
+    _CASES = sorted(
+        Path(n).stem for n in _archive.namelist() if n.startswith("cases/") and n.endswith(".toml")
+    )
 #: Columns of the solved film.
 _FILMS = {"central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness"}
 
@@ -80,7 +85,7 @@ def _assert_same_data(old: xarray.Dataset, new: xarray.Dataset) -> None:
             assert (other.values == column.values).all(), name
 
 
-@pytest.mark.parametrize("name", list(td.cases()))
+@pytest.mark.parametrize("name", _CASES)
 def test_stored_cases_read_back(name: str, stored: Path) -> None:
     path = stored / "cases" / f"{name}.toml"
     again = dict(_entries(tomllib.loads(td.load_case(path).to_toml())))

@@ -25,6 +25,8 @@ def _shown(name: str, value: float) -> str:
 
 
 def _stiffness(case: Any) -> str:
+    if case.gears.kind == "hypoid":
+        return "contact lines"
     return f"table {case.gears.table}" if case.gears.kind == "table" else str(case.stiffness.model)
 
 

@@ -272,4 +272,4 @@ def _xu(case: Case, meshes: Meshes) -> Figures:
 def figures_of(name: str, case: Case, meshes: Meshes, given: Mapping[str, Any]) -> Figures:
     """Figures of a computation, those that are numbers."""
     found = COMPUTATIONS[name](case, meshes, **given)
-    return {key: value for key, value in found.items() if math.isfinite(value)}
+    return {key: float(value) for key, value in found.items() if math.isfinite(value)}

@@ -171,7 +171,7 @@ class HypoidBlank(Record):
 
 
 #: Argument -> least and greatest value, and unit.
-_RANGES: dict[str, tuple[float, float, str]] = {
+RANGES: dict[str, tuple[float, float, str]] = {
     "offset": (-1.0, 1.0, "m"),
     "outer_pitch_diameter_wheel": (1e-3, 10.0, "m"),
     "face_width_wheel": (1e-4, 2.0, "m"),
@@ -295,7 +295,7 @@ def _checked(arguments: dict[str, float | None]) -> dict[str, float]:
     for name, value in arguments.items():
         if value is None and name.endswith("_angle_wheel"):
             continue
-        low, high, unit = _RANGES[name]
+        low, high, unit = RANGES[name]
         try:
             values[name] = require_number(name, value)
             require_between(name, values[name], low, high, unit, remedy=_REMEDIES.get(unit, ""))

@@ -23,8 +23,9 @@ from tribodyn.mesh.hypoid.cells import ContactCells, contact_cells
 from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array
 
-#: Steps of Newton's method, which comes down a convex curve, and the torque that may be left.
-_STEPS, _CLOSE = 60, 1e-13
+#: Steps of Newton's method, which comes down a convex curve, and the parts of
+#: the torque at which it ends and that are refused.
+_STEPS, _CLOSE, _REFUSED = 60, 1e-13, 1e-9
 _PHASES, _PAIRS, _CELLS = ("phase",), ("phase", "pair"), ("phase", "pair", "cell")
 
 
@@ -296,9 +297,16 @@ def lag_under(cells: ContactCells, line_stiffness: float, wheel_torque: float) -
     lag = most + 1.1 * wheel_torque / cells.summed(spring)
     for _ in range(_STEPS):
         _, torque, rate = carried(cells, line_stiffness, lag)
-        if np.max(np.abs(torque - wheel_torque)) < _CLOSE * wheel_torque:
+        left = float(np.max(np.abs(torque - wheel_torque))) / wheel_torque
+        if left < _CLOSE:
             break
         lag = lag - (torque - wheel_torque) / rate
+    if not left < _REFUSED:
+        raise ComputationError(
+            f"a torque of {wheel_torque:.4g} N m on the wheel is balanced within {left:.2g} only",
+            why="It is too small beside the gaps of ease-off and misalignment",
+            remedy="Give more torque, or read the tooth contact without load",
+        )
     return lag
 
 

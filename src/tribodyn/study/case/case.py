@@ -14,6 +14,7 @@ from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears, is_needed
 from tribodyn.study.case.given import Given, Source, plain, unsound
+from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.provenance import (
     Stated,
     effective_values,
@@ -39,7 +40,7 @@ from tribodyn.study.case.sections import (
 from tribodyn.study.case.values import Plain, as_meant, as_typed, read_fields
 
 if TYPE_CHECKING:
-    from tribodyn.gear import Material, SpurPair
+    from tribodyn.gear import HypoidFlanks, Material, SpurPair
     from tribodyn.losses import Gearbox
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
@@ -205,11 +206,16 @@ class Case(Section, whole=True):
         Raises
         ------
         InputError
-            If the case has a mesh table of another program instead.
+            If the case has a mesh table of another program, or a hypoid pair.
         """
-        if self.gears.kind == "table":
-            raise InputError(derive.no_gear_pair())
+        if self.gears.kind != "spur":
+            raise InputError(derive.no_gear_pair(self.gears.kind))
         return derive.gear_pair(self.gears, self.dynamics.backlash)
+
+    @cached_property
+    def hypoid_flanks(self) -> HypoidFlanks | None:
+        """Flanks of the side that carries; None where the gears are no hypoid pair."""
+        return hypoid_flanks(self.gears) if self.gears.kind == "hypoid" else None
 
     @cached_property
     def material_properties(self) -> Material:
@@ -231,7 +237,7 @@ class Case(Section, whole=True):
         """Total play on the line of action [m]: given, or that of the tooth thicknesses."""
         given = self.dynamics.backlash
         if given is None:
-            return 0.0 if self.gears.kind == "table" else self.gear_pair.backlash
+            return derive.backlash(self)
         return given
 
     @property

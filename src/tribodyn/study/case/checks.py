@@ -10,6 +10,7 @@ from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.given import Given
+from tribodyn.study.case.hypoid import HYPOID_KEYS
 from tribodyn.study.case.section import Choice, Known, choices, section_at
 
 if TYPE_CHECKING:
@@ -63,13 +64,76 @@ def _roughness(given: Given) -> Found:
         yield absent, Problem(what, "", why, "Add it, or give composite_roughness in [gears]")
 
 
+#: Kind of gears -> keys that take few of their names, those names, and why.
+_TABLE_HAS = "A mesh table has its films and friction coefficients as columns"
+_CELLS_HAVE = "The contact lines of a hypoid pair have their own films and compliance"
+_NARROW: dict[str, tuple[tuple[str, tuple[str, ...], str], ...]] = {
+    "table": (
+        ("film.model", ("none",), _TABLE_HAS),
+        ("friction.law", ("none", "constant"), _TABLE_HAS),
+        ("dynamics.friction_load", ("nominal",), _TABLE_HAS),
+    ),
+    "hypoid": (
+        ("film.model", ("none",), _CELLS_HAVE),
+        ("gears.driver", ("pinion",), "The pinion of a hypoid pair drives"),
+        ("dynamics.friction_load", ("nominal",), "Friction of a hypoid pair belongs to its torque"),
+    ),
+}
+_NO_BODIES = "A mesh table knows no gear bodies"
+#: Structures whose gears move in one plane, and that whose gears move in space.
+_PLANAR, _SPATIAL = ("spur-6dof", "fzg-12dof"), "hypoid-14dof"
+
+
+def _kind(given: Given) -> Found:
+    """What a kind of gear pair needs, and what it cannot have."""
+    kind = given.get("gears.kind", "spur")
+    narrow = _NARROW.get(kind, ())
+    for key, names, why in narrow:
+        if given.get(key, names[0]) not in names:
+            remedy = f"Write {' or '.join(names)}"
+            if kind == "table":
+                remedy += ', or give the gears with kind = "spur"'
+            yield key, Problem(given.show(key), "", why, remedy)
+    if narrow and "losses" in given:
+        why = (
+            f"{_NO_BODIES} that turn in oil" if kind == "table" else "They are those of spur gears"
+        )
+        yield "losses", Problem("[losses] is given", "", why, "Remove the table")
+    for key in given.typed:
+        if is_idle(key, kind) and key.split(".")[0] in ("gears", "stiffness"):
+            yield key, _idle(given, key, kind)
+    if kind == "table":
+        yield from _mesh_table(given)
+    yield from _structure_of(given, kind)
+
+
+def _idle(given: Given, key: str, kind: str) -> Problem:
+    if kind == "table":
+        why = "A mesh table has the stiffness of the teeth, whatever their shape"
+        return Problem(f"{given.show(key)} is not used", "", why, "Remove it")
+    if kind == "hypoid":
+        why = f"Flanks and compliance of a hypoid pair follow from: {', '.join(HYPOID_KEYS)}"
+        return Problem(f"{given.show(key)} is not used", "", why, "Remove it")
+    owner = "table" if key == "gears.table" else "hypoid"
+    why = f'It belongs to kind = "{owner}"'
+    return Problem(given.show(key), "", why, "Remove it, or change the kind")
+
+
+def _structure_of(given: Given, kind: str) -> Found:
+    """Gears whose axes cross move in space, others in a plane."""
+    key = "dynamics.model"
+    model = given.get(key, _PLANAR[0])
+    if kind == "hypoid" and model in _PLANAR:
+        why = "The gears of that structure move in one plane"
+        remedy = f'Write model = "{_SPATIAL}" in [dynamics], or "torsional"'
+        yield key, Problem(f'model = "{model}" for a hypoid pair', "", why, remedy)
+    elif kind == "spur" and model == _SPATIAL:
+        why, remedy = "That structure has axes that cross", 'Choose "spur-6dof", for example'
+        yield key, Problem(f'model = "{model}" for spur gears', "", why, remedy)
+
+
 def _mesh_table(given: Given) -> Found:
-    """What a mesh table of another program needs, and what it cannot have."""
-    if given.get("gears.kind", "spur") != "table":
-        if "gears.table" in given:
-            why, remedy = 'It belongs to kind = "table"', "Remove it, or change the kind"
-            yield "gears.table", Problem(given.show("gears.table"), "", why, remedy)
-        return
+    """What a mesh table of another program needs."""
     if "gears.table" not in given:
         why, remedy = (
             'kind = "table" reads the mesh from a file',
@@ -81,26 +145,12 @@ def _mesh_table(given: Given) -> Found:
         masses.append("mass")
     for key in (f"gears.{gear}.{name}" for name in masses for gear in ("pinion", "wheel")):
         if key not in given:
-            what, why = f"{key.rpartition('.')[2]} is missing", "A mesh table knows no gear bodies"
-            yield key, Problem(what, "", why, f"Add it to [{key.rpartition('.')[0]}]")
-    allowed = {"film.model": ("none",), "friction.law": ("none", "constant"),
-               "dynamics.friction_load": ("nominal",)}  # fmt: skip
-    for key, names in allowed.items():
-        if given.get(key, names[0]) not in names:
-            why = "A mesh table has its films and friction coefficients as columns"
-            remedy = f'Write {" or ".join(names)}, or give the gears with kind = "spur"'
-            yield key, Problem(given.show(key), "", why, remedy)
-    if "losses" in given:
-        why, remedy = "A mesh table knows no gear bodies that turn in oil", "Remove the table"
-        yield "losses", Problem("[losses] is given", "", why, remedy)
-    for key in given.typed:
-        if is_idle(key, "table") and key.split(".")[0] in ("gears", "stiffness"):
-            why = "A mesh table has the stiffness of the teeth, whatever their shape"
-            yield key, Problem(f"{given.show(key)} is not used", "", why, "Remove it")
+            what = f"{key.rpartition('.')[2]} is missing"
+            yield key, Problem(what, "", _NO_BODIES, f"Add it to [{key.rpartition('.')[0]}]")
 
 
 def _face_width(given: Given) -> Found:
-    if given.get("gears.kind") == "table":
+    if given.get("gears.kind", "spur") != "spur":
         return
     gears = ("gears.pinion", "gears.wheel")
     if all(gear in given and f"{gear}.face_width" not in given for gear in gears):
@@ -158,6 +208,10 @@ def _film_of_friction(given: Given, law: FrictionLaw | None, film: FilmModel | N
     """What a law that shears the solved film needs besides an oil."""
     if law is None or film is None or not law.needs_film:
         return
+    if given.get("gears.kind") == "hypoid":
+        why, remedy = "The film of a hypoid pair is that of a formula", 'Choose law = "mixed-ehl"'
+        yield "friction.law", Problem(f'law = "{law.name}" for a hypoid pair', "", why, remedy)
+        return
     if not film.method:
         what = f'law = "{law.name}" and film model = "{film.name}"'
         why = "That law shears the solved film, and this model gives no pressure"
@@ -210,13 +264,20 @@ def _solver(given: Given) -> Found:
         yield "solver.cycles", Problem(what, "", why, 'Remove it, or choose "transient"')
 
 
+#: Kinds of gears whose load, film and friction are not found together.
+_UNCOUPLED = {
+    "table": ("table", "The teeth of another program have no film here"),
+    "hypoid": ("hypoid", "Its films belong to the load at rest"),
+}
+
+
 def _coupling(given: Given) -> Found:
     key = "solver.coupling"
     kind = given.get(key, "none")
     if kind == "none":
         return
     clashes = {
-        "gears.kind": ("table", "The teeth of another program have no film here"),
+        "gears.kind": _UNCOUPLED.get(str(given.get("gears.kind")), ("table", "")),
         "dynamics.friction_load": ("dynamic", "The coupling already lets friction follow the load"),
     }
     if kind == "dynamic":
@@ -403,7 +464,7 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _mesh_table, _roughness, _face_width, _size, _lubricant, _dampings,
+    _kind, _roughness, _face_width, _size, _lubricant, _dampings,
     _friction_load, _solver, _coupling,
 )  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem, collected
 from tribodyn.model import Option
 from tribodyn.study.case.gears import Gear, Gears, Modification
+from tribodyn.study.case.hypoid import hypoid_flanks, levers
 from tribodyn.study.case.profile_map_file import read_profile_map
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.sections import Losses, LubricantData, MaterialData
@@ -190,6 +192,8 @@ def mesh_law_of(case: Case) -> MeshForce:
         return cast("MeshForce", case.dynamics.mesh_law)
     if case.mesh_table is not None:
         return "force-law" if case.mesh_table.has_force_law else "stiffness"
+    if case.gears.kind != "spur":
+        return "stiffness"
     whole = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
     return "force-law" if whole else "stiffness"
 
@@ -297,14 +301,30 @@ def _read_table(path: str, changed: int) -> TableFile:
     return read_table_file(path)
 
 
-def no_gear_pair() -> Problem:
-    """What is said where something asks for the gears of a mesh table."""
+_NO_PAIR = {
+    "table": "Its mesh table knows contacts, not gears",
+    "hypoid": "This looks at spur gears in a plane",
+}
+
+
+def no_gear_pair(kind: str) -> Problem:
+    """What is said where something asks for the spur gears of a case that has none."""
     return Problem(
-        'a case with gears.kind = "table" has no gear pair',
+        f'a case with gears.kind = "{kind}" has no gear pair',
         "gears.kind",
-        "Its mesh table knows contacts, not gears",
+        _NO_PAIR[kind],
         'Give the gears with kind = "spur" for what follows from their shape',
     )
+
+
+def backlash(case: Case) -> float:
+    """Play on the line of action that follows from the teeth [m]."""
+    flanks = case.hypoid_flanks
+    if flanks is not None:
+        blank = flanks.blank
+        outer = blank.outer_cone_distance_wheel * math.sin(blank.pitch_angle_wheel)
+        return float(case.gears.outer_backlash * levers(flanks)[1] / outer)
+    return 0.0 if case.gears.kind == "table" else case.gear_pair.backlash
 
 
 def _table_problems(case: Case) -> list[tuple[str, Problem]]:
@@ -344,6 +364,8 @@ def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
     """Find the faults of the gear pair alone, where other tables are faulty."""
     if gears.kind == "table":
         return _faults("gears.table", lambda: mesh_table(gears))
+    if gears.kind == "hypoid":
+        return _faults("gears", lambda: hypoid_flanks(gears))
     if gears.pinion.face_width is None and gears.wheel.face_width is None:
         return []
     return _faults("gears", lambda: gear_pair(gears))
@@ -353,6 +375,9 @@ def case_problems(case: Case) -> list[tuple[str, Problem]]:
     """Find what makes a well-written case physically impossible."""
     if case.gears.kind == "table":
         return _table_problems(case)
+    if case.gears.kind == "hypoid":
+        found = _faults("gears", lambda: case.hypoid_flanks)
+        return found + _faults("lubricant", lambda: case.lubricant_properties)
     found = _faults("gears", lambda: case.gear_pair)
     found += _faults("lubricant", lambda: case.lubricant_properties)
     found += [] if found else _faults("losses", lambda: _gearbox_losses(case))

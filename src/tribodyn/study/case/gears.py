@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
+from tribodyn.study.case.hypoid import ALSO_OF_HYPOID, HYPOID_KEYS
 from tribodyn.study.case.section import Section
 from tribodyn.study.case.section import table as inner_table
 
@@ -127,7 +128,7 @@ class Gear(Section):
 class Gears(Section):
     """The ``[gears]`` table."""
 
-    kind: str = choice("spur", ("spur", "table"), meaning="kind of gear pair")
+    kind: str = choice("spur", ("spur", "hypoid", "table"), meaning="kind of gear pair")
     table: str | None = file_path(
         meaning="mesh table of another program, as CSV or netCDF", example='"mesh.csv"'
     )
@@ -167,21 +168,34 @@ class Gears(Section):
     wheel: Gear = inner_table(Gear, "the larger gear")
 
 
-#: Keys of ``[gears]`` that a mesh table of another program leaves open.
-_OF_A_TABLE = ("kind", "table", "driver", "teeth", "mass", "moment_of_inertia")
-_REQUIRED_OF_SPUR = ("gears.normal_module", "gears.normal_pressure_angle")
+# Keys of a hypoid pair stand before the tables of both gears.
+_both = {name: Gears.fields.pop(name) for name in ("pinion", "wheel")}
+Gears.fields |= {**HYPOID_KEYS, **_both}
+#: Keys of ``[gears]`` that every kind of pair has, and those that other kinds than spur gears have.
+_OF_ALL = ("kind", "driver", "teeth", "mass", "moment_of_inertia")
+_OF = {"table": (*_OF_ALL, "table"), "hypoid": (*_OF_ALL, *ALSO_OF_HYPOID)}
+#: Tables of a case that say nothing about such a pair.
+_IDLE = {"table": ("stiffness", "material", "film"), "hypoid": ("stiffness", "film")}
+_REQUIRED = {
+    "spur": ("gears.normal_module", "gears.normal_pressure_angle"),
+    "hypoid": tuple(f"gears.{n}" for n, o in HYPOID_KEYS.items() if getattr(o, "required", False)),
+}
 
 
 def is_idle(key: str, kind: str | None) -> bool:
     """Whether a dotted key says nothing in a case of this kind of gear pair."""
     section, _, name = key.partition(".")
-    if kind != "table":
-        return key == "gears.table"
-    if section == "gears":
-        return name.rpartition(".")[2] not in _OF_A_TABLE
-    return section in ("stiffness", "material", "film")
+    if section != "gears":
+        return section in _IDLE.get(kind or "spur", ())
+    if name.partition(".")[0] in HYPOID_KEYS:
+        return kind != "hypoid"
+    if name == "table":
+        return kind != "table"
+    return kind in _OF and name.rpartition(".")[2] not in _OF[str(kind)]
 
 
 def is_needed(key: str, kind: str | None) -> bool:
     """Whether a key that is missing is needed by this kind of gear pair."""
-    return kind != "table" or key not in _REQUIRED_OF_SPUR
+    return all(
+        key not in keys or kind_of == (kind or "spur") for kind_of, keys in _REQUIRED.items()
+    )

@@ -17,6 +17,7 @@ from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
 from tribodyn.study.case.given import Given
+from tribodyn.study.case.hypoid import solid
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.values import FaultError, Plain, read_value, written
 
@@ -285,7 +286,7 @@ def _model_of(case: Case, path: list[str]) -> Model | None:
 
 def _bored(case: Case, default: Any) -> Any:
     """Body against which deflection is measured; one without a bore has no shaft seat."""
-    if case.gears.kind == "table":
+    if case.gears.kind != "spur":
         return default
     bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
     return "rim" if default == "bore" and not all(bores) else default
@@ -295,8 +296,8 @@ def effective_values(case: Case) -> dict[str, Any]:
     """All values in force by dotted key, defaults of options and solver filled in."""
     values = in_force(case)
     kind = case.gears.kind
-    if kind == "table":
-        values |= {key: None for key in values if is_idle(key, kind)}
+    values |= {key: None for key in values if is_idle(key, kind)}
+    if kind != "spur":
         values["film.model"] = "none"
     if case.stiffness.reference is None:
         values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
@@ -325,7 +326,7 @@ def default_of(case: Case, key: str) -> Any:
     model = _model_of(case, path)
     option = section.fields.get(name) if section else None
     standard = option.default if isinstance(option, Option) and not option.required else None
-    if standard is None and model is not None:
+    if model is not None and (standard is None or name in model.options):
         standard = model.options.get(name)
     return _bored(case, standard) if key == "stiffness.reference" else standard
 
@@ -422,8 +423,9 @@ def _oil_assumptions(case: Case) -> list[Assumption]:
 
 def derived_values(case: Case) -> dict[str, float]:
     """All values that are derived because the case does not give them."""
-    if case.gears.kind == "table":
-        return {"dynamics.backlash": 0.0} if case.dynamics.backlash is None else {}
+    if case.gears.kind != "spur":
+        values = _of_solid_cones(case) | {"dynamics.backlash": case.backlash}
+        return _not_given(case, values)
     from tribodyn.gear import default_relief_length, mass_properties
 
     pair, values = case.gear_pair, {}
@@ -437,5 +439,20 @@ def derived_values(case: Case) -> dict[str, float]:
             values[f"gears.{name}.modification.{end}_length"] = default_relief_length(pair)
     values["gears.center_distance"] = pair.center_distance
     values["dynamics.backlash"] = case.backlash
+    return _not_given(case, values)
+
+
+def _of_solid_cones(case: Case) -> dict[str, float]:
+    """Masses and inertias of a hypoid pair."""
+    if case.hypoid_flanks is None:
+        return {}
+    return {
+        f"gears.{gear}.{name}": value
+        for gear, both in solid(case.hypoid_flanks, case.material.density).items()
+        for name, value in zip(("mass", "moment_of_inertia"), both, strict=True)
+    }
+
+
+def _not_given(case: Case, values: dict[str, float]) -> dict[str, float]:
     given = dict(case.values())
     return {key: value for key, value in values.items() if given.get(key, value) is None}

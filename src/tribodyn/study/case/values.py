@@ -264,7 +264,7 @@ def read_fields(
             except FaultError as fault:
                 found.append((key, fault.problem))
         elif name in cls.fields:
-            values[name] = cls.fields[name].default
+            values[name] = field.default
             if values[name] is REQUIRED:
                 values[name] = None
                 found.append((key, _missing(field, name, path)))
@@ -405,11 +405,10 @@ def unknown(path: tuple[str, ...], value: Any) -> Problem:
         return Problem(told, "", said.meaning, f"Write {said.key}" if said.key else "Remove it")
     if remedy := _of_one_gear(name, section):
         return Problem(told, "", why, remedy)
+    if homes := _homes(name):
+        return Problem(told, "", why, f"It belongs to {' or '.join(homes)}")
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-    if near:
-        return Problem(told, "", why, f'Did you mean "{near[0]}"?')
-    homes = _homes(name)
-    return Problem(told, "", why, f"It belongs to {' or '.join(homes)}" if homes else "Remove it")
+    return Problem(told, "", why, f'Did you mean "{near[0]}"?' if near else "Remove it")
 
 
 def _of_one_gear(name: str, section: type[Section] | None) -> str:

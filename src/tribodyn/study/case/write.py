@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn import units
 from tribodyn.model import Option
 from tribodyn.study.case.checks import DEFAULT_MARK
+from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import (
     changed_keys,
     derived_values,
@@ -92,6 +93,8 @@ def case_toml(case: Case) -> str:
     for key, value in values.items():
         spec = spec_of(case, key)
         place, _, name = key.rpartition(".")
+        if is_idle(key, case.gears.kind) and place.startswith("gears"):
+            continue
         if spec is None:
             if key.endswith(".modification"):
                 lines += ["", f"# [{key}] is not given: the flanks are involutes"]

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.study.case.derive import chosen_options, mesh_law_of
+from tribodyn.study.case.hypoid import contact_ratio, levers, solid
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.pipeline.tooth_contact import load_friction_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.gear import SpurGear
+    from tribodyn.gear import HypoidFlanks, SpurGear
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
@@ -32,6 +33,8 @@ def geometry(case: Case) -> dict[str, float]:
     """Geometry, masses and inertias that follow from a case."""
     if case.mesh_table is not None:
         return _of_mesh_table(case, case.mesh_table)
+    if case.hypoid_flanks is not None:
+        return _of_hypoid(case, case.hypoid_flanks)
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
     pair = case.gear_pair
@@ -66,6 +69,35 @@ def _of_mesh_table(case: Case, table: TableFile) -> dict[str, float]:
         for key in ("mass", "moment_of_inertia"):
             if getattr(gear, key) is not None:
                 values[f"{key}_{name}"] = getattr(gear, key)
+    return {name: float(value) for name, value in values.items()}
+
+
+#: Dimensions of a blank that a summary tells, of the pair and of each gear.
+_BLANK = ("mean_normal_module", "limit_pressure_angle", "normal_pressure_angle_drive",
+          "normal_pressure_angle_coast", "offset_angle_pitch")  # fmt: skip
+_CONES = ("pitch_angle", "mean_spiral_angle", "mean_cone_distance", "mean_pitch_diameter",
+          "outer_tip_diameter", "face_angle", "root_angle")  # fmt: skip
+
+
+def _of_hypoid(case: Case, flanks: HypoidFlanks) -> dict[str, float]:
+    """Blank of a hypoid pair, its levers and its bodies."""
+    blank, body = flanks.blank, solid(flanks, case.material.density)
+    values: dict[str, Any] = {
+        "gear_ratio": case.gear_ratio,
+        "backlash": case.backlash,
+        "transverse_contact_ratio": contact_ratio(case.gears),
+        **{name: getattr(blank, name) for name in _BLANK},
+    }
+    for key in _CONES:
+        values |= {f"{key}_{gear}": getattr(blank, f"{key}_{gear}") for gear in body}
+    for (name, gear), lever in zip(
+        (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)), levers(flanks), strict=True
+    ):
+        values[f"base_radius_{name}"] = lever
+        values[f"face_width_{name}"] = getattr(blank, f"face_width_{name}")
+        own = (gear.mass, gear.moment_of_inertia)
+        for key, given, full in zip(("mass", "moment_of_inertia"), own, body[name], strict=True):
+            values[f"{key}_{name}"] = full if given is None else given
     return {name: float(value) for name, value in values.items()}
 
 

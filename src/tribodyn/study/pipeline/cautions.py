@@ -12,6 +12,7 @@ import numpy as np
 from tribodyn.ehl import film_load_share
 from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
 from tribodyn.study.case.derive import gear_warnings
+from tribodyn.study.case.hypoid import hypoid_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
 from tribodyn.study.pipeline.series import compression, first_touch, is_steady, measured, mesh_force
 
@@ -41,6 +42,8 @@ _INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
 def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
     """Find what is odd about the gears of a case, before anything is computed."""
+    if case.gears.kind == "hypoid":
+        return hypoid_warnings(case.gears)
     if case.gears.kind == "table":
         return ()
     pair = case.gear_pair
@@ -236,7 +239,7 @@ def motion_cautions(case: Case, system: System, response: Response) -> tuple[Mod
 
 def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
     """Say what the motion leaves out where teeth differ from each other."""
-    if case.gears.kind == "table" or not case.gear_pair.teeth_differ:
+    if case.gears.kind != "spur" or not case.gear_pair.teeth_differ:
         return ()
     message = (
         "pitch deviations and run-out differ from tooth to tooth: the static transmission error "

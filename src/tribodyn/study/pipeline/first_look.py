@@ -28,7 +28,7 @@ def operating_figures(case: Case) -> dict[str, float]:
     """Speed and force at the pitch line, power, and the oil at its working temperature."""
     torque, speed = case.pinion_torque, case.pinion_speed
     figures = {"input_power": torque * speed}
-    if case.gears.kind != "table":
+    if case.gears.kind == "spur":
         pair = case.gear_pair
         radius = pair.pinion.base_radius / np.cos(pair.operating_pressure_angle)
         figures |= {
@@ -61,7 +61,7 @@ def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> d
         "input_power": power,
         "efficiency": 1.0 - lost / power,
     } | gearbox_figures(case, lost)
-    return found | (standard_figures(case) if case.gears.kind != "table" else {})
+    return found | (standard_figures(case) if case.gears.kind == "spur" else {})
 
 
 def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:

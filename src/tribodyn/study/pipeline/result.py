@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from tribodyn.drawing import FIGURES, draw, figures_of, write_report_of
+from tribodyn.errors import collected
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.stored import write_dataset
+from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.assembly import static_error
 from tribodyn.study.pipeline.save import new_directory
@@ -21,7 +23,8 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes, Response, System
     from tribodyn.errors import ModelWarning
-    from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.gear import ToothContact
+    from tribodyn.mesh import HypoidFriction, MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
     from tribodyn.study.coupling import Coupling
@@ -115,6 +118,22 @@ class Result(Record):
         from tribodyn.study.pipeline.tooth_contact import loaded_contact, phases_of_turns
 
         return loaded_contact(self.case, phases=phases_of_turns(self.case))
+
+    @cached_property
+    def hypoid_contact(self) -> ToothContact | None:
+        """Tooth contact of a hypoid pair without load; None of other gears."""
+        from tribodyn.gear import tooth_contact
+
+        flanks = self.case.hypoid_flanks
+        return None if flanks is None else tooth_contact(flanks, mounting(self.case.gears))
+
+    @cached_property
+    def hypoid_friction(self) -> HypoidFriction | None:
+        """Load, film and friction in every cell of a hypoid pair at rest; None of other gears."""
+        from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of
+
+        with collected():  # The run has said what there was to say.
+            return None if self.case.hypoid_flanks is None else hypoid_friction_of(self.case)
 
     @cached_property
     def natural_modes(self) -> NaturalModes:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.mesh.gears import SPATIAL_COORDINATES
 from tribodyn.record import Parts
 from tribodyn.types import Array
 
@@ -33,7 +34,7 @@ def is_steady(response: Response) -> bool:
 
 def centre_column(names: Sequence[str], gear: str, axis: str) -> int | None:
     """Find the coordinate of a gear's centre."""
-    known = [f"{gear}_{letter}" for letter in (axis, _LETTERS[axis])]
+    known = [f"{gear}_{letter}" for letter in (axis, _LETTERS.get(axis, axis))]
     return next((column for column, name in enumerate(names) if name in known), None)
 
 
@@ -75,6 +76,17 @@ def transmission_error(result: Result, samples: FineSamples) -> Array:
     return np.asarray(error - result.half_backlash)
 
 
+def tooth_force(result: Result, phase: Array, force: Array) -> Array | None:
+    """Force of the teeth on the wheel with friction in the axes of the pinion; None in a plane."""
+    functions = result.mesh.functions()
+    if functions.direction is None or result.mesh.direction.shape[-1] != len(SPATIAL_COORDINATES):
+        return None
+    rows = functions.direction(phase)
+    if functions.friction is not None:
+        rows = rows + functions.friction(phase)
+    return np.asarray(rows[:, :3] * force[:, None])
+
+
 def support_forces(system: System, samples: FineSamples) -> Array:
     """Forces of the bodies on their supports, from springs and dampers together."""
     stiffness, damping = np.asarray(system.stiffness), np.asarray(system.damping)
@@ -85,7 +97,19 @@ def support_forces(system: System, samples: FineSamples) -> Array:
 LARGEST = 64_000_000
 #: Highest mesh harmonic that is stored.
 _HIGHEST = 80
-_DIRECTIONS = {"loa": ("y", "along the line of action"), "oloa": ("x", "across it")}
+_IN_PLANE = {"loa": ("y", "along the line of action"), "oloa": ("x", "across it")}
+_IN_SPACE = {
+    "x": ("x", "along the common perpendicular of the axes"),
+    "y": ("y", "along its own axis"),
+    "z": ("z", "across both"),
+}
+
+
+def directions_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Letters of the coordinates in the names of figures: axis, and what it is in words."""
+    return _IN_SPACE if "pinion_z" in names else _IN_PLANE
+
+
 _STATES = {
     "position": ("m", "rad", "displacement"),
     "velocity": ("m/s", "rad/s", "velocity"),
@@ -136,9 +160,13 @@ def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
         "static_transmission_error": (static, "m", "the same at rest under the nominal load"),
         **friction_forces(result, samples),
     }
+    if (in_space := tooth_force(result, phase, force)) is not None:
+        for axis, values in zip("xyz", in_space.T, strict=True):
+            told = f"force of the teeth on the wheel along the {axis} axis of the pinion"
+            found[f"mesh_force_{axis}"] = (values, "N", told)
     forces = support_forces(result.system, samples)
     for gear in ("pinion", "wheel"):
-        for direction, (axis, words) in _DIRECTIONS.items():
+        for direction, (axis, words) in directions_of(result.response.names).items():
             column = centre_column(result.response.names, gear, axis)
             if column is not None:
                 told = f"force of the {gear} on its bearing {words}"

@@ -17,6 +17,7 @@ from tribodyn.study.pipeline.first_look import load_figures, mode_figures, opera
 from tribodyn.study.pipeline.series import (
     centre_column,
     compression,
+    directions_of,
     first_touch,
     friction_forces,
     is_steady,
@@ -24,6 +25,7 @@ from tribodyn.study.pipeline.series import (
     mesh_force,
     one_sided_phase,
     support_forces,
+    tooth_force,
     transmission_error,
 )
 from tribodyn.units import format_quantity
@@ -119,8 +121,6 @@ def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measur
     return keep
 
 
-#: Direction in the names of the summary -> letter of the coordinate.
-_DIRECTIONS = {"loa": "y", "oloa": "x"}
 _GEARS = ("pinion", "wheel")
 _HARMONICS = 5
 
@@ -137,6 +137,7 @@ def summarize(result: Result) -> dict[str, float]:
         **_force_figures(result, samples),
         **_error_figures(result, samples),
         **_friction_figures(result, samples),
+        **_hypoid_figures(result, samples),
         **_comparison(result),
         **mode_figures(result.system, result.mesh.mesh_frequency, result.case.pinion_speed),
     }
@@ -180,7 +181,7 @@ def _static_error_figures(result: Result) -> dict[str, Any]:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
     figures: tuple[Any, Any, Any]
-    if result.case.gears.kind != "table" and result.case.gear_pair.teeth_differ:
+    if result.case.gears.kind == "spur" and result.case.gear_pair.teeth_differ:
         loaded = result.loaded_contact()
         figures = (
             loaded.mean_transmission_error,
@@ -274,6 +275,23 @@ def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     }
 
 
+def _hypoid_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+    """Force of the teeth in space, and both transmission errors at rest on the line of action."""
+    from tribodyn.analysis import mean
+
+    forces = tooth_force(result, one_sided_phase(samples), mesh_force(samples))
+    error, mesh = result.mesh.unloaded_transmission_error, result.mesh
+    if forces is None or error is None:
+        return {}
+    loaded = error + mesh.static_transmission_error
+    return {
+        **{f"mean_mesh_force_{axis}": mean(samples, values)
+           for axis, values in zip("xyz", forces.T, strict=True)},
+        "unloaded_transmission_error_peak_to_peak": np.ptp(error),
+        "loaded_transmission_error_peak_to_peak": np.ptp(loaded),
+    }  # fmt: skip
+
+
 def _comparison(result: Result) -> dict[str, Any]:
     """Figures of the same motion with the friction of the nominal load."""
     if result.friction is None or result.nominal_friction_response is None:
@@ -293,21 +311,25 @@ def _comparison(result: Result) -> dict[str, Any]:
 
 def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     """Forces on the supports and accelerations of the gear centres."""
-    from tribodyn.analysis import alternating_rms, line_of_action_indicator
+    from tribodyn.analysis import alternating_rms, line_of_action_indicator, mean
 
     def column(gear: str, letter: str) -> int | None:
         return centre_column(result.response.names, gear, letter)
 
-    forces = support_forces(result.system, samples)
+    forces, names = support_forces(result.system, samples), result.response.names
     figures: dict[str, Any] = {
         "bearing_damping_pinion": result.damping.bearing_pinion,
         "bearing_damping_wheel": result.damping.bearing_wheel,
     }
     for kind, signals in (("bearing_force", forces), ("acceleration", samples.acceleration)):
         for gear in _GEARS:
-            for direction, letter in _DIRECTIONS.items():
+            for direction, (letter, _) in directions_of(names).items():
                 signal = signals[:, column(gear, letter)]
                 figures[f"rms_{kind}_{direction}_{gear}"] = alternating_rms(samples, signal)
+                if "pinion_z" in names and kind == "bearing_force":
+                    figures[f"mean_{kind}_{direction}_{gear}"] = mean(samples, signal)
+    if "pinion_z" in names:
+        return figures
     along, across = (forces[:, column("pinion", letter)] for letter in "yx")
     indicator = line_of_action_indicator(samples, along, across)
     if np.isfinite(indicator):

@@ -12,10 +12,11 @@ from tribodyn.errors import ComputationError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
 from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_law_of, placed
+from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.studies.axes import pinion_torques
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.mesh import HypoidFriction, MeshFriction, MeshTable
     from tribodyn.mesh.sharing import ToothContact
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
@@ -70,6 +71,8 @@ def mesh_of(
             pinion_torque=case.pinion_torque,
             friction_coefficient=friction_of_table(case),
         )
+    if case.gears.kind == "hypoid":
+        return hypoid_friction_of(case, load=load, rehearsal=rehearsal).table()
     settings = contact_settings(case)
     if rehearsal:
         film = "none" if settings.film_model == "none" else "dowson-higginson"
@@ -88,6 +91,31 @@ def mesh_of(
         pinion_torque=case.pinion_torque * load,
         force_law=mesh_law_of(case) == "force-law",
         progress=progress,
+    )
+
+
+def hypoid_friction_of(case: Case, *, load: float = 1.0, rehearsal: bool = False) -> HypoidFriction:
+    """Load, film and friction of a hypoid pair in every cell of its contact lines."""
+    from tribodyn.mesh import hypoid_friction, hypoid_loaded_contact
+
+    assert case.hypoid_flanks is not None  # Asked of hypoid pairs alone.
+    fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
+    loaded = hypoid_loaded_contact(
+        case.hypoid_flanks,
+        case.pinion_torque * load,
+        misalignment=mounting(case.gears),
+        material=case.material_properties,
+        line_stiffness=case.gears.line_stiffness,
+        **fewest,
+    )
+    return hypoid_friction(
+        loaded,
+        case.pinion_speed,
+        lubricant=case.lubricant_properties or derive.unused_lubricant(),
+        composite_roughness=case.composite_roughness or 0.0,
+        friction_law=case.friction.law,
+        friction_options=chosen_options(case, "friction"),
+        entrainment=case.gears.entrainment,
     )
 
 

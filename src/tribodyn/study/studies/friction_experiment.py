@@ -320,9 +320,9 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.friction import LAWS as KNOWN
 
-    if case.gears.kind == "table":
-        remedy = "Take a case whose gears are given"
-        what, why = 'gears.kind = "table"', "The teeth of another program carry no film here"
+    if case.gears.kind != "spur":
+        remedy = "Take a case of spur gears"
+        what, why = f'gears.kind = "{case.gears.kind}"', "The experiment solves films of spur gears"
         raise InputError(Problem(what, "argument case", why, remedy))
     changes: dict[str, Any] = {}
     solved = FILM_MODELS[case.film.model].method

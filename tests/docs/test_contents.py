@@ -1,0 +1,28 @@
+"""Everything that the sources contain is there, or it is said why it is not."""
+
+import pytest
+from contents import missing, sources
+
+ROWS = [row for source in sources().values() for row in source["rows"]]
+#: Rows of each source.
+COUNTS = {"S0": 51, "S1": 23, "S2": 15, "S3": 18, "S4": 17}
+
+
+def test_every_row_of_every_source_is_there() -> None:
+    named = {f"{name}.{number + 1}" for name, count in COUNTS.items() for number in range(count)}
+    assert sorted(row["id"] for row in ROWS) == sorted(named)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row["id"])
+def test_what_a_row_names_exists(row: dict[str, object]) -> None:
+    assert {"tests", "figures", "tables", "reason"} & row.keys()
+    assert list(missing(row)) == []
+
+
+def test_what_does_not_exist_is_noticed() -> None:
+    row = {
+        "tests": ["test_contents.py::test_none"],
+        "figures": ["none"],
+        "tables": ["fzg-12dof: -"],
+    }
+    assert len(list(missing(row))) == 3

@@ -1,0 +1,178 @@
+"""Hypoid pairs in case files: the built-in case, its figures, what is refused and why."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+import tribodyn
+from tribodyn.dynamics import steady_state
+from tribodyn.errors import InputError, ModelWarning, collected
+from tribodyn.gear import tooth_contact
+from tribodyn.study.case.read import read_case
+from tribodyn.study.pipeline.assembly import geometry, whole_system
+from tribodyn.study.pipeline.tooth_contact import mesh_of
+
+NAME = "hypoid-mixed-ehl"
+RATIO = 10 / 43
+
+
+def built_in(**changes):
+    return tribodyn.load_case(NAME).replace(changes)
+
+
+def quiet(case):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        return tribodyn.run(case)
+
+
+def rehearsed(case):
+    with collected():
+        return mesh_of(case, rehearsal=True)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return quiet(tribodyn.load_case(NAME))
+
+
+def text(**changes):
+    """Text of a short case file; a change of None takes a key of [gears] away."""
+    gears = {
+        "kind": '"hypoid"', "driver": '"pinion"', "offset": '"31.7 mm"',
+        "outer_pitch_diameter_wheel": '"336 mm"', "face_width_wheel": '"47.7 mm"',
+        "mean_spiral_angle_pinion": '"46 deg"', "cutter_radius": '"114.3 mm"',
+    }  # fmt: skip
+    dynamics = changes.pop("dynamics", '"hypoid-14dof"')
+    law, more = changes.pop("law", '"none"'), changes.pop("more", "")
+    gears |= changes
+    lines = ["[gears]", *(f"{name} = {value}" for name, value in gears.items() if value)]
+    lines += ["[gears.pinion]", "teeth = 10", "[gears.wheel]", "teeth = 43", "[operation]",
+              'speed = "3000 rpm"', 'torque = "500 N*m"', "[friction]", f"law = {law}",
+              "[dynamics]", f"model = {dynamics}", more]  # fmt: skip
+    return "\n".join(lines) + "\n"
+
+
+def refused(written):
+    with pytest.raises(InputError) as caught:
+        read_case(written, "my.toml")
+    return str(caught.value)
+
+
+def test_a_written_case_reads_back_and_lists_what_is_assumed(tmp_path):
+    case = built_in()
+    (tmp_path / "again.toml").write_text(case.to_toml(), encoding="utf-8")
+    assert tribodyn.load_case(tmp_path / "again.toml") == case
+    assert "normal_module" not in case.to_toml()
+    # The source prints no sizes of teeth and bearings: every one of them has its reason.
+    assert {"gears.cutter_radius", "gears.ease_off.bias", "dynamics.backlash"} <= set(case.assumed)
+    assert "gears.offset" not in case.assumed
+
+
+def test_only_the_design_has_to_be_given():
+    case = read_case(text(), "my.toml")
+    values = geometry(case)
+    assert case.dynamics.bearing_damping_ratio == 0.03
+    assert 1.0 < values["mass_pinion"] < 4.0 < values["mass_wheel"] < 20.0
+    assert values["pitch_angle_wheel"] == pytest.approx(np.radians(72.7355), abs=1e-5)
+    assert case.backlash == 0.0
+    played = case.replace({"gears.outer_backlash": 0.2e-3})
+    assert played.backlash == pytest.approx(0.2e-3 * values["base_radius_wheel"] / 0.168, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "place", "told"),
+    [
+        ({"cutter_radius": '"25 mm"'}, "gears.cutter_radius", "limit curvature"),
+        ({"offset": '"200 mm"'}, "gears.offset", ""),
+        ({"cutter_radius": None}, "gears.cutter_radius is missing", "mean radius of the face-mill"),
+        ({"normal_module": '"5 mm"'}, "normal_module", "is not used"),
+        ({"kind": '"spur"'}, "gears.offset", 'It belongs to kind = "hypoid"'),
+        ({"driver": '"wheel"'}, "gears.driver", "The pinion of a hypoid pair drives"),
+        ({"dynamics": '"spur-6dof"'}, "dynamics.model", "move in one plane"),
+        ({"law": '"ehl"'}, "friction.law", "that of a formula"),
+        ({"more": "[losses]\nwindage = false"}, "losses", "those of spur gears"),
+        ({"more": '[gears.ease_off]\nbias = "20 um"'}, "gears.ease_off.bias", "cut into"),
+        ({"ease_of": "1"}, "ease_of", 'Did you mean "ease_off"'),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_line(changes, place, told):
+    message = refused(text(**changes))
+    assert message.startswith("my.toml:")
+    assert told in message
+    for word in place.split():
+        assert word.rpartition(".")[2] in message
+
+
+def test_spur_gears_have_no_axes_that_cross():
+    case = tribodyn.load_case("fzg-roughness")
+    with pytest.raises(InputError, match="axes that cross"):
+        case.replace({"dynamics.model": "hypoid-14dof", "dynamics.bearing_damping": None})
+    with pytest.raises(InputError, match="no gear pair"):
+        _ = built_in().gear_pair
+
+
+def test_figures_of_the_run_are_those_of_the_contact_at_rest(result):
+    figures, rest = result.summary(), result.hypoid_friction
+    loaded = rest.loaded
+    names = ("mean_mesh_stiffness", "unloaded_transmission_error_peak_to_peak",
+             "loaded_transmission_error_peak_to_peak", "minimum_film_ratio",
+             "mean_friction_coefficient")  # fmt: skip
+    expected = (loaded.mean_mesh_stiffness, np.ptp(loaded.unloaded_transmission_error),
+                np.ptp(loaded.loaded_transmission_error), rest.minimum_film_ratio,
+                rest.mean_friction_coefficient)  # fmt: skip
+    assert [figures[name] for name in names] == pytest.approx(expected, rel=2e-3)
+    assert figures["mean_mesh_stiffness"] == pytest.approx(5.69e8, rel=0.02)
+    assert figures["transverse_contact_ratio"] == pytest.approx(
+        tooth_contact(result.case.hypoid_flanks, rotations_per_pitch=4, cells=5).contact_ratio
+    )
+
+
+def test_bearings_carry_the_force_of_the_teeth(result):
+    figures = result.summary()
+    for axis in "xyz":
+        carried = figures[f"mean_bearing_force_{axis}_pinion"]
+        assert carried == pytest.approx(-figures[f"mean_mesh_force_{axis}"], rel=1e-6)
+    # The wheel's axes in those of the pinion: x is common, y of one lies along z of the other.
+    pinion, wheel = ([figures[f"mean_bearing_force_{a}_{g}"] for a in "xyz"] for g in
+                     ("pinion", "wheel"))  # fmt: skip
+    assert wheel == pytest.approx([-pinion[0], pinion[2], -pinion[1]], rel=1e-6)
+
+
+def test_friction_takes_power_that_engine_and_load_account_for(result):
+    figures, case = result.summary(), result.case
+    torque = np.asarray(result.system.force) + result.response.extra_force
+    lost = case.pinion_speed * (torque[0] + RATIO * torque[-1])
+    assert lost == pytest.approx(figures["mean_friction_power"], rel=1e-5)
+    at_rest = float(result.mesh.grid.mean(result.hypoid_friction.power))
+    assert 0.0 < at_rest == pytest.approx(lost, rel=0.03)
+    assert figures["efficiency"] == pytest.approx(0.995, abs=1e-3)
+
+
+def test_slow_gears_follow_the_loaded_transmission_error():
+    case = built_in(**{"friction.law": "none"})
+    mesh = rehearsed(case)
+    system = whole_system(case, mesh)
+    (contact,) = system.contacts
+    # Nothing but the mesh gives way on the line of action: its force at rest is the torque's.
+    phase = mesh.phase[:-1]
+    force = case.pinion_torque / contact.direction(phase)[:, 5]
+    pressed = force / contact.stiffness(phase) + contact.error(phase)
+    loaded = mesh.static_transmission_error + mesh.unloaded_transmission_error
+    assert pressed == pytest.approx(loaded[:-1], rel=1e-9)
+    assert contact.direction(phase)[:, 5] / -contact.direction(phase)[:, 11] == pytest.approx(RATIO)
+
+
+def test_both_sides_lose_power_and_the_torsional_pair_runs():
+    fewer = {"operation.speed": 314.0}
+    coast = rehearsed(built_in(**fewer, **{"gears.side": "coast"}))
+    assert 0.0 < coast.mean_friction_power < 0.02 * 500.0 * 314.0
+    assert np.all(coast.direction[:, 4] > 0.0)
+    simple = built_in(**fewer, **{"dynamics.model": "torsional"})
+    mesh = rehearsed(simple)
+    orbit = steady_state(whole_system(simple, mesh), mesh.mesh_frequency, steps=256)
+    lost = 314.0 * (500.0 + RATIO * (orbit.extra_force[1] - 500.0 / RATIO))
+    assert lost == pytest.approx(mesh.mean_friction_power, rel=0.02)
