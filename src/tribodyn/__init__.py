@@ -8,7 +8,7 @@
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
 ``analysis``, ``measurement``, ``uncertainty``,
-``study``, ``cases``, ``plot`` and ``report``.
+``exchange``, ``study``, ``cases``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         Result,
         bifurcation,
         campbell,
+        compare_results,
         comprehensive_stiffness,
         film_over_operation,
         friction_experiment,
@@ -50,6 +51,7 @@ __all__ = [
     "bifurcation",
     "campbell",
     "cases",
+    "compare_results",
     "comprehensive_stiffness",
     "film_over_operation",
     "friction_experiment",
@@ -75,6 +77,7 @@ _HOMES = {
     "Result": "study",
     "bifurcation": "study",
     "campbell": "study",
+    "compare_results": "study",
     "comprehensive_stiffness": "study",
     "film_over_operation": "study",
     "friction_experiment": "study",
@@ -93,9 +96,9 @@ _HOMES = {
 }
 
 _ROOMS = (
-    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
-    "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report", "stiffness",
-    "study", "uncertainty", "units",
+    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "exchange", "friction", "gear",
+    "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report",
+    "stiffness", "study", "uncertainty", "units",
 )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-__all__ = ["announced", "source_digest", "telling"]
+__all__ = ["announced", "source_digest", "tell", "telling"]
 
 Kernel = TypeVar("Kernel")
 
@@ -42,7 +42,7 @@ def _listen() -> None:
         def on_start(self, event: Any) -> None:
             text = _texts.pop(event.data["dispatcher"], None)
             if text is not None:
-                _tellers[-1](text)
+                tell(text)
 
         def on_end(self, event: Any) -> None:
             pass
@@ -59,9 +59,14 @@ def _to_terminal(text: str) -> None:
 _tellers: list[Callable[[str], None]] = [_to_terminal]
 
 
+def tell(text: str) -> None:
+    """Say what will take long to whoever listens."""
+    _tellers[-1](text)
+
+
 @contextmanager
 def telling(teller: Callable[[str], None]) -> Iterator[None]:
-    """Let a function tell what is compiled inside the block."""
+    """Let a function tell what is compiled or takes long inside the block."""
     _tellers.append(teller)
     try:
         yield

@@ -9,7 +9,10 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+from tribodyn.analysis import bifurcation
 from tribodyn.cli.bar import Bar, counted, left
+from tribodyn.compiled import telling
+from tribodyn.dynamics import System
 
 _KERNEL = """
 import sys
@@ -68,3 +71,15 @@ def test_a_compilation_is_announced_once_and_never_when_it_is_kept(tmp_path: Pat
         for _ in range(2)
     ]
     assert told == ["['compiling the doubling, once on this machine, about no time']", "[]"]
+
+
+@pytest.mark.parametrize(("transient", "times"), [(40, 0), (40_000, 1)])
+def test_a_diagram_of_many_steps_says_beforehand_how_long_it_takes(
+    transient: int, times: int
+) -> None:
+    mass = System([[1.0]], [[0.5]], [[1.0]], [0.0], [])
+    with telling((told := []).append):
+        bifurcation(mass, [0.1, 0.2], steps=512, transient=transient, cycles=8, keep=8, signal="q0")
+    estimates = [text for text in told if "2 motions with up to 512 steps" in text]
+    assert len(estimates) == times
+    assert all("min at most" in text for text in estimates)

@@ -85,7 +85,7 @@ COMMANDS = (
     (
         "export",
         "exchange_commands:export",
-        "Write a case for other gear programs (REXS).",
+        "Write a case for other gear programs (REXS), or the tables of a result.",
     ),
     (
         "new",

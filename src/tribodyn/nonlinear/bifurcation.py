@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from time import perf_counter
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.compiled import tell
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, require_positive
+from tribodyn.dynamics.time.simulate import read_start, simulate
+from tribodyn.errors import ComputationError, InputError, require_positive
 from tribodyn.members import Members
 from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
@@ -41,6 +43,10 @@ _BRANCHES: dict[str, tuple[str, ...]] = {
 
 #: Mesh cycles over which disturbances turn into their directions.
 _TURN_IN = 20
+
+
+#: Steps of all motions above which it is told how long they may take: seconds to minutes.
+_MANY = 2e7
 
 
 def bifurcation(
@@ -151,8 +157,8 @@ def bifurcation(
     )
     first = None if start is None else read_start(values.systems[0], start)
     branches = _BRANCHES[sweep]
-    work = values.count * len(branches) * (1 + bool(verdict))
-    progress.start("Motions", work)
+    _announce(values, (transient + cycles) * len(branches) * (3 if verdict else 1))
+    progress.start("Motions", values.count * len(branches) * (1 + bool(verdict)))
     rows = _rows(values, branches, first, survey, progress)
     finer = values.refined(_refined_steps(values))
     fine = [_begin(values, row, keep) for row in rows]
@@ -252,6 +258,24 @@ def _read_survey(survey: Survey) -> Survey:
             why="At least two points are kept, of as many mesh cycles or more",
         )
     return survey
+
+
+def _announce(values: Points, cycles: int) -> None:
+    """Say beforehand how long many steps take, by the time of one mesh cycle of them."""
+    steps = float(values.steps.sum()) * cycles
+    if steps < _MANY:
+        return
+    system, count = values.systems[0], int(values.steps[0])
+    rest = np.zeros(system.size)
+    for _ in range(2):  # the first time compiles
+        begin = perf_counter()
+        with suppress(ComputationError):
+            simulate(system, float(values.mesh_frequency[0]), 1, (rest, rest), steps=count)
+    minutes = steps * (perf_counter() - begin) / count / 60.0
+    tell(
+        f"following {values.count} motions with up to {values.steps.max()} steps in each mesh "
+        f"cycle, {minutes:.2g} min at most; fewer steps or a shorter transient take less"
+    )
 
 
 def _rows(

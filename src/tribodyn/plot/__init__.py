@@ -30,6 +30,7 @@ from tribodyn.plot.mesh.table import (
     static_stiffness,
     static_transmission_error,
 )
+from tribodyn.plot.motion.beside import result_comparison
 from tribodyn.plot.motion.courses import (
     acceleration,
     bearing_force,
@@ -114,6 +115,7 @@ __all__ = [
     "poincare",
     "power_flow",
     "recording",
+    "result_comparison",
     "run_up",
     "run_up_map",
     "spectrogram",

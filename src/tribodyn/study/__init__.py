@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tribodyn.study.beside import ResultComparison, compare_results
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
     from tribodyn.study.pipeline.result import Result
@@ -30,9 +31,11 @@ __all__ = [
     "SUMMARY",
     "Case",
     "Result",
+    "ResultComparison",
     "Sweep",
     "bifurcation",
     "campbell",
+    "compare_results",
     "comprehensive_stiffness",
     "film_over_operation",
     "friction_experiment",
@@ -54,6 +57,8 @@ _HOMES = {
     "Case": "case.case",
     "bifurcation": "studies.bifurcation",
     "campbell": "studies.modes",
+    "ResultComparison": "beside",
+    "compare_results": "beside",
     "comprehensive_stiffness": "studies.static",
     "film_over_operation": "studies.static",
     "friction_experiment": "studies.friction_experiment",

@@ -5,6 +5,7 @@ import warnings
 import pytest
 
 import tribodyn as td
+from tribodyn.cli import main
 from tribodyn.study.pipeline.cautions import mesh_cautions
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
@@ -33,3 +34,20 @@ def test_far_too_large_relief_leaves_one_pair():
     pairs = float(mesh.grid.mean((mesh.load_share > 0.0).sum(axis=1).astype(float)))
     assert float(text.split(": ")[1].split(" tooth pairs")[0]) == pytest.approx(pairs, rel=0.01)
     assert 1.0 <= pairs < 1.05 < 1.3 < mesh.transverse_contact_ratio
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        ("gears.pinion.modification.tip_relief=300 um", "relief-large"),
+        ("operation.torque=9 kN*m", "hertz-pressure"),
+        ("operation.torque=91 N*m", ""),
+    ],
+)
+def test_check_tells_a_relief_and_a_load_that_no_gear_stands(change, code, capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main(["check", "fzg-roughness", "--set", change])
+    told = capsys.readouterr().err
+    assert [each for each in ("relief-large", "hertz-pressure") if f"[{each}]" in told] == (
+        [code] if code else []
+    )

@@ -54,13 +54,13 @@ def check(
     from tribodyn.study.pipeline.run import rehearse
 
     checked = changed_case(case, set_ or [])
-    rehearse(checked)
+    told = rehearse(checked)
     values = {n: float(v) for n, v in (geometry(checked) | operating_figures(checked)).items()}
     if json:
         say_json(values)
     else:
         say(f"{checked.title}\n{figures(values)}")
-    show_warnings((warning.code, warning.message) for warning in case_cautions(checked))
+    show_warnings((warning.code, warning.message) for warning in (*case_cautions(checked), *told))
     kinds = [assumption.kind for assumption in assumptions(checked)]
     tell(
         f"The case is in order; {kinds.count('assumed')} values are assumed, "

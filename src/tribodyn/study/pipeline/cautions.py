@@ -128,7 +128,12 @@ def _is_stated(case: Case, name: str, key: str) -> bool:
 
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
     """Find a load that no gear stands, and flanks that the film does not keep apart."""
-    return (*_pressure(mesh), *_mixed(mesh), *_relieved(mesh))
+    return (*load_cautions(mesh), *_mixed(mesh))
+
+
+def load_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
+    """The same of the load alone."""
+    return (*_pressure(mesh), *_relieved(mesh))
 
 
 @contextmanager

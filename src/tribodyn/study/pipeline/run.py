@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tribodyn.errors import collected
+from tribodyn.errors import ModelWarning, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.coupling import Follow, coupled
@@ -15,6 +15,7 @@ from tribodyn.study.pipeline.cautions import (
     case_cautions,
     friction_cautions,
     friction_suspected,
+    load_cautions,
     mesh_cautions,
     motion_cautions,
     teeth_cautions,
@@ -69,8 +70,8 @@ def run(
     return result
 
 
-def rehearse(case: Case) -> None:
-    """Refuse what a run would refuse because of the case alone."""
+def rehearse(case: Case) -> tuple[ModelWarning, ...]:
+    """Refuse what a run would refuse because of the case alone; tell what it would of the load."""
     from tribodyn.dynamics.equations.compiled import compile_for
 
     with placed(case), collected():
@@ -78,6 +79,7 @@ def rehearse(case: Case) -> None:
         system = system_of(case, mesh, damping_of(case, mesh))
         steps = steps_of(case, system, mesh.mesh_frequency)
         compile_for(system, mesh.mesh_frequency, steps)
+    return load_cautions(mesh)
 
 
 def computed(
