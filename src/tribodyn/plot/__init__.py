@@ -46,6 +46,7 @@ from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
+from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
 from tribodyn.plot.signals.recorded import (
     comparison,
@@ -71,6 +72,7 @@ __all__ = [
     "coupling",
     "drawing",
     "ease_off",
+    "ensemble",
     "film",
     "film_along_path",
     "film_over_operation",
@@ -124,6 +126,7 @@ __all__ = [
     "speed_sweep",
     "static_stiffness",
     "static_transmission_error",
+    "surrogate",
     "sweep",
     "tip_relief_map",
     "tooth_force",
