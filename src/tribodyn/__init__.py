@@ -8,7 +8,7 @@
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
 ``analysis``, ``measurement``, ``uncertainty``,
-``study``, ``cases``, ``plot`` and ``report``.
+``exchange``, ``study``, ``cases``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -24,18 +24,22 @@ if TYPE_CHECKING:
         Result,
         bifurcation,
         campbell,
+        compare_results,
         comprehensive_stiffness,
+        ensemble,
         film_over_operation,
         friction_experiment,
         harris_map,
         loaded_contact,
         loss_map,
         natural_modes,
+        operating_data,
         optimize_tip_relief,
         rig_power_flow,
         run_up,
         speed_sweep,
         sweep,
+        vibration_data,
     )
 
 __version__ = "0.1.0"
@@ -50,7 +54,9 @@ __all__ = [
     "bifurcation",
     "campbell",
     "cases",
+    "compare_results",
     "comprehensive_stiffness",
+    "ensemble",
     "film_over_operation",
     "friction_experiment",
     "harris_map",
@@ -59,12 +65,14 @@ __all__ = [
     "loaded_contact",
     "loss_map",
     "natural_modes",
+    "operating_data",
     "optimize_tip_relief",
     "rig_power_flow",
     "run",
     "run_up",
     "speed_sweep",
     "sweep",
+    "vibration_data",
 ]
 
 _HOMES = {
@@ -75,7 +83,9 @@ _HOMES = {
     "Result": "study",
     "bifurcation": "study",
     "campbell": "study",
+    "compare_results": "study",
     "comprehensive_stiffness": "study",
+    "ensemble": "study",
     "film_over_operation": "study",
     "friction_experiment": "study",
     "harris_map": "study",
@@ -84,18 +94,20 @@ _HOMES = {
     "loaded_contact": "study",
     "loss_map": "study",
     "natural_modes": "study",
+    "operating_data": "study",
     "optimize_tip_relief": "study",
     "rig_power_flow": "study",
     "run": "cases",
     "run_up": "study",
     "speed_sweep": "study",
     "sweep": "study",
+    "vibration_data": "study",
 }
 
 _ROOMS = (
-    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "friction", "gear", "losses",
-    "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report", "stiffness",
-    "study", "uncertainty", "units",
+    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "exchange", "friction", "gear",
+    "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report",
+    "stiffness", "study", "surrogate", "uncertainty", "units",
 )  # fmt: skip
 
 

@@ -29,7 +29,7 @@ from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import Argument, OutputExistsError
+from tribodyn.errors import Argument, InputError, OutputExistsError
 from tribodyn.files import whole
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.stored import write_dataset
@@ -176,6 +176,28 @@ class Record:
         dims, values, told = variables[self.ARRAY]
         name, told = self._array_name(), {**told, **attributes}
         return xarray.DataArray(values, coordinates, dims, name, told)
+
+    def to_dataframe(self) -> Any:
+        """Return the result as a table with named columns.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row for each value of the dimensions, which are its index.
+
+        Raises
+        ------
+        InputError
+            If the fields stand over different dimensions, so that they make no one table.
+        """
+        data = self.to_xarray()
+        if hasattr(data, "data_vars"):
+            shapes = {variable.dims for variable in data.data_vars.values()}
+            if len(shapes) > 1:
+                told = ", ".join(" x ".join(dims) or "one value" for dims in sorted(shapes))
+                what = f"{type(self).__name__} is no one table: its fields stand over {told}"
+                raise InputError(what, "", "", 'Take .to_xarray()[["name", ...]].to_dataframe()')
+        return data.to_dataframe()
 
     def plot(self, *arguments: Any, **options: Any) -> Any:
         """Draw the result by the figure registered for its class.

@@ -228,6 +228,19 @@ def losses(text: str) -> None:
         assert low <= 0.05 * (1.0 - 5.0 / torque) <= high
 
 
+def learning(text: str) -> None:
+    rows = {line.split(",")[0] + line.split(":")[0].split()[-1]: line for line in text.splitlines()}
+    for name in ("acceleration", "mesh_force"):
+        share, _, off = re.findall(
+            r"R2 ([\d.]+)|0([.]\d+)\)|, ([\d.e-]+) %", rows[f"published{name}"]
+        )
+        assert float(share[0]) >= 0.996
+        assert float(off[2]) < 2.3
+        assert "(table over the phase 0.99" in rows[f"honest{name}"]
+    assert float(re.findall(r"R2 ([\d.]+)", rows["honestmesh_force"])[0]) > 0.99
+    assert figure(text, "steady, 128 points: R2 ") > 0.99
+
+
 def printed_tables(text: str) -> None:
     # a mode beside the fifth harmonic and hardly any damping give its printed growth, 4 % do not
     assert figure(text, "fifth harmonic, constant ", 1) == pytest.approx(61.6, rel=0.05)
@@ -255,6 +268,7 @@ EXPECTED: dict[str, Callable[[str], None]] = {
     "17_mesh_table.py": mesh_table,
     "18_losses.py": losses,
     "19_printed_tables.py": printed_tables,
+    "20_learning.py": learning,
 }
 
 

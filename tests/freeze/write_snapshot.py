@@ -7,6 +7,7 @@ change breaks what users wrote, and belongs into the change log.
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -30,19 +31,22 @@ def write(name: str, data: Any) -> None:
 
 
 def main() -> None:
-    """Write both parts and print what differs from before."""
-    old, old_figures = read("surface"), read("figures")
-    new, new_figures = surface(old.get("pages")), case_figures()
+    """Write the names, with ``--figures`` those of the cases too; print what differs."""
+    old = read("surface")
+    new = surface(old.get("pages"))
     for line in losses(old, new):
         print("-", line)
     for line in losses(new, old):
         print("+", line.replace(": gone", ""))
+    write("surface", new)
+    if "--figures" not in sys.argv:
+        return
+    old_figures, new_figures = read("figures"), case_figures()
     for case, values in old_figures.items():
         for line in differences(
             case, values["summary"], new_figures.get(case, {}).get("summary", {})
         ):
             print("*", line)
-    write("surface", new)
     write("figures", new_figures)
 
 

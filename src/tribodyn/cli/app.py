@@ -67,6 +67,11 @@ COMMANDS = (
         "Judge published claims on one gear pair: friction.",
     ),
     (
+        "surrogate",
+        "surrogate_command:surrogate",
+        "Learn the steady response of a case, and predict it at once.",
+    ),
+    (
         "paper",
         "experiment_command:paper",
         "Lay the printed tables of a source beside what is computed.",
@@ -85,7 +90,7 @@ COMMANDS = (
     (
         "export",
         "exchange_commands:export",
-        "Write a case for other gear programs (REXS).",
+        "Write a case for other gear programs (REXS), or the tables of a result.",
     ),
     (
         "new",

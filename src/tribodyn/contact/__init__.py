@@ -5,8 +5,10 @@
 | `path` | where on the line of action tooth pairs are, and how their flanks move there |
 | `separation` | how far teeth are apart before and after the path of contact |
 | `hertz` | half width and pressure of a line contact |
+| `ellipse` | half axes, pressure and approach of an elliptical contact |
 """
 
+from tribodyn.contact.ellipse import HertzEllipse, hertz_ellipse
 from tribodyn.contact.hertz import HertzLine, effective_modulus, hertz_line
 from tribodyn.contact.path import (
     Kinematics,
@@ -19,6 +21,7 @@ from tribodyn.contact.separation import ExtendedContact, extended_contact
 
 __all__ = [
     "ExtendedContact",
+    "HertzEllipse",
     "HertzLine",
     "Kinematics",
     "PathOfContact",
@@ -26,6 +29,7 @@ __all__ = [
     "equal_share",
     "extended_contact",
     "gear_loss_factor",
+    "hertz_ellipse",
     "hertz_line",
     "path_of_contact",
 ]

@@ -30,6 +30,7 @@ from tribodyn.plot.mesh.table import (
     static_stiffness,
     static_transmission_error,
 )
+from tribodyn.plot.motion.beside import result_comparison
 from tribodyn.plot.motion.courses import (
     acceleration,
     bearing_force,
@@ -44,6 +45,7 @@ from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
+from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
 from tribodyn.plot.signals.recorded import (
     comparison,
@@ -69,6 +71,7 @@ __all__ = [
     "coupling",
     "drawing",
     "ease_off",
+    "ensemble",
     "film",
     "film_along_path",
     "film_over_operation",
@@ -114,6 +117,7 @@ __all__ = [
     "poincare",
     "power_flow",
     "recording",
+    "result_comparison",
     "run_up",
     "run_up_map",
     "spectrogram",
@@ -121,6 +125,7 @@ __all__ = [
     "speed_sweep",
     "static_stiffness",
     "static_transmission_error",
+    "surrogate",
     "sweep",
     "tip_relief_map",
     "tracked_orders",

@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tribodyn.study.beside import ResultComparison, compare_results
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
     from tribodyn.study.pipeline.result import Result
@@ -25,21 +26,32 @@ if TYPE_CHECKING:
     )
     from tribodyn.study.studies.sweep import sweep
     from tribodyn.study.studies.sweep_result import Sweep
+    from tribodyn.study.uncertain.data_set import DataSet, load_data
+    from tribodyn.study.uncertain.ensemble import CaseEnsemble, ensemble
+    from tribodyn.study.uncertain.operating_data import operating_data
+    from tribodyn.study.uncertain.vibration_data import vibration_data
 
 __all__ = [
     "SUMMARY",
     "Case",
+    "CaseEnsemble",
+    "DataSet",
     "Result",
+    "ResultComparison",
     "Sweep",
     "bifurcation",
     "campbell",
+    "compare_results",
     "comprehensive_stiffness",
+    "ensemble",
     "film_over_operation",
     "friction_experiment",
     "harris_map",
+    "load_data",
     "loaded_contact",
     "loss_map",
     "natural_modes",
+    "operating_data",
     "optimize_tip_relief",
     "read_case",
     "rig_power_flow",
@@ -48,12 +60,21 @@ __all__ = [
     "speed_sweep",
     "summary_figure",
     "sweep",
+    "vibration_data",
 ]
 
 _HOMES = {
+    "CaseEnsemble": "uncertain.ensemble",
+    "DataSet": "uncertain.data_set",
+    "ensemble": "uncertain.ensemble",
+    "load_data": "uncertain.data_set",
+    "operating_data": "uncertain.operating_data",
+    "vibration_data": "uncertain.vibration_data",
     "Case": "case.case",
     "bifurcation": "studies.bifurcation",
     "campbell": "studies.modes",
+    "ResultComparison": "beside",
+    "compare_results": "beside",
     "comprehensive_stiffness": "studies.static",
     "film_over_operation": "studies.static",
     "friction_experiment": "studies.friction_experiment",

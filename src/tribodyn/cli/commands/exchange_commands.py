@@ -1,4 +1,4 @@
-"""``tribodyn import`` and ``tribodyn export``: models of other gear programs."""
+"""``tribodyn import`` and ``tribodyn export``: models of other gear programs, and tables."""
 
 from __future__ import annotations
 
@@ -79,33 +79,45 @@ def export(
     case: str,
     /,
     *,
-    rexs: Path,
+    rexs: Path | None = None,
+    tables: Path | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Write a case as a REXS gearbox model for other gear programs.
+    """Write a case as a REXS gearbox model, or all tables and figures of a result.
 
     Parameters
     ----------
     case : str
-        Built-in case or path of a case file.
+        Built-in case, path of a case file, or a directory that tribodyn run wrote.
     rexs : Path
         File to write: .rexs (XML), .rexsj (JSON) or .rexsz (zip).
+    tables : Path
+        Folder to make, with every table and figure of the result as CSV and JSON.
     set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
+        Values of a case to change, for example "operation.torque=120 N*m".
     force : bool
-        Replace an existing file.
+        Replace an existing REXS file.
     json : bool
         Write one JSON object to stdout.
     """
-    from tribodyn.exchange import write_rexs
+    if (rexs is None) == (tables is None):
+        remedy = "Add --rexs FILE for a case, or --tables FOLDER for a result"
+        raise InputError("one thing is exported at a time", "tribodyn export", "", remedy)
+    if rexs is not None:
+        from tribodyn.exchange import write_rexs
 
-    write_rexs(changed_case(case, set_ or []), rexs, force=force)
+        write_rexs(changed_case(case, set_ or []), rexs, force=force)
+    elif tables is not None:
+        from tribodyn.cases.stored_result import load_result
+        from tribodyn.exchange import write_tables
+
+        write_tables(load_result(case), tables)
     if json:
-        say_json({"path": str(rexs)})
+        say_json({"path": str(rexs or tables)})
     else:
-        say(str(rexs))
+        say(str(rexs or tables))
 
 
 def _tell_remarks(model: GearboxModel) -> None:

@@ -1,0 +1,60 @@
+"""Results beside each other: one table of what differs, and overlaid curves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+
+@pytest.fixture(scope="module")
+def results():
+    case = td.load_case("time-varying-friction").replace({"friction.law": "none"})
+    return [td.run(case.replace({"operation.torque": t})) for t in ("20 N*m", "40 N*m")]
+
+
+def test_the_table_holds_what_differs_and_nothing_else(results) -> None:
+    found = td.compare_results(*results, names=("20", "40"))
+    assert found.values == {"operation.torque": (20.0, 40.0)}
+    one, other = (each.summary() for each in results)
+    told = found.to_dataframe()
+    assert list(told.index) == ["20", "40"]
+    # The static force is in proportion to the torque; the geometry does not know of it.
+    assert told["static_mesh_force"]["40"] == pytest.approx(2 * told["static_mesh_force"]["20"])
+    assert "transverse_contact_ratio" not in told
+    for name in told:
+        assert told[name]["20"] == one[name]
+        assert told[name]["40"] == other[name]
+    assert all(one[n] == pytest.approx(other[n], rel=1e-9) for n in one.keys() - found.figures)
+    assert "+100 %" in found._repr_html_()
+    assert "operation.torque" in found._repr_html_()
+
+
+def test_curves_are_those_of_each_result(results) -> None:
+    figure = td.compare_results(*results).plot()
+    drawn = [trace for trace in figure.data if trace.name.startswith("2: ")]
+    alone = results[1].plot_transmission_error().data[0]
+    np.testing.assert_array_equal(drawn[0].y, alone.y)
+    np.testing.assert_array_equal(drawn[1].y, results[1].plot_mesh_force().data[0].y)
+    assert figure.layout.title.text == "What changes: operation.torque"
+
+
+def test_equal_results_differ_in_nothing(results) -> None:
+    found = td.compare_results(results[0], results[0], names="ab")
+    assert not found.values
+    assert not found.figures
+
+
+def test_wrong_input_is_told(results) -> None:
+    with pytest.raises(InputError, match="there are 1 results"):
+        td.compare_results(results[0])
+    with pytest.raises(InputError, match="Wanted: 2 different names"):
+        td.compare_results(*results, names=("a", "a"))
+    with pytest.raises(InputError, match=r"what tribodyn\.run returns"):
+        td.compare_results(results[0], "fzg-report")
+    with pytest.raises(InputError, match="Result is no one table"):
+        results[0].to_dataframe()
