@@ -72,8 +72,10 @@ class PaperComparison(Record):
         """
         for row in self.rows:
             apart = "" if row["deviation"] is None else f"{100.0 * row['deviation']:+.3g}"
+            apart = "0" if row["deviation"] == 0.0 else apart
+            unit = "" if row["unit"] == "1" else row["unit"]
             odd = "" if row["verdict"] == row["expected"] else f" (expected {row['expected']})"
-            yield [row["table"], row["row"], row["unit"], _text(row["printed"]),
+            yield [row["table"], row["row"], unit, _text(row["printed"]),
                    _text(row["computed"]), apart, row["verdict"] + odd]  # fmt: skip
 
     def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:

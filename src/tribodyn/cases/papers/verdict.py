@@ -80,6 +80,8 @@ def _runs_alike(
 def _verdict(row: PrintedRow, computed: float | str | None, alike: bool) -> str:
     if isinstance(computed, str):
         return TREND if computed.partition(":")[0] == row.printed else NEITHER
+    if row.printed == 0 and computed is not None:
+        return VALUE if abs(computed) <= row.level else NEITHER
     apart = deviation(row, computed)
     if apart is not None and abs(apart) <= row.tolerance:
         return VALUE
