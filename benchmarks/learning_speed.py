@@ -21,14 +21,14 @@ from tribodyn.surrogate.training import _Residuals
 FEATURES = ["mesh_stiffness", "friction_coefficient", "backlash_function", "transmission_error"]
 TARGETS = ["acceleration", "mesh_force"]
 #: Evaluations of MINPACK, and epochs of ours.
-STEPS = 60
+STEPS = 10
 
 
 def main(words: Sequence[str] | None = None) -> None:
     """Print seconds of the table, of the training beside MINPACK, and of the predictions."""
     quick = arguments(__doc__, words).quick
     case = load_case("fzg-film").replace({"film.model": "none", "stiffness.model": "analytic"})
-    lanes, rows, count = (4, 20, 1000) if quick else (100, 100, 10**6)
+    lanes, rows, count = (4, 100, 1000) if quick else (100, 100, 10**6)
     with quiet():
         vibration_data(case, seed=1, trajectories=lanes, samples=1)  # what is compiled once
         start = time.perf_counter(), time.process_time()
@@ -66,7 +66,7 @@ def beside_minpack(data: object, steps: int) -> None:
 def told(words: str, count: int | None, start: tuple[float, float]) -> None:
     """Print wall and processor seconds since a start."""
     wall, used = time.perf_counter() - start[0], time.process_time() - start[1]
-    print(f"{count or 0:8d} {words:60} {wall:7.2f} s, of processors {used:7.2f} s")
+    print(f"{count or 0:8d} {words:60} {wall:7.2f} s, of processors {used:7.2f} s", flush=True)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import Argument, InputError, Problem, real_numbers, warn
+from tribodyn.interrupt import in_threads
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.stored import read_dataset
 from tribodyn.surrogate.measures import ErrorMeasures
@@ -116,11 +117,15 @@ class Surrogate(Record):
             self._warn_of_range(rows, beyond)
         span = np.where(high > low, high - low, 1.0)
         parts = np.empty((len(self.targets), len(rows)))
-        for begin in range(0, len(rows), _ROWS):
+
+        def block(begin: int) -> None:
             place = slice(begin, begin + _ROWS)
             scaled = (rows[place] - low) / span
             for number, (network, weights) in enumerate(self.networks):
                 parts[number, place] = network.evaluate(weights, scaled)
+
+        begins = range(0, len(rows), _ROWS)
+        in_threads(block, begins, os.cpu_count() or 1, brief=len(begins) < 2)
         first, last = self.target_range[:, :, None]
         values = first + parts * np.where(last > first, last - first, 1.0)
         return {

@@ -13,7 +13,15 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, InputError, Problem, require_positive, shortened, warn
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    Problem,
+    real_numbers,
+    require_positive,
+    shortened,
+    warn,
+)
 from tribodyn.record import Record
 from tribodyn.types import Array, Index, Mask
 
@@ -77,7 +85,8 @@ class Prepared:
 
 def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
     """Columns of a table by name (rows, columns); missing values are NaN."""
-    if isinstance(names, str) or not len(names) or len(set(names)) != len(names):
+    listed = list(names) if isinstance(names, list | tuple | np.ndarray) else []
+    if not listed or len(set(map(str, listed))) != len(listed):
         what = f"{argument} = {shortened(repr(names))}"
         why = "Wanted: a list of names, each once"
         raise InputError(Problem(what, Argument(argument), why, "Name columns of the data"))
@@ -87,12 +96,12 @@ def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
         raise InputError(Problem(f"a {type(table).__name__}", Argument("data"), why, "Give one"))
     known = {str(key): np.shape(table[key]) for key in table}
     rows = max((shape[0] for shape in known.values() if len(shape) == 1), default=0)
-    for name in names:
+    for name in map(str, listed):
         if name not in known:
             near = difflib.get_close_matches(str(name), known, n=1)
             remedy = f'Did you mean "{near[0]}"?' if near else f"It has {', '.join(known)}"
             raise InputError(Problem(f'no column "{name}"', Argument(argument), "", remedy))
-    return np.stack([_column(table[name], str(name), rows) for name in names], axis=1)
+    return np.stack([_column(table[name], str(name), rows) for name in listed], axis=1)
 
 
 def _column(given: Any, name: str, rows: int) -> Array:
@@ -144,7 +153,7 @@ def split_rows(
     (6, 2, 2)
     """
     count = require_whole("rows", rows)
-    parts = np.asarray(shares, dtype=float)
+    parts = real_numbers(Argument("shares"), shares)
     if parts.shape != (3,) or not np.all(np.isfinite(parts) & (parts > 0.0)):
         why = "Wanted: three positive numbers"
         raise InputError(Problem(f"shares = {shares}", Argument("shares"), why, "Give (8, 1, 1)"))

@@ -74,7 +74,7 @@ class Training:
         if require_number("damping", self.damping) < 0.0:
             what = f"damping = {self.damping:g}"
             raise InputError(Problem(what, Argument("damping"), "", "Give 0 or more"))
-        Network(1, tuple(self.hidden), tuple(self.activations))  # refuses layers that do not fit
+        Network(1, self.hidden, self.activations)  # refuses layers that do not fit
 
 
 #: As the source of BPNN-PL trains: two hidden layers, tansig then ReLU, one start.

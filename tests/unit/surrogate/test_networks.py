@@ -91,7 +91,7 @@ def test_starts_of_nguyen_and_widrow_spread_over_the_inputs():
 
 @pytest.mark.parametrize(
     ("hidden", "activations"),
-    [((), ()), ((3,), ("tansig", "relu")), ((0,), ("tansig",)), ((3,), ("sine",)),
+    [((), ()), (11, "tansig"), ((3,), ("tansig", "relu")), ((0,), ("tansig",)), ((3,), ("sine",)),
      ((200, 200), ("relu", "relu"))],
 )  # fmt: skip
 def test_layers_that_do_not_fit_are_refused(hidden, activations):

@@ -78,6 +78,8 @@ def test_a_constant_feature_is_told():
         ({"x": X, "y": X}, ["x"], {"outlier_limit": 1e-9}, "Widen"),
         ({"x": X, "y": X}, ["x"], {"shares": (1, 0, 1)}, "shares"),
         (3, ["x"], {}, "arrays by name"),
+        ({"x": X, "y": X}, None, {}, "list of names"),
+        ({"x": X, "y": X}, ["x"], {"shares": "8:1:1"}, "real"),
     ],
 )
 def test_what_cannot_be_prepared_is_told(data, features, more, match):
