@@ -24,6 +24,7 @@ SCRIPTS = (
     "losses_speed",
     "fe2d_speed",
     "stiffness_speed",
+    "learning_speed",
     "hypoid_speed",
     "cold_start",
 )

@@ -26,17 +26,20 @@ if TYPE_CHECKING:
         campbell,
         compare_results,
         comprehensive_stiffness,
+        ensemble,
         film_over_operation,
         friction_experiment,
         harris_map,
         loaded_contact,
         loss_map,
         natural_modes,
+        operating_data,
         optimize_tip_relief,
         rig_power_flow,
         run_up,
         speed_sweep,
         sweep,
+        vibration_data,
     )
 
 __version__ = "0.1.0"
@@ -53,6 +56,7 @@ __all__ = [
     "cases",
     "compare_results",
     "comprehensive_stiffness",
+    "ensemble",
     "film_over_operation",
     "friction_experiment",
     "harris_map",
@@ -61,12 +65,14 @@ __all__ = [
     "loaded_contact",
     "loss_map",
     "natural_modes",
+    "operating_data",
     "optimize_tip_relief",
     "rig_power_flow",
     "run",
     "run_up",
     "speed_sweep",
     "sweep",
+    "vibration_data",
 ]
 
 _HOMES = {
@@ -79,6 +85,7 @@ _HOMES = {
     "campbell": "study",
     "compare_results": "study",
     "comprehensive_stiffness": "study",
+    "ensemble": "study",
     "film_over_operation": "study",
     "friction_experiment": "study",
     "harris_map": "study",
@@ -87,18 +94,20 @@ _HOMES = {
     "loaded_contact": "study",
     "loss_map": "study",
     "natural_modes": "study",
+    "operating_data": "study",
     "optimize_tip_relief": "study",
     "rig_power_flow": "study",
     "run": "cases",
     "run_up": "study",
     "speed_sweep": "study",
     "sweep": "study",
+    "vibration_data": "study",
 }
 
 _ROOMS = (
     "analysis", "cases", "contact", "dynamics", "ehl", "errors", "exchange", "friction", "gear",
     "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report",
-    "stiffness", "study", "uncertainty", "units",
+    "stiffness", "study", "surrogate", "uncertainty", "units",
 )  # fmt: skip
 
 

@@ -55,13 +55,15 @@ def test_the_package_itself_is_the_command_line() -> None:
     assert done.stdout.strip() == tribodyn.__version__
 
 
-def test_the_shell_completes_commands(in_new_folder: Path) -> None:
+def test_the_shell_completes_commands(in_new_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(in_new_folder))  # its start file is written to
     script = in_new_folder / "completion"
     words = ["--install-completion", "--shell", "bash", "--output", str(script)]
     assert call(words) == 0
     text = script.read_text(encoding="utf-8")
     assert "bifurcation" in text
     assert "--install-completion" in text
+    assert str(script) in (in_new_folder / ".bashrc").read_text(encoding="utf-8")
 
 
 def test_every_extra_is_used() -> None:

@@ -96,6 +96,7 @@ def test_an_interrupted_comparison_goes_on_from_there(tmp_path: Path) -> None:
     with Members(tmp_path / "there") as members:
         begun = compare_with_paper("fzg-12dof", partial=True, progress=Stopping(2), members=members)
     assert 0 < len(begun.points) < begun.asked
+    assert begun.surprises == ()
     assert 0 < len(begun.rows) < len(printed.printed_rows("fzg-12dof"))
     with Members(tmp_path / "there") as members:
         whole = compare_with_paper("fzg-12dof", members=members)

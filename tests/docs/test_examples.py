@@ -228,11 +228,31 @@ def losses(text: str) -> None:
         assert low <= 0.05 * (1.0 - 5.0 / torque) <= high
 
 
+def learning(text: str) -> None:
+    rows = {line.split(",")[0] + line.split(":")[0].split()[-1]: line for line in text.splitlines()}
+    for name in ("acceleration", "mesh_force"):
+        share, _, off = re.findall(
+            r"R2 ([\d.]+)|0([.]\d+)\)|, ([\d.e-]+) %", rows[f"published{name}"]
+        )
+        assert float(share[0]) >= 0.996
+        assert float(off[2]) < 2.3
+        assert "(table over the phase 0.99" in rows[f"honest{name}"]
+    assert float(re.findall(r"R2 ([\d.]+)", rows["honestmesh_force"])[0]) > 0.99
+    assert figure(text, "steady, 128 points: R2 ") > 0.99
+
+
 def printed_tables(text: str) -> None:
     # a mode beside the fifth harmonic and hardly any damping give its printed growth, 4 % do not
     assert figure(text, "fifth harmonic, constant ", 1) == pytest.approx(61.6, rel=0.05)
     assert abs(figure(text, "fifth harmonic, constant, usual damping", 1)) < 1.0
     assert "Table 1: 8 value" in text
+
+
+def hypoid(text: str) -> None:
+    # figures of another program for this pair: friction, force along the pinion's axis, efficiency
+    assert figure(text, "friction coefficient, mean") == pytest.approx(0.0110, rel=5e-3)
+    assert figure(text, "mean force of the teeth, y") == pytest.approx(14070.0, rel=2e-3)
+    assert figure(text, "efficiency") == pytest.approx(0.9945, abs=6e-4)
 
 
 EXPECTED: dict[str, Callable[[str], None]] = {
@@ -255,6 +275,8 @@ EXPECTED: dict[str, Callable[[str], None]] = {
     "17_mesh_table.py": mesh_table,
     "18_losses.py": losses,
     "19_printed_tables.py": printed_tables,
+    "20_learning.py": learning,
+    "21_hypoid.py": hypoid,
 }
 
 

@@ -19,7 +19,7 @@ PACKAGE = Path(str(files("tribodyn")))
 
 _PARTS = """
 analysis cases cli contact dynamics ehl errors exchange friction gear losses lubricant
-measurement mesh nomenclature plot progress report stiffness study uncertainty units
+measurement mesh nomenclature plot progress report stiffness study surrogate uncertainty units
 """
 
 #: Pages of public names.

@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tribodyn as td
+from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.study.case.provenance import provenance
+from tribodyn.study.coupling import balanced_load
 from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.pipeline.series import measured, mesh_force, one_sided_phase
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _ROUGHNESS = ("0.325 um", "0.53 um", "0.991 um")
 
@@ -108,6 +113,24 @@ def test_peak_force_falls_because_friction_is_outside_of_its_range(studied: list
     smooth, _, rough = _figures(studied, "peak_mesh_force")
     assert rough / smooth - 1.0 == pytest.approx(-0.147, abs=5e-3)
     assert -0.02 < capped.summary()["peak_mesh_force"] / smooth - 1.0 < 0.0
+
+
+def test_the_force_balances_both_held_torques_with_friction(studied: list[Any]) -> None:
+    # No gear gains on the other from cycle to cycle: the force, with its moments of friction,
+    # balances both torques in the mean. From the smoothest flanks to 0.12 it hardly changes.
+    capped = studied[0].case.replace({"friction.law": "constant", "friction.coefficient": 0.12})
+    for result in studied:
+        mesh, fine = result.mesh, measured(result.response)
+        needed = PhaseFunction(mesh.grid, 1.0 / balanced_load(result.case, mesh))
+        over = needed(one_sided_phase(fine)) * mesh_force(fine) / mesh.total_normal_force
+        assert np.sum(fine.weight * over) == pytest.approx(1.0, abs=1e-6)
+    meshes = [(each.case, each.mesh) for each in (studied[0], studied[2])]
+    smooth, rough, usual = (
+        mesh.grid.mean(balanced_load(case, mesh))
+        for case, mesh in (*meshes, (capped, mesh_of(capped)))
+    )
+    assert rough / smooth < 0.9
+    assert 0.98 < usual / smooth < 1.0
 
 
 @pytest.mark.regression

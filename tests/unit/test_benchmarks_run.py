@@ -137,6 +137,7 @@ def test_goals_are_judged(
         ("cold_start", "import tribodyn"),
         ("losses_speed", "loss map"),
         ("friction_speed", "plain formula"),
+        ("learning_speed", "MINPACK"),
     ],
 )
 def test_quick_run_prints_its_table(

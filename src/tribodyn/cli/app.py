@@ -67,6 +67,11 @@ COMMANDS = (
         "Judge published claims on one gear pair: friction.",
     ),
     (
+        "surrogate",
+        "surrogate_command:surrogate",
+        "Learn the steady response of a case, and predict it at once.",
+    ),
+    (
         "paper",
         "experiment_command:paper",
         "Lay the printed tables of a source beside what is computed.",

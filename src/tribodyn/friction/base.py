@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
-from tribodyn.errors import InputError, Problem, require_between, require_positive
+from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened
 from tribodyn.model import Model, Registry
 from tribodyn.types import Array
 
@@ -340,6 +340,13 @@ class FrictionLaw(Model):
         >>> LAWS["constant"].complete({"coefficient": 0.05})
         {'coefficient': 0.05}
         """
+        if not isinstance(options, Mapping):
+            raise InputError(
+                f"options = {shortened(repr(options))}",
+                where=f'friction law "{self.name}"',
+                why="They are names with values",
+                remedy=f"Known here: {', '.join(self.options) or 'none'}",
+            )
         problems = [self._unknown(name) for name in options if name not in self.options]
         complete = {**self.options, **options}
         problems += [

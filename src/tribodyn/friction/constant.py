@@ -81,6 +81,8 @@ def none(shape: tuple[int, ...] = ()) -> Array:
     return np.zeros(shape)[()]
 
 
-@LAWS.define("none", source="no friction", needs_oil=False)
+@LAWS.define(
+    "none", source="the limit of smooth sliding", needs_oil=False, meaning="no friction at all"
+)
 def _none(contact: TribologicalContact) -> Array:
     return none(np.shape(contact.load_per_width))

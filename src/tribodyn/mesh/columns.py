@@ -51,7 +51,8 @@ class MeshColumns(Record):
     corner_share : array (n, 2)
         Part of the total normal force on tip corners that touch before A, and after E.
     static_transmission_error : array (n,) [m]
-        Approach of the gears along the line of action under the quasi-static load.
+        Approach of the gears along the line of action under the quasi-static load, without
+        ``unloaded_transmission_error`` where the table has that.
     mesh_stiffness_tangent : array (n,) [N/m]
         Slope of the force of all pairs over that approach.
     ramp_deflection, ramp_stiffness : array (n, ramps) [m], [N/m]

@@ -120,6 +120,8 @@ _TOLERANCE_TOGETHER = 1e-5
 #: of the distance by which a film that is solved anew would differ, but for rounding.
 _MOVED = 2e-3
 _PASSES = 60
+#: Solutions in which the last change has to halve: else it goes to and fro for ever.
+_HALVED = 15
 #: What is checked between the positions, first and whenever the shares have settled. At last the
 #: stiffness stays as it is, so that an end is reached where a pair is about to lose its load.
 _STAGES = ((STIFFNESS,), ALL, ALL, ALL[:STIFFNESS])
@@ -149,8 +151,10 @@ def in_series(
     tolerance = _TOLERANCE_TOGETHER if teeth.coupled else _TOLERANCE
     share, stages = teeth.shared_load().share, list(_STAGES)
     checked, change = stages.pop(0), 1.0
+    least, since, number = 2.0, 0, 0
     before, step, slope = share, np.zeros(share.shape), np.ones(share.shape)
-    for _ in range(_PASSES):
+    while number < _PASSES and since < _HALVED:
+        number += 1
         film_at = solve(teeth.load_per_width * share, checked)
         enough = _ENOUGH * min(change, 1.0)
         shared = _settle(teeth, film_at, share, where, enough)
@@ -161,12 +165,13 @@ def in_series(
         if settled and PRESSURE in checked:
             return shared, film_at
         checked = stages.pop(0) if settled and stages else ()
+        least, since = (change, 0) if settled or change < 0.5 * least else (least, since + 1)
         if film_at.keeps_distance:
             share = shared.share
             continue
         slope = _secant(share - before, step - earlier, slope, _FALLS_OF_PASSES)
         before, share = share, np.clip(share + step / slope, 0.0, 1.0)
-    raise _unsettled(f"the load share still moves by {change:.2g} after {_PASSES} solutions")
+    raise _unsettled(f"the load share still moves by {change:.2g} after {number} solutions")
 
 
 def _settle(

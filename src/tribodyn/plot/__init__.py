@@ -36,6 +36,7 @@ from tribodyn.plot.motion.courses import (
     bearing_force,
     friction_force,
     mesh_force,
+    tooth_force,
     transmission_error,
 )
 from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
@@ -45,6 +46,7 @@ from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
+from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
 from tribodyn.plot.signals.recorded import (
     comparison,
@@ -70,6 +72,7 @@ __all__ = [
     "coupling",
     "drawing",
     "ease_off",
+    "ensemble",
     "film",
     "film_along_path",
     "film_over_operation",
@@ -123,8 +126,10 @@ __all__ = [
     "speed_sweep",
     "static_stiffness",
     "static_transmission_error",
+    "surrogate",
     "sweep",
     "tip_relief_map",
+    "tooth_force",
     "tracked_orders",
     "transmission_error",
     "waterfall",

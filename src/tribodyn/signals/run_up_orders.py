@@ -14,6 +14,7 @@ from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.angular_resampling import window_values
 from tribodyn.signals.order_map import OrderCut, OrderMap
+from tribodyn.signals.spectrum import mains_of
 from tribodyn.types import Array, Index, Mask
 
 Part = Literal["all", "up", "down"]
@@ -303,10 +304,6 @@ def _cycle_moments(run: RunUp, signal: str) -> tuple[Array, Array, str]:
     return part.mean[:, column], part.rms[:, column] ** 2, unit
 
 
-#: Frequencies of the mains [Hz], and how near a peak has to be.
-_MAINS, _MAINS_NEAR = (50.0, 60.0), 0.02
-
-
 @dataclass(frozen=True)
 class RunUpResonance:
     """A peak of one order over the speed.
@@ -435,7 +432,7 @@ def resonances(
                     natural,
                     top,
                     float(height),
-                    _mains(order * beat),
+                    mains_of(order * beat),
                 )
             )
     return tuple(sorted(found, key=lambda each: -each.amplitude))
@@ -461,11 +458,3 @@ def _mode(modes: NaturalModes | None, frequency: float, near: float) -> tuple[in
     if not np.isfinite(away[number]):
         return -1, float("nan")
     return number, float(natural[number])
-
-
-def _mains(frequency: float) -> float:
-    for mains in _MAINS:
-        for times in (1.0, 2.0):
-            if abs(frequency / (times * mains) - 1.0) <= _MAINS_NEAR:
-                return mains
-    return 0.0

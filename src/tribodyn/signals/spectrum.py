@@ -127,6 +127,19 @@ def _single_sided(length: int) -> Mask:
     return pair
 
 
+#: Frequencies of the mains [Hz], and how near a peak has to be, over its frequency.
+_MAINS, _MAINS_NEAR = (50.0, 60.0), 0.02
+
+
+def mains_of(frequency: float, near: float = _MAINS_NEAR) -> float:
+    """50 or 60 where a frequency is that of the mains or twice it [Hz]; 0 elsewhere."""
+    for mains in _MAINS:
+        for times in (1.0, 2.0):
+            if abs(frequency / (times * mains) - 1.0) <= near:
+                return mains
+    return 0.0
+
+
 @dataclass(frozen=True)
 class Peak:
     """One peak of a spectrum.
@@ -145,9 +158,18 @@ class Peak:
     amplitude: float
     phase: float | None = None
 
+    @property
+    def mains(self) -> float:
+        """50 or 60 where it lies within 0.5 % of the mains or twice them [Hz]; 0 elsewhere.
+
+        Such a peak of a recording may be electrical.
+        """
+        return mains_of(self.frequency, 0.005)
+
     def __repr__(self) -> str:
         """One line."""
-        return f"Peak({self.frequency:.6g} Hz, {self.amplitude:.4g})"
+        mains = f", mains of {self.mains:g} Hz?" if self.mains else ""
+        return f"Peak({self.frequency:.6g} Hz, {self.amplitude:.4g}{mains})"
 
 
 @lru_cache(maxsize=32)

@@ -26,10 +26,16 @@ if TYPE_CHECKING:
     )
     from tribodyn.study.studies.sweep import sweep
     from tribodyn.study.studies.sweep_result import Sweep
+    from tribodyn.study.uncertain.data_set import DataSet, load_data
+    from tribodyn.study.uncertain.ensemble import CaseEnsemble, ensemble
+    from tribodyn.study.uncertain.operating_data import operating_data
+    from tribodyn.study.uncertain.vibration_data import vibration_data
 
 __all__ = [
     "SUMMARY",
     "Case",
+    "CaseEnsemble",
+    "DataSet",
     "Result",
     "ResultComparison",
     "Sweep",
@@ -37,12 +43,15 @@ __all__ = [
     "campbell",
     "compare_results",
     "comprehensive_stiffness",
+    "ensemble",
     "film_over_operation",
     "friction_experiment",
     "harris_map",
+    "load_data",
     "loaded_contact",
     "loss_map",
     "natural_modes",
+    "operating_data",
     "optimize_tip_relief",
     "read_case",
     "rig_power_flow",
@@ -51,9 +60,16 @@ __all__ = [
     "speed_sweep",
     "summary_figure",
     "sweep",
+    "vibration_data",
 ]
 
 _HOMES = {
+    "CaseEnsemble": "uncertain.ensemble",
+    "DataSet": "uncertain.data_set",
+    "ensemble": "uncertain.ensemble",
+    "load_data": "uncertain.data_set",
+    "operating_data": "uncertain.operating_data",
+    "vibration_data": "uncertain.vibration_data",
     "Case": "case.case",
     "bifurcation": "studies.bifurcation",
     "campbell": "studies.modes",

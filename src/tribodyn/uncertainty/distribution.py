@@ -18,7 +18,7 @@ _SPREAD = re.compile(r"(normal|lognormal)?\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+)", re
 _RANGE = re.compile(r"(?:uniform)?\s*(.+?)\s*\.\.\s*(.+)", re.IGNORECASE)
 
 
-def distribution(name: str, text: Any) -> Any:
+def distribution(name: str, text: Any, unit: str | None = None) -> Any:
     """Distribution of a quantity.
 
     Parameters
@@ -33,6 +33,8 @@ def distribution(name: str, text: Any) -> Any:
         ``"0.4 um .. 0.6 um"``: every value between is equally likely; a number or a quantity: that
         value; an array: measured values, in SI, drawn from their empirical distribution with
         straight lines between them.
+    unit : str, optional
+        Unit of the quantity; by default that of the nomenclature.
 
     Returns
     -------
@@ -55,7 +57,7 @@ def distribution(name: str, text: Any) -> Any:
     if isinstance(text, bool) or text is None:
         raise _wrong(name, text)
     if isinstance(text, str):
-        return _from_text(name, text.strip())
+        return _from_text(name, text.strip(), unit)
     try:
         values = np.sort(np.asarray(text, dtype=float).reshape(-1))
     except (TypeError, ValueError, OverflowError):
@@ -65,11 +67,12 @@ def distribution(name: str, text: Any) -> Any:
     return _Data(values)
 
 
-def _from_text(name: str, text: str) -> Any:
+def _from_text(name: str, text: str, unit: str | None) -> Any:
     from scipy import stats
 
-    known = QUANTITIES.get(name.rpartition(".")[2])
-    unit = known.unit if known is not None else ""
+    if unit is None:
+        known = QUANTITIES.get(name.rpartition(".")[2])
+        unit = known.unit if known is not None else ""
     kind = text.lower().split()[0] if text else ""
     try:
         if match := _SPREAD.fullmatch(text):

@@ -137,3 +137,14 @@ def test_refusals_of_zoom_and_peaks():
         spectrum(wave(50.0), RATE, scaling="density").peaks()
     assert "(m)^2" in repr(spectrum(wave(50.0), RATE, scaling="power", unit="m"))
     assert spectrum(wave(50.0), RATE, unit="m").to_xarray().attrs["units"] == "m"
+
+
+def test_lines_of_the_mains_are_flagged_in_a_recording():
+    """Sines of the mains stand between lines of the spectrum; a mesh line beside them is none."""
+    rate = 4096.0
+    time = np.arange(8192) / rate
+    parts = {50.1: 0.5, 119.8: 0.4, 53.7: 0.3, 240.0: 1.0}
+    signal = sum(size * np.sin(2.0 * np.pi * f * time) for f, size in parts.items())
+    found = {round(peak.frequency, 1): peak for peak in spectrum(signal, rate).peaks(4)}
+    assert {f: found[f].mains for f in parts} == {50.1: 50.0, 119.8: 60.0, 53.7: 0.0, 240.0: 0.0}
+    assert "mains of 50 Hz?" in repr(found[50.1])

@@ -144,6 +144,19 @@ def test_lines_end_on_the_flanks_and_are_found_again():
     assert high - 0.004 < touched.max() <= high
 
 
+def test_the_shortest_lines_are_found():
+    # At both ends of the contact lines shrink to a point; those of a hundredth of a millimetre too.
+    for flanks in (_eased(), _eased(side="coast", hand_pinion="right")):
+        lines = ContactLines(flanks.conjugate)
+        low, high = lines.span()
+        inner = np.array([1e-5, 1e-4, 1e-3]) * (high - low)
+        ends, there = lines.ends(np.concatenate([low + inner, high - inner]))
+        assert there.all()
+        lengths = np.ptp(ends, axis=1).reshape(2, 3)
+        assert np.all(np.diff(lengths, axis=1) > 0.0)
+        assert lengths[:, 0].max() < 5e-5
+
+
 def test_lines_have_the_curvature_of_the_ease_off_across_their_ends():
     flanks = _eased()
     contact = tooth_contact(flanks, marking_thickness=1e-6, rotations_per_pitch=6, cells=401)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from known_hypoids import eased, h1043, random_blanks
+from tribodyn.dynamics import spur6, torsional
 from tribodyn.ehl import hamrock_dowson_minimum
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
@@ -154,12 +155,30 @@ def test_the_table_holds_what_was_computed(loaded, tmp_path):
         assert np.array_equal(getattr(read, name), getattr(table, name))
 
 
+def test_structures_in_a_plane_take_the_rotations_or_refuse(loaded):
+    mesh = rubbed(loaded).table().functions()
+    given = {"moment_of_inertia": (0.01, 0.9), "base_radius": (1.0, 1.0), "torque": (500.0, 2150.0)}
+    contact = torsional(mesh, **given).contacts[0]
+    phase = loaded.phase[:-1]
+    levers = np.stack([loaded.pinion_direction[:-1, 4], -loaded.wheel_direction[:-1, 4]], axis=1)
+    assert contact.direction(phase) == pytest.approx(levers, rel=1e-12)
+    moments = contact.friction(phase)
+    assert moments == pytest.approx(mesh.friction(phase)[:, [4, 10]], rel=1e-12)
+    # At rest under the load without friction the compression is that of the loaded contact.
+    force = 500.0 / levers[:, 0]
+    deflection = force / contact.stiffness(phase) + contact.error(phase)
+    assert deflection == pytest.approx(loaded.loaded_transmission_error[:-1], rel=1e-9)
+    with pytest.raises(InputError, match="in space"):
+        spur6(mesh, mass=1.0, bearing_stiffness=1e9, **given)
+
+
 def test_wrong_arguments_are_refused(loaded):
     given = {"loaded": loaded, "pinion_speed": SPEED, "lubricant": OIL, "composite_roughness": 0.0}
     for change in (
         {"loaded": h1043()}, {"pinion_speed": 0.0}, {"pinion_speed": "3000 rpm"},
         {"lubricant": 0.01}, {"composite_roughness": 0.4}, {"composite_roughness": -1e-7},
-        {"friction_law": "glue"}, {"friction_options": {"slope": 1.0}}, {"film_model": "newton"},
+        {"friction_law": "glue"}, {"friction_options": {"slope": 1.0}}, {"friction_options": 0.1},
+        {"film_model": "newton"},
         {"film_model": "none"}, {"entrainment": "moving"}, {"friction_law": "ehl"},
         {"friction_law": "niemann"},
     ):  # fmt: skip

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from tribodyn.cases.papers.printed import PrintedRow, papers, printed_rows
-from tribodyn.cases.papers.verdict import deviation, verdicts
+from tribodyn.cases.papers.verdict import deviation, series_of, verdicts
 from tribodyn.drawing import write_report_of
 from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
@@ -72,8 +72,10 @@ class PaperComparison(Record):
         """
         for row in self.rows:
             apart = "" if row["deviation"] is None else f"{100.0 * row['deviation']:+.3g}"
+            apart = "0" if row["deviation"] == 0.0 else apart
+            unit = "" if row["unit"] == "1" else row["unit"]
             odd = "" if row["verdict"] == row["expected"] else f" (expected {row['expected']})"
-            yield [row["table"], row["row"], row["unit"], _text(row["printed"]),
+            yield [row["table"], row["row"], unit, _text(row["printed"]),
                    _text(row["computed"]), apart, row["verdict"] + odd]  # fmt: skip
 
     def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:
@@ -170,7 +172,9 @@ def compare_with_paper(
             "case": "", "over": sorted(jobs.names.values())}  # fmt: skip
     kept = (Members() if members is None else members).begin(told)
     found = jobs.done(kept, partial, progress)
-    done = [row for row in rows if all(jobs.names[each] in found for each in asked_by(row))]
+    lacking = [row for row in rows if any(jobs.names[each] not in found for each in asked_by(row))]
+    broken = {series_of(row) for row in lacking if row.series}
+    done = [row for row in rows if row not in lacking and series_of(row) not in broken]
     values = [value_of(row, jobs, found) for row in done]
     return PaperComparison(
         chosen, tuple(_rows(done, values)), tuple(found), len(set(jobs.names.values()))

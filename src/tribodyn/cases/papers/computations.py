@@ -51,7 +51,7 @@ class Meshes:
         """Mesh table of a case."""
         from tribodyn.mesh.build import loaded_mesh
 
-        if case.mesh_table is not None:
+        if case.gears.kind != "spur":
             return mesh_of(case)
         key = loads_of(case)
         if key not in self._loaded:
@@ -64,40 +64,55 @@ class Meshes:
 
 @COMPUTATIONS.register("check")
 def _check(case: Case, meshes: Meshes) -> Figures:
-    """Numbers of the case itself, its geometry, and solid bodies of the same gears."""
-    from tribodyn.contact import effective_modulus
-
-    pair, steel = case.gear_pair, case.material_properties
-    numbers = {key: float(v) for key, v in case.values()
+    """Numbers of the case itself, its geometry, operating point and oil; bodies of spur gears."""
+    known = dict(case.values())
+    numbers = {key: float(v) for key, v in known.items()
                if isinstance(v, int | float) and not isinstance(v, bool)}  # fmt: skip
-    bodies = {f"gears.{gear}.{key}": None for gear in _GEARS
-              for key in ("mass", "moment_of_inertia")}  # fmt: skip
-    solid = geometry(case.replace(bodies))
     oil = operating_figures(case)
     if "oil_viscosity" in oil:
         oil["oil_kinematic_viscosity"] = oil["oil_viscosity"] / oil["oil_density"]
-    path = pair.pinion.base_radius * math.tan(pair.operating_pressure_angle)
-    curvature = path * path * case.gear_ratio / (path + path * case.gear_ratio)
-    return {
-        **numbers,
-        **geometry(case),
-        **oil,
-        **{f"solid_{name}": solid[name] for name in solid if name.startswith(("mass", "moment"))},
-        "effective_modulus": effective_modulus(steel, steel),
-        "equivalent_radius_pitch_point": curvature,
+    turning = {
         "pinion_torque": case.pinion_torque,
         "wheel_torque": case.pinion_torque * case.gear_ratio,
         "pinion_speed": case.pinion_speed,
         "wheel_speed": case.pinion_speed / case.gear_ratio,
-        "mesh_frequency": case.pinion_speed * pair.pinion.teeth / (2.0 * math.pi),
+        "mesh_frequency": case.pinion_speed * case.gears.pinion.teeth / (2.0 * math.pi),
+    }
+    spur = _spur_pair(case) if case.gears.kind == "spur" else {}
+    return {**numbers, **geometry(case), **oil, **turning, **spur}
+
+
+def _spur_pair(case: Case) -> dict[str, float]:
+    """Solid bodies of the same gears, and their contact at the pitch point."""
+    from tribodyn.contact import effective_modulus
+
+    pair, steel = case.gear_pair, case.material_properties
+    bodies = {f"gears.{gear}.{key}": None for gear in _GEARS
+              for key in ("mass", "moment_of_inertia")}  # fmt: skip
+    solid = geometry(case.replace(bodies))
+    path = pair.pinion.base_radius * math.tan(pair.operating_pressure_angle)
+    return {
+        **{f"solid_{name}": solid[name] for name in solid if name.startswith(("mass", "moment"))},
+        "effective_modulus": effective_modulus(steel, steel),
+        "equivalent_radius_pitch_point": path * case.gear_ratio / (1.0 + case.gear_ratio),
     }
 
 
 @COMPUTATIONS.register("mesh")
 def _mesh(case: Case, meshes: Meshes) -> Figures:
-    """Friction at five places of the path: ends, single contact, recess, pitch point."""
+    """Friction: mean, change over a mesh cycle, and at five places of the path of spur gears."""
     with placed(case), collected():
         mesh = meshes.table(case)
+    sums = np.abs(mesh.friction_sum)
+    figures = {
+        "mean_friction_coefficient": mesh.mean_friction_coefficient,
+        "friction_variation": float(np.ptp(sums) / sums.mean()) if sums.any() else math.nan,
+    }
+    return figures | (_friction_places(case, mesh) if case.gears.kind == "spur" else {})
+
+
+def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
+    """Friction at both ends, in single contact, in the recess, at the pitch point."""
     ratio = case.gear_pair.transverse_contact_ratio
     ages = {"start": _INSIDE, "single": 0.5 * ratio, "double": 0.5 * (1.0 + ratio),
             "end": ratio - _INSIDE}  # fmt: skip
@@ -106,11 +121,8 @@ def _mesh(case: Case, meshes: Meshes) -> Figures:
         for place, age in ages.items()
     }
     at_pitch_point = mesh.at_pitch_point("friction_coefficient")
-    return {
-        **friction,
-        "friction_pitch_point": math.nan if at_pitch_point is None else at_pitch_point,
-        "mean_friction_coefficient": mesh.mean_friction_coefficient,
-    }
+    friction["friction_pitch_point"] = math.nan if at_pitch_point is None else at_pitch_point
+    return friction
 
 
 @COMPUTATIONS.register("run")

@@ -53,13 +53,15 @@ def verdicts(
     rows: Sequence[PrintedRow], computed: Sequence[float | str | None]
 ) -> list[str]:  # fmt: skip
     """Verdict of every row: its value, or the course of its series, or neither."""
-    runs = {name: _runs_alike(rows, computed, name) for name in {_series(row) for row in rows}}
+    runs = {name: _runs_alike(rows, computed, name) for name in {series_of(row) for row in rows}}
     return [
-        _verdict(row, value, runs[_series(row)]) for row, value in zip(rows, computed, strict=True)
+        _verdict(row, value, runs[series_of(row)])
+        for row, value in zip(rows, computed, strict=True)
     ]
 
 
-def _series(row: PrintedRow) -> tuple[str, str, str]:
+def series_of(row: PrintedRow) -> tuple[str, str, str]:
+    """Which rows have to run alike; without a name none."""
     return row.paper, row.table, row.series
 
 
@@ -69,7 +71,7 @@ def _runs_alike(
     if not name[2]:
         return False
     pairs = [(row, value) for row, value in zip(rows, computed, strict=True)
-             if _series(row) == name]  # fmt: skip
+             if series_of(row) == name]  # fmt: skip
     found = [value for _, value in pairs if isinstance(value, float)]
     printed = [row.printed for row, _ in pairs if isinstance(row.printed, int | float)]
     level = pairs[0][0].level
@@ -80,6 +82,8 @@ def _runs_alike(
 def _verdict(row: PrintedRow, computed: float | str | None, alike: bool) -> str:
     if isinstance(computed, str):
         return TREND if computed.partition(":")[0] == row.printed else NEITHER
+    if row.printed == 0 and computed is not None:
+        return VALUE if abs(computed) <= row.level else NEITHER
     apart = deviation(row, computed)
     if apart is not None and abs(apart) <= row.tolerance:
         return VALUE

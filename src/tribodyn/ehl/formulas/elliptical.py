@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
-from tribodyn.errors import require_between
+from tribodyn.errors import Argument, real_numbers, require_between
 from tribodyn.types import Array
 
 
@@ -69,7 +69,7 @@ def hamrock_dowson_minimum(
         pressure_viscosity_coefficient=pressure_viscosity_coefficient,
         effective_modulus=effective_modulus,
     )
-    side = np.asarray(side_radius, dtype=float)
+    side = real_numbers(Argument("side_radius"), side_radius)
     require_between("side_radius", np.minimum(side, 1e9), 1e-12, 1e9, "m")
     ellipticity = 1.03 * (side / radius) ** 0.64
     moving = (viscosity * speed / (modulus * radius)) ** 0.68

@@ -143,10 +143,10 @@ class ContactLines:
         samples = np.linspace(reach.min() - spread, reach.max() + spread, _SAMPLES)
         station = np.tile(samples, (len(rotation), 1))
         room = self.room(rotation[:, None], station)
-        if np.any(short := ~np.any(room > 0.0, axis=1)):
-            # A line shorter than the distance of two samples lies beside that with the most room.
-            middle = samples[np.argmax(room[short], axis=1)]
-            step = samples[1] - samples[0]
+        # A line shorter than the distance of two samples lies beside that with the most room.
+        for step in (samples[1] - samples[0]) * np.array([1.0, 2.0 / _SAMPLES]):
+            short = ~np.any(room > 0.0, axis=1)
+            middle = station[short, np.argmax(room[short], axis=1)]
             station[short] = middle[:, None] + np.linspace(-step, step, _SAMPLES)
             room[short] = self.room(rotation[short, None], station[short])
         inside = room > 0.0

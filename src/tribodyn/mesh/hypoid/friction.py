@@ -219,6 +219,7 @@ def hypoid_friction(
     roughness = require_number("composite_roughness", composite_roughness)
     require_between("composite_roughness", roughness, 0.0, 1e-4, "m", remedy="0.4 um is 0.4e-6")
     chosen = require_one_of("entrainment", entrainment, ENTRAINMENTS)
+    film_model = require_one_of("film_model", film_model, (ELLIPTICAL, *_formulas()))
     cells, law = loaded.cells, LAWS[friction_law]
     motion = cell_motion(cells.flanks.conjugate, cells.touch, cells.curvature, speed, chosen)
 
@@ -305,7 +306,6 @@ def _film(
             oil.pressure_viscosity_coefficient,
             modulus,
         )
-    require_one_of("film_model", model, (ELLIPTICAL, *_formulas()))
     load = (loaded.line_force / cells.length)[carry]
     films = FILM_MODELS[model].films(load, radius, speed, oil, modulus)
     return np.asarray(films.central_film if films.minimum_film is None else films.minimum_film)

@@ -3,6 +3,7 @@
 ============  ===============================================================
 module        what it draws
 ============  ===============================================================
+``learned``   spread motions with bands, learned over computed values
 ``maps``      spectrogram, order map, spectra one behind the other
 ``recorded``  channels of a recording, its orders, orders through time
 ``run_up``    level and mesh orders over the speed, amplitudes over frequency

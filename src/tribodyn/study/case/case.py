@@ -37,6 +37,7 @@ from tribodyn.study.case.sections import (
     Solver,
     Stiffness,
 )
+from tribodyn.study.case.spread import without_spread
 from tribodyn.study.case.values import Plain, as_meant, as_typed, read_fields
 
 if TYPE_CHECKING:
@@ -99,7 +100,8 @@ class Case(Section, whole=True):
         if found:
             raise InputError((source or Source()).place(found))
         data, misspelt, meant = as_meant(data)
-        given = Given(data if source is not None else plain(data))
+        middles, self._spread, spread_faults = without_spread(data)
+        given = Given(middles if source is not None else plain(middles))
         source = source or Source()
         stated, found = read_stated(given)
         body = without_records(given.data)
@@ -108,6 +110,7 @@ class Case(Section, whole=True):
         vars(self).update(read_fields(type(self), body, "", chosen, found))
         found = [fault for fault in found if is_needed(fault[0], given.get("gears.kind"))]
         found += [*misspelt, *reason_faults(marks)]
+        found = [fault for fault in found if fault[0] not in dict(spread_faults)] + spread_faults
         readable = not any(key.startswith("gears") for key, _ in found)
         found += cross_problems(given, chosen, {key for key, _ in found})
         if not found:
@@ -156,7 +159,8 @@ class Case(Section, whole=True):
         """
         ready = changes if by else {key: Plain(value) for key, value in changes.items()}
         gone = left_behind(self._given, ready, self._chosen_by(ready))
-        data = self._given.merged({**dict.fromkeys(gone), **ready})
+        spread = {key: text for key, text in self._spread.items() if key not in gone}
+        data = self._given.merged({**spread, **dict.fromkeys(gone), **ready})
         if "assumed" in data:
             kept = {k: w for k, w in data["assumed"].items() if k not in changes and k not in gone}
             data["assumed"] = kept
@@ -183,6 +187,11 @@ class Case(Section, whole=True):
     @cached_property
     def _effective(self) -> dict[str, Any]:
         return effective_values(self)
+
+    @property
+    def uncertain(self) -> dict[str, str]:
+        """Values that are known within bounds, as they were written, by dotted key."""
+        return dict(self._spread)
 
     @property
     def assumed(self) -> dict[str, str]:
@@ -327,7 +336,8 @@ class Case(Section, whole=True):
         """Cases are equal when all values and what is known of their origin are."""
         if not isinstance(other, Case):
             return NotImplemented
-        return self._effective == other._effective and provenance(self) == provenance(other)
+        same = self._effective == other._effective and self._spread == other._spread
+        return same and provenance(self) == provenance(other)
 
     def __hash__(self) -> int:
         """Hash of all values in force."""

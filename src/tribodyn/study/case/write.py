@@ -105,6 +105,9 @@ def case_toml(case: Case) -> str:
             lines += ["", f"[{place}]  # {_table_meaning(case, place)}" if section else ""]
         own = _owners(case, key)
         lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key), own))
+        if key in case.uncertain:
+            text = json.dumps(case.uncertain[key], ensure_ascii=False)
+            lines[-1] = f"{name} = {text}  # {_comment(spec, 'known within bounds')}"
         if key == "origin" and value is not None and changed:
             lines[-1] += f"; {len(changed)} of the values have changed since: see [based_on]"
     for name, why in (

@@ -15,7 +15,7 @@ from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.axes import Axis, ends_of
-from tribodyn.study.studies.grid import identity, varied
+from tribodyn.study.studies.grid import contact_without_speed, identity, varied
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ def _systems(
     case: Case, over: str, values: Any, steps: int | None, progress: Progress, kept: Members
 ) -> tuple[list[System], list[float], list[int]]:
     """Structure, mesh frequency and steps of every value; one structure where none differs."""
-    same = over == "operation.speed" and _contact_without_speed(case)
+    same = over == "operation.speed" and contact_without_speed(case)
     changes = [{over: float(value)} for value in values]
     with placed(case), collected():
         members = varied(case, changes[:1] if same else changes, progress, kept)
@@ -126,11 +126,6 @@ def _systems(
     if same and max(counts) <= _ALIKE * min(counts):
         counts = [max(counts)] * len(counts)
     return systems, frequency, counts
-
-
-def _contact_without_speed(case: Case) -> bool:
-    """Whether nothing in the tooth contact depends on how fast the gears turn."""
-    return case.film.model == "none" and case.friction.law in ("none", "constant")
 
 
 def _steps(case: Case, system: System, mesh_frequency: float) -> int:

@@ -30,7 +30,9 @@ def friction_laws(case: Case) -> list[dict[str, Any]]:
                 coefficients = [round(float(value), 6) for value in law(contact)]
                 inside = not warnings
             except InputError as error:
-                missing = "; ".join(problem.what for problem in error.problems)
+                solved = 'needs a solved film: film.model = "newton"'
+                told = "; ".join(problem.what for problem in error.problems)
+                missing = solved if law.needs_film else told
         rows.append(
             {
                 "law": name,

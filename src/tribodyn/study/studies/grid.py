@@ -33,6 +33,11 @@ class Member(NamedTuple):
     system: System
 
 
+def contact_without_speed(case: Case) -> bool:
+    """Whether nothing in the tooth contact depends on how fast the gears turn."""
+    return case.film.model == "none" and case.friction.law in ("none", "constant")
+
+
 def built(case: Case) -> Member:
     """Tooth contact and structure of a case."""
     mesh = mesh_of(case)

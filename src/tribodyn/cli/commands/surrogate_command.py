@@ -1,0 +1,155 @@
+"""``tribodyn surrogate``."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from tribodyn.cli.commands.study_commands import Flag, Output, Words
+from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.settings import changed_case, read_changes
+from tribodyn.errors import InputError, OutputExistsError, Problem, collected
+
+if TYPE_CHECKING:
+    from tribodyn.surrogate import Surrogate
+
+
+def surrogate(
+    action: Literal["train", "predict"],
+    source: str,
+    /,
+    *values: str,
+    size: int = 256,
+    seed: int = 1,
+    out: Output = None,
+    set_: Words = None,
+    json: Flag = False,
+) -> None:
+    """Learn the steady response of a case from computed operating points, or predict with it.
+
+    Parameters
+    ----------
+    action : str
+        train computes operating points of a case and learns from them; predict asks a model.
+    source : str
+        Of train a built-in case or path of a case file; of predict the file of a model.
+    values : str
+        Of train ranges, such as "operation.speed=400 rpm .. 3000 rpm"; by default torque, speed,
+        friction, stiffness and roughness from 0.7 to 1.3 times those of the case. Of predict
+        values, such as "operation.speed=1400 rpm".
+    size : int
+        Operating points that are computed, best a power of two.
+    seed : int
+        The same seed gives the same model.
+    out : Path
+        File of the model; by default that of the case with "-surrogate.nc".
+    set_ : list of str
+        Values of the case to change, for example "friction.law=xu-2007".
+    json : bool
+        Write errors or predictions in SI as one JSON object to stdout.
+    """
+    if action == "predict":
+        _predict(source, values, json)
+    else:
+        _train(source, values, (size, seed), (out, set_ or []), json)
+
+
+def _train(
+    source: str, values: tuple[str, ...], draw: tuple[int, int],
+    places: tuple[Path | None, list[str]], json: bool,
+) -> None:  # fmt: skip
+    from tribodyn.cli.bar import progress_bar
+    from tribodyn.study.uncertain.operating_data import RESPONSE, operating_data
+    from tribodyn.surrogate import Training, train
+
+    (size, seed), (out, settings) = draw, places
+    path = out if out is not None else Path(f"{Path(source).stem}-surrogate.nc")
+    if path.exists():
+        what, why = f"{path} exists already", "An existing file is never overwritten"
+        raise OutputExistsError(what, "--out", why, "Choose another name")
+    over = {key: str(value) for key, value in read_changes(values).items()} or None
+    case = changed_case(source, settings)
+    with collected() as told, progress_bar() as progress:
+        data = operating_data(case, over, size, seed=seed, progress=progress)
+        inputs = [name for name in data.columns if name not in RESPONSE]
+        varied = [name for name in RESPONSE if np.ptp(data[name]) > 1e-9 * abs(data[name]).max()]
+        shares = Training(shares=(7.0, 1.0, 2.0))
+        model = train(data, features=inputs, targets=varied, seed=seed, training=shares,
+                      progress=progress)  # fmt: skip
+    show_warnings((warning.code, warning.message) for warning in told)
+    model.save(path)
+    if json:
+        facts = {name: {**vars(each), "band": _finite(float(half)), "unit": str(unit)}
+                 for (name, each), half, unit in zip(
+                     model.errors.items(), model.band, model.target_unit, strict=True)}  # fmt: skip
+        say_json({"model": str(path), "features": inputs, "level": model.level, "errors": facts})
+    else:
+        say("\n".join([case.title, *_told(model)]))
+    tell(f"Model: {path}")
+
+
+def _told(model: Surrogate) -> list[str]:
+    """Errors over the held-out points, one line for each target."""
+    head = ["target", "R^2", "mean relative error", "largest error", f"{model.level:.0%} band"]
+    rows = [
+        [name, f"{each.determination:.5f}", f"{100.0 * each.mean_absolute_relative:.3g} %",
+         f"{each.largest:.3g} {_unit(unit)}", f"+- {half:.3g} {_unit(unit)}"]
+        for (name, each), half, unit in zip(
+            model.errors.items(), model.band, model.target_unit, strict=True)
+    ]  # fmt: skip
+    count = model.true.shape[1]
+    return [f"Learned from {model.training_rows} operating points, errors over {count} others.",
+            table([head, *rows])]  # fmt: skip
+
+
+def _unit(text: str) -> str:
+    """Unit as it is read; none for a pure number."""
+    return "" if text == "1" else str(text)
+
+
+def _finite(value: float) -> float | None:
+    """None for the end of a band that too few held-out points leave open."""
+    return value if math.isfinite(value) else None
+
+
+def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
+    from tribodyn.surrogate import load
+
+    model = load(source)
+    inputs = _inputs(model, read_changes(values))
+    with collected() as told:
+        answers, bands = model.predict(inputs), model.predict_band(inputs)
+    show_warnings((warning.code, warning.message) for warning in told)
+    rows, facts = [["target", "prediction", f"{model.level:.0%} band"]], {}
+    for name, unit in zip(model.targets, model.target_unit, strict=True):
+        value, (low, high) = float(answers[name]), map(float, bands[name])
+        rows.append(
+            [str(name), f"{value:.6g} {_unit(unit)}", f"{low:.6g} to {high:.6g} {_unit(unit)}"]
+        )
+        facts[str(name)] = {
+            "value": value, "low": _finite(low), "high": _finite(high), "unit": str(unit),
+        }  # fmt: skip
+    say_json(facts) if json else say(table(rows))
+
+
+def _inputs(model: Surrogate, given: dict[str, Any]) -> dict[str, float]:
+    """Values of the features in SI."""
+    from tribodyn.units import UnitProblemError, parse
+
+    units = dict(zip(map(str, model.features), map(str, model.feature_unit), strict=True))
+    problems = [Problem(f"{name} is no input of this model", name, f"It has {', '.join(units)}")
+                for name in given if name not in units]  # fmt: skip
+    problems += [Problem(f"{name} is missing", name, "", f'Write "{name}=VALUE {unit}"'.strip())
+                 for name, unit in units.items() if name not in given]  # fmt: skip
+    inputs = {}
+    for name, value in given.items():
+        try:
+            inputs[name] = parse(str(value), units.get(name, "1").removeprefix("1"))
+        except UnitProblemError as error:
+            problems.append(Problem(str(error), name, "", "Give a number with its unit"))
+    if problems:
+        raise InputError(problems)
+    return inputs

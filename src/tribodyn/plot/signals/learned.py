@@ -1,0 +1,123 @@
+"""What spread inputs do to a motion, and how far a learned model is off."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.look.labels import readable, scaled, significant
+from tribodyn.plot.look.panels import Panel, Row, stack_rows
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.study import CaseEnsemble
+    from tribodyn.surrogate import Surrogate
+
+_COLORS = (PINION, WHEEL, *PAIR_COLORS)
+#: Most points of one target, harmonics of the spectrum, and the share of the variants between ends.
+_POINTS, _HARMONICS, _SHARE = 2000, 12, 0.95
+_LIGHT, _DARK = "rgba(0, 114, 178, 0.16)", "rgba(0, 114, 178, 0.45)"
+
+
+def _area(x: Array, low: Array, high: Array, name: str, color: str) -> list[Trace]:
+    """The surface between two curves."""
+    edge = {"mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "type": "scatter", "x": x}
+    return [
+        {**edge, "y": low, "showlegend": False},
+        {**edge, "y": high, "fill": "tonexty", "fillcolor": color, "name": name},
+    ]
+
+
+def _curve(result: CaseEnsemble, signal: str, x: Array) -> tuple[list[Trace], str]:
+    """Mean over the variants, its confidence band, and where most of the variants lie."""
+    band, spread = result.band(signal), result.spread(signal, _SHARE)
+    factor, unit = scaled(band.mean, band.unit)
+    traces = [
+        *_area(x, factor * spread[0], factor * spread[1], f"{_SHARE:.0%} of the variants", _LIGHT),
+        *_area(x, factor * band.low, factor * band.high, f"{band.level:.0%} band of the mean",
+               _DARK),
+        line(x, factor * band.mean, "mean", TOTAL, unit=unit),
+    ]  # fmt: skip
+    return traces, unit
+
+
+def _lines(result: CaseEnsemble) -> tuple[list[Trace], str]:
+    """Mesh harmonics with both bands as bars."""
+    band = result.band("mesh_force", harmonics=_HARMONICS)
+    spread = result.spread("mesh_force", _SHARE, _HARMONICS)
+    factor, unit = scaled(band.mean, band.unit)
+    order, traces = np.arange(1, _HARMONICS + 1), []
+    for low, high, name, color, width in (
+        (*spread, f"{_SHARE:.0%} of the variants", MUTED, 8),
+        (band.low, band.high, f"{band.level:.0%} band of the mean", PINION, 4),
+    ):
+        points = marked(order, factor * band.mean, name, color, size=6, symbol="circle", unit=unit)
+        bars = {"array": factor * (high - band.mean), "arrayminus": factor * (band.mean - low)}
+        points["error_y"] = {"type": "data", "width": width, "color": color, **bars}
+        traces.append(points)
+    return traces, unit
+
+
+@drawing(
+    "ensemble",
+    heading="Spread of the motion",
+    caption="What the inputs that are known within bounds do: the light surface holds most of the "
+    "variants, the dark one the mean of all that could be drawn. Over the time of a mesh cycle, "
+    "over its phase, and by mesh harmonics.",
+    of="CaseEnsemble",
+    made_by="Call tribodyn.ensemble(case, {...}, seed=1) and its plot method.",
+)
+def ensemble(result: CaseEnsemble) -> Any:
+    """Draw force over time, transmission error over the phase, and the spectrum, with bands."""
+    time = 1e3 * result.phase / float(np.mean(result.mesh_frequency))
+    force, newton = _curve(result, "mesh_force", time)
+    error, metre = _curve(result, "dynamic_transmission_error", result.phase)
+    lines, unit = _lines(result)
+    peak = result.mesh_force.max(axis=1)
+    rows = [
+        Row("Time [ms]", Panel(f"Mesh force [{newton}]", force)),
+        Row("Mesh phase", Panel(f"Transmission error [{metre}]", error)),
+        Row("Mesh harmonic", Panel(f"Amplitude of the force [{unit}]", lines)),
+    ]
+    low, high = np.quantile(peak, (0.5 - 0.5 * _SHARE, 0.5 + 0.5 * _SHARE))
+    title = (
+        f"{_SHARE:.0%} of {peak.size} variants peak between {significant(float(low))} and "
+        f"{significant(float(high))} N"
+    )
+    return stack_rows(title, rows)
+
+
+@drawing(
+    "surrogate",
+    heading="Learned and computed",
+    caption="Rows that the training has not seen: what the model says over what was computed. "
+    "Points on the line are exact; between the dotted lines lies a new one with the stated "
+    "probability.",
+    of="Surrogate",
+    made_by="Call tribodyn.surrogate.train(data, ...) and its plot method.",
+)
+def surrogate(result: Surrogate) -> Any:
+    """Draw predictions over true values of the held-out rows, one panel for each target."""
+    rows, words = [], []
+    for number, name in enumerate(result.targets):
+        true, told = result.true[number], result.predicted[number]
+        factor, unit = scaled(true, readable(str(result.target_unit[number])))
+        chosen = np.linspace(0, true.size - 1, min(true.size, _POINTS)).round().astype(int)
+        color = _COLORS[number % len(_COLORS)]
+        ends = factor * np.array([true.min(), true.max()])
+        half = factor * float(result.band[number])
+        points = marked(factor * true[chosen], factor * told[chosen], "held-out rows", color,
+                        size=4, symbol="circle", unit=unit)  # fmt: skip
+        traces = [points, line(ends, ends, "exact", TOTAL, width=1.2)]
+        if np.isfinite(half):
+            for sign, shown in ((1.0, True), (-1.0, False)):
+                edge = line(ends, ends + sign * half, f"{result.level:.0%} band", MUTED, dash="dot")
+                traces.append({**edge, "showlegend": shown})
+        label = str(name).replace("_", " ") + (f" [{unit}]" if unit not in ("", "1") else "")
+        rows.append(Row(f"Computed {label}", Panel("Learned", traces)))
+        words.append(f"{str(name).replace('_', ' ')} {result.errors[str(name)].determination:.4f}")
+    title = f"R² over {result.true.shape[1]} held-out rows: {', '.join(words[:3])}"
+    return stack_rows(title, rows, {"hovermode": "closest"})

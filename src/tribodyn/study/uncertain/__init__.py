@@ -1,0 +1,11 @@
+"""Many variants of one case side by side, and the tables that are learned from.
+
+| module | what it answers |
+|---|---|
+| ``lanes`` | which variants share a tooth contact, and by which factors they differ |
+| ``cycles`` | one mesh cycle of the steady motion of every variant |
+| ``ensemble`` | what spread inputs do to forces and motion, with bands |
+| ``data_set`` | a table of rows with its origin |
+| ``vibration_data`` | rows over time or over the mesh cycle of repeated runs |
+| ``operating_data`` | one row for each operating point |
+"""

@@ -1,0 +1,236 @@
+"""What spread inputs do to forces and motion: one mesh cycle of many variants, with bands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.checks import require_whole
+from tribodyn.errors import Argument, InputError, Problem, require_one_of
+from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
+from tribodyn.study.uncertain.lanes import draw, lanes_of
+from tribodyn.types import Array
+from tribodyn.uncertainty import Band, bootstrap_band
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+#: Places of a mesh cycle.
+_PLACES = 256
+
+
+@record
+class CaseEnsemble(Record):
+    """Variants of a case over one mesh cycle of their steady motion.
+
+    Parameters
+    ----------
+    input : (k,) array of str
+        Keys of the case, or factors, that were spread.
+    value : (n, k) array
+        What was drawn, in SI.
+    phase : (p,) array
+        Mesh phase.
+    mesh_frequency : (n,) array
+        Mesh frequency [Hz].
+    mesh_force : (n, p) array
+        Force along the line of action [N].
+    dynamic_transmission_error : (n, p) array
+        Compression of the mesh with its error, from the middle of the play [m].
+    acceleration : (n, p) array
+        Acceleration of the pinion along the line of action [m/s^2].
+    seed : int
+        Of the sample, and of the bands.
+    title : str
+        Title of the case.
+    """
+
+    input: Any = quantity("input", axis=True, unit="", name="input")
+    value: Array = quantity("variant", "input", unit="")
+    phase: Array = quantity("phase", axis=True, unit="1")
+    mesh_frequency: Array = quantity("variant", unit="Hz")
+    mesh_force: Array = quantity("variant", "phase", unit="N")
+    dynamic_transmission_error: Array = quantity("variant", "phase", unit="m")
+    acceleration: Array = quantity("variant", "phase", unit="m/s^2")
+    seed: int = fact()
+    title: str = fact()
+
+    def spectrum(self, signal: str = "mesh_force", harmonics: int = 10) -> Array:
+        """Amplitudes of the mesh harmonics of every variant.
+
+        Parameters
+        ----------
+        signal : str
+            ``"mesh_force"``, ``"dynamic_transmission_error"`` or ``"acceleration"``.
+        harmonics : int
+            Number of harmonics.
+
+        Returns
+        -------
+        (n, harmonics) array
+            Peak amplitudes, in the unit of the signal.
+
+        Raises
+        ------
+        InputError
+            If there is no such signal, or there are more harmonics than places resolve.
+        """
+        values = self._signal(signal)
+        count = require_whole("harmonics", harmonics)
+        if count >= self.phase.size // 2:
+            what, why = f"harmonics = {count}", f"There are {self.phase.size} places in a cycle"
+            raise InputError(Problem(what, Argument("harmonics"), why, "Ask for fewer"))
+        lines = np.fft.rfft(values, axis=1)[:, 1 : count + 1]
+        return np.asarray(2.0 * np.abs(lines) / self.phase.size)
+
+    def band(
+        self,
+        signal: str = "mesh_force",
+        level: float = 0.95,
+        *,
+        harmonics: int = 0,
+        simultaneous: bool = False,
+    ) -> Band:
+        """Confidence band of the mean over the variants, by the bootstrap.
+
+        Parameters
+        ----------
+        signal : str
+            As of :meth:`spectrum`.
+        level : float
+            Probability that the band holds the true mean [-].
+        harmonics : int
+            Of so many harmonics; 0: of the curve over the mesh phase.
+        simultaneous : bool
+            Whether the band holds the whole curve with that probability, not each point of it.
+
+        Returns
+        -------
+        Band
+
+        Raises
+        ------
+        InputError
+            If there is no such signal, or there are fewer than three variants.
+        """
+        values = self.spectrum(signal, harmonics) if harmonics else self._signal(signal)
+        return bootstrap_band(
+            values, level, seed=self.seed, simultaneous=simultaneous, unit=SIGNALS[signal]
+        )
+
+    def spread(self, signal: str = "mesh_force", level: float = 0.95, harmonics: int = 0) -> Array:
+        """Where a part of the variants lies, point by point.
+
+        Parameters
+        ----------
+        signal : str
+            As of :meth:`spectrum`.
+        level : float
+            Part of the variants between both ends [-].
+        harmonics : int
+            As of :meth:`band`.
+
+        Returns
+        -------
+        (2, points) array
+            Lower and upper end, in the unit of the signal.
+        """
+        values = self.spectrum(signal, harmonics) if harmonics else self._signal(signal)
+        ends = (0.5 - 0.5 * level, 0.5 + 0.5 * level)
+        return np.asarray(np.quantile(values, ends, axis=0))
+
+    def _signal(self, name: str) -> Array:
+        known = ("mesh_force", "dynamic_transmission_error", "acceleration")
+        return np.asarray(getattr(self, require_one_of("signal", name, known)))
+
+    def __repr__(self) -> str:
+        """One line."""
+        mean = self.mesh_force.max(axis=1)
+        return (
+            f"CaseEnsemble({len(self.value)} variants over {', '.join(self.input)}: peak mesh "
+            f"force {mean.min():.5g} to {mean.max():.5g} N)"
+        )
+
+
+def ensemble(
+    case: Case,
+    distributions: Mapping[str, Any] | None = None,
+    size: int = 64,
+    *,
+    method: str = "latin-hypercube",
+    seed: int,
+    progress: Progress = SILENT,
+) -> CaseEnsemble:
+    """Compute many variants of a case with spread inputs, side by side.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    distributions : mapping, optional
+        Inputs that are spread, as :func:`tribodyn.uncertainty.sample` reads them: keys of the
+        case, or the factors ``stiffness_scale``, ``damping_scale``, ``friction_scale``,
+        ``error_scale``, ``gap_scale`` and ``force_scale`` [-]. By default those that the case
+        itself spreads.
+    size : int
+        Variants.
+    method : {"monte-carlo", "latin-hypercube", "sobol"}
+        How they are drawn.
+    seed : int
+        The same seed gives the same ensemble.
+    progress : Progress
+        Told how far the computation has come; silent by default.
+
+    Returns
+    -------
+    CaseEnsemble
+
+    Raises
+    ------
+    InputError
+        If nothing is spread, or an input cannot be.
+    ComputationError
+        If a variant grows beyond all bounds.
+
+    Warns
+    -----
+    ModelWarning
+        ``ensemble-period`` if variants do not repeat after one mesh cycle.
+
+    Notes
+    -----
+    Variants that differ in factors, in friction of a constant law, in mesh damping, in the speed
+    where neither film nor friction asks for it, or in the torque where the tooth contact is the
+    same for the least and the greatest one, are lanes of one structure. For any other key the
+    tooth contact of every variant is built anew.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("time-varying-friction")
+    >>> found = ensemble(case, {"stiffness_scale": "1 +- 2 %"}, 8, seed=1)
+    >>> found.mesh_force.shape
+    (8, 256)
+    """
+    given = dict(case.uncertain if distributions is None else distributions)
+    if not given:
+        why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
+        raise InputError(Problem("nothing is spread", Argument("distributions"), why, remedy))
+    drawn = draw(case, given, require_whole("size", size, 3), method=method, seed=seed)
+    lanes = lanes_of(case, drawn, progress)
+    signals = steady_cycles(lanes, _PLACES, progress)
+    return CaseEnsemble(
+        input=np.array(list(drawn)),
+        value=np.stack(list(drawn.values()), axis=1),
+        phase=signals.phase,
+        mesh_frequency=lanes.mesh_frequency,
+        mesh_force=signals.signals["mesh_force"],
+        dynamic_transmission_error=signals.signals["dynamic_transmission_error"],
+        acceleration=signals.signals["acceleration"],
+        seed=int(seed),
+        title=case.title,
+    )

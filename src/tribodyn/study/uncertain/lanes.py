@@ -1,0 +1,160 @@
+"""Variants of a case as lanes: what can be a factor of one structure is, all else is built anew."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.dynamics.equations.program import compile_system
+from tribodyn.errors import Argument, InputError, Problem, quiet
+from tribodyn.nonlinear.parameter_map import SCALES
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.derive import placed
+from tribodyn.study.case.provenance import effective, spec_of
+from tribodyn.study.pipeline.motion import steps_of
+from tribodyn.study.studies.grid import Member, built, contact_without_speed, varied
+from tribodyn.types import Array, Index
+from tribodyn.uncertainty import distribution, sample
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import LaneParameters
+    from tribodyn.study.case.case import Case
+
+#: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
+_COARSER, _FEWEST = 4, 512
+#: Steps on which two structures are compared, and the relative difference that counts as none.
+_LOOK, _SAME = 64, 1e-12
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """Variants of a case: lane ``i`` marches the structure of ``members[i]`` with its factors."""
+
+    members: list[Member]
+    mesh_frequency: Array
+    factors: dict[str, Array]
+    steps: Index
+
+    @property
+    def count(self) -> int:
+        """Number of lanes."""
+        return self.mesh_frequency.size
+
+    def parameters(self) -> LaneParameters:
+        """Factors of all lanes."""
+        from tribodyn.dynamics import LaneParameters
+
+        return LaneParameters(**self.factors)
+
+    def table(self) -> Array:
+        """Factors of all lanes (lanes, 6)."""
+        return self.parameters().table(self.count)
+
+
+def draw(
+    case: Case, spread: Mapping[str, Any], size: int, *, method: Any = "monte-carlo", seed: int
+) -> dict[str, Array]:
+    """Values of keys of a case and of factors, each in the unit that it has there."""
+    known = {}
+    for key, text in spread.items():
+        spec = None if key in SCALES else spec_of(case, str(key))
+        if spec is None and key not in SCALES:
+            case.replace({str(key): text}, by="distributions")  # tells which keys there are
+        known[str(key)] = distribution(str(key), text, spec.unit if spec else "")
+    return sample(known, size, method=method, seed=seed)
+
+
+def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILENT) -> Lanes:
+    """Lanes of a case for values by key, all (lanes,), or by name of a factor."""
+    count = len(next(iter(values.values())))
+    factors = {name: np.ones(count) for name in SCALES}
+    speed, keyed = np.ones(count), {}
+    for key, column in values.items():
+        if key in SCALES:
+            factors[key] = factors[key] * column
+            continue
+        _check_key(case, key, column)
+        if key == "operation.speed" and contact_without_speed(case):
+            speed = np.asarray(column) / case.operation.speed
+        elif (name := _factor(case, key, column)) is not None:
+            nominal = effective(case)[key]
+            factors[name] = factors[name] * (np.asarray(column) / nominal)
+        else:
+            keyed[key] = column
+    with placed(case), quiet():
+        if keyed:
+            changes = [{key: float(column[lane]) for key, column in keyed.items()}
+                       for lane in range(count)]  # fmt: skip
+            members = varied(case, changes, progress)
+        else:
+            members = [built(case)] * count
+    frequency = speed * np.array([member.mesh.mesh_frequency for member in members])
+    used = {name: column for name, column in factors.items() if np.any(column != 1.0)}
+    return Lanes(members, frequency, used, _steps(members, frequency, factors))
+
+
+def _check_key(case: Case, key: str, column: Array) -> None:
+    """Refuse what is no number of the case, and the ends of the values where the case does."""
+    spec = spec_of(case, key)
+    value = effective(case).get(key)
+    if spec is None or isinstance(value, bool | str) or spec.kind == "file":
+        where = Argument("distributions")
+        what, why = f"{key} cannot be spread", "Numbers of the case can, and the factors "
+        raise InputError(Problem(what, where, why + ", ".join(SCALES), "Name one of these"))
+    for end in (np.min(column), np.max(column)):
+        case.replace({key: float(end)})
+
+
+def _factor(case: Case, key: str, column: Array) -> str | None:
+    """Factor of the structure that stands for a key exactly; None where none does."""
+    nominal = effective(case).get(key)
+    if not isinstance(nominal, float) or nominal == 0.0:
+        return None
+    if key == "friction.coefficient" and case.friction.law == "constant":
+        return "friction_scale"
+    if key in ("dynamics.mesh_damping", "dynamics.mesh_damping_ratio"):
+        return "damping_scale"
+    if key == "operation.torque" and _contact_without_load(case, column):
+        return "force_scale"
+    return None
+
+
+def _contact_without_load(case: Case, torques: Array) -> bool:
+    """Whether the tooth contact is the same for the least, the greatest and the stated torque."""
+    if not contact_without_speed(case):
+        return False
+    with placed(case), quiet():
+        torques = np.array([np.min(torques), np.max(torques), case.operation.torque])
+        systems = [built(case.replace({"operation.torque": float(each)})).system
+                   for each in torques]  # fmt: skip
+    # The structure under a torque of one, which is all that may be left of the torque.
+    rows = []
+    for system, torque in zip(systems, torques, strict=True):
+        nodes = compile_system(system, _LOOK)[1]
+        rows.append(nodes._replace(force=nodes.force / torque))
+    return all(
+        one.shape == other.shape
+        and np.allclose(one, other, _SAME, _SAME * np.abs(one).max(initial=0))
+        for each in rows[1:]
+        for one, other in zip(rows[0], each, strict=True)
+    )
+
+
+def _steps(members: list[Member], frequency: Array, factors: dict[str, Array]) -> Index:
+    """Steps per mesh cycle of every lane, those of a single study of motions."""
+    rates: dict[int, float] = {}
+    counts = np.empty(frequency.size, dtype=np.int64)
+    stiff = np.sqrt(np.maximum(factors["stiffness_scale"], 1.0))
+    for lane, member in enumerate(members):
+        if member.case.solver.steps_per_mesh_cycle:
+            counts[lane] = member.case.solver.steps_per_mesh_cycle
+            continue
+        key = id(member)
+        if key not in rates:
+            rates[key] = steps_of(member.case, member.system, member.mesh.mesh_frequency)
+        needed = rates[key] * member.mesh.mesh_frequency / frequency[lane] * stiff[lane] / _COARSER
+        counts[lane] = max(_FEWEST, 2 ** int(np.ceil(np.log2(needed))))
+    return counts

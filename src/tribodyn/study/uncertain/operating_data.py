@@ -1,0 +1,109 @@
+"""One row for each operating point: the steady response that a surrogate learns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.checks import require_whole
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.uncertain.cycles import steady_cycles
+from tribodyn.study.uncertain.data_set import DataSet
+from tribodyn.study.uncertain.lanes import draw, lanes_of
+from tribodyn.study.uncertain.vibration_data import data_set
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+#: What is told of every point, with units.
+RESPONSE = {
+    "mean_mesh_force": "N",
+    "rms_mesh_force": "N",
+    "peak_mesh_force": "N",
+    "peak_to_peak_dynamic_transmission_error": "m",
+    "rms_acceleration_loa_pinion": "m/s^2",
+    "mean_friction_coefficient": "1",
+}
+#: Range of an operating point about that of the case, and places of a mesh cycle.
+_LOW, _HIGH, _PLACES = 0.7, 1.3, 8
+
+
+def default_ranges(case: Case) -> dict[str, str]:
+    """Ranges of torque, speed, friction and stiffness about the case, and of its roughness."""
+    ranges = {key: _about(float(getattr(case.operation, name)), unit)
+              for key, name, unit in (("operation.torque", "torque", "N*m"),
+                                      ("operation.speed", "speed", "rad/s"))}  # fmt: skip
+    ranges |= dict.fromkeys(("friction_scale", "stiffness_scale"), f"{_LOW} .. {_HIGH}")
+    if case.gears.composite_roughness is not None and case.friction.law not in ("none", "constant"):
+        ranges["gears.composite_roughness"] = _about(case.gears.composite_roughness, "m")
+    return ranges
+
+
+def _about(value: float, unit: str) -> str:
+    return f"{_LOW * value!r} {unit} .. {_HIGH * value!r} {unit}"
+
+
+def operating_data(
+    case: Case,
+    over: Mapping[str, Any] | None = None,
+    size: int = 256,
+    *,
+    seed: int,
+    progress: Progress = SILENT,
+) -> DataSet:
+    """Steady response of a case at operating points drawn evenly over ranges.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    over : mapping, optional
+        Ranges such as ``{"operation.speed": "400 rpm .. 3000 rpm"}``, of keys of the case or of
+        the factors of :func:`ensemble`; by default torque, speed, friction, stiffness and, where
+        friction depends on it, roughness, from 0.7 to 1.3 times those of the case.
+    size : int
+        Operating points, of a Sobol sequence; a power of two is the most even.
+    seed : int
+        The same seed gives the same points.
+    progress : Progress
+        Told how far the computation has come; silent by default.
+
+    Returns
+    -------
+    DataSet
+        The inputs, and mean, rms and peak of the mesh force [N], the swing of the transmission
+        error [m], the rms acceleration of the pinion along the line of action [m/s^2], and the
+        friction coefficient.
+
+    Raises
+    ------
+    InputError
+        If an input cannot be spread.
+    ComputationError
+        If a motion grows beyond all bounds.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("time-varying-friction")
+    >>> operating_data(case, {"force_scale": "0.5 .. 2"}, 4, seed=1).rows
+    4
+    """
+    ranges = dict(default_ranges(case) if over is None else over)
+    count = require_whole("size", size)
+    drawn = draw(case, ranges, count, method="sobol", seed=seed)
+    lanes = lanes_of(case, drawn, progress)
+    cycles = steady_cycles(lanes, _PLACES, progress)
+    mean, rms, _, high = cycles.figures["mesh_force"]
+    _, _, least, greatest = cycles.figures["dynamic_transmission_error"]
+    middle, shaking, _, _ = cycles.figures["acceleration"]
+    answers = dict(zip(RESPONSE, (
+        mean, rms, high, greatest - least, np.sqrt(np.maximum(shaking**2 - middle**2, 0.0)),
+        cycles.figures["friction_coefficient"][0],
+    ), strict=True))  # fmt: skip
+    settings = {"over": {key: str(value) for key, value in ranges.items()}, "size": count,
+                "seed": int(seed)}  # fmt: skip
+    made = data_set("operating_data", case, {**drawn, **answers}, settings)
+    return DataSet(made.columns, {**made.units, **RESPONSE}, made.case, made.settings, made.version)

@@ -1,0 +1,38 @@
+"""Fast models learned from computed data: networks, their training, their errors.
+
+| module | what it answers |
+|---|---|
+| ``network`` | what a network computes, and its derivatives |
+| ``levenberg_marquardt`` | least squares, stopped by other data |
+| ``preparation`` | gaps, outliers, scaling and split of a table |
+| ``training`` | a model from a table, and the size of its networks |
+| ``model`` | predictions with bands, stored and read |
+| ``measures`` | errors of predictions |
+| ``baselines`` | what simpler models make of the same table |
+"""
+
+from tribodyn.surrogate.baselines import BASELINES, baselines
+from tribodyn.surrogate.levenberg_marquardt import Fit, Squares, levenberg_marquardt
+from tribodyn.surrogate.measures import ErrorMeasures
+from tribodyn.surrogate.model import Surrogate, load
+from tribodyn.surrogate.network import Network
+from tribodyn.surrogate.preparation import prepare, split_rows
+from tribodyn.surrogate.training import BPNN_PL, Training, bpnn_pl, train
+
+__all__ = [
+    "BASELINES",
+    "BPNN_PL",
+    "ErrorMeasures",
+    "Fit",
+    "Network",
+    "Squares",
+    "Surrogate",
+    "Training",
+    "baselines",
+    "bpnn_pl",
+    "levenberg_marquardt",
+    "load",
+    "prepare",
+    "split_rows",
+    "train",
+]

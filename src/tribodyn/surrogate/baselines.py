@@ -1,0 +1,144 @@
+"""What simpler models make of the same rows, so that one sees what a network adds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from tribodyn.errors import Argument, InputError, Problem, require_one_of
+from tribodyn.surrogate.measures import ErrorMeasures
+from tribodyn.surrogate.preparation import Prepared, prepare
+from tribodyn.types import Array
+
+#: Fits scaled training rows to one target, and returns what predicts from scaled rows.
+Fitter = Callable[[Array, Array, int], Callable[[Array], Array]]
+#: Places of the table over one feature.
+_PLACES = 64
+#: Rows that a Gaussian process is fitted to at most: its cost grows with their cube.
+_MOST_ROWS = 1500
+
+
+def _mean(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
+    return lambda rows: np.full(len(rows), target.mean())
+
+
+def _linear(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
+    factors = np.linalg.lstsq(np.c_[inputs, np.ones(len(inputs))], target, rcond=None)[0]
+    return lambda rows: np.asarray(np.c_[rows, np.ones(len(rows))] @ factors)
+
+
+def _table(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
+    """Mean of the target over places of the first feature; where none was seen, of all."""
+    place = np.minimum((inputs[:, 0] * _PLACES).astype(int), _PLACES - 1)
+    count = np.bincount(place, minlength=_PLACES)
+    total = np.bincount(place, target, minlength=_PLACES)
+    means = np.where(count > 0, total / np.maximum(count, 1), target.mean())
+    return lambda rows: np.asarray(
+        means[np.clip((rows[:, 0] * _PLACES).astype(int), 0, _PLACES - 1)]
+    )
+
+
+def _gaussian_process(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
+    process = _learned("gaussian_process")
+    kernels = process.kernels
+    kernel = (
+        kernels.ConstantKernel() * kernels.RBF(np.ones(inputs.shape[1])) + kernels.WhiteKernel()
+    )
+    chosen = np.random.default_rng(seed).permutation(len(inputs))[:_MOST_ROWS]
+    model = process.GaussianProcessRegressor(kernel, normalize_y=True, random_state=seed)
+    return model.fit(inputs[chosen], target[chosen]).predict  # type: ignore[no-any-return]
+
+
+def _boosted_trees(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
+    model = _learned("ensemble").HistGradientBoostingRegressor(random_state=seed, max_iter=300)
+    return model.fit(inputs, target).predict  # type: ignore[no-any-return]
+
+
+def _learned(part: str) -> Any:
+    from importlib import import_module
+
+    try:
+        return import_module(f"sklearn.{part}")
+    except ImportError:
+        what, why = "scikit-learn is not installed", "Gaussian process and boosted trees are its"
+        remedy = 'Install it: pip install "tribodyn[learn]", or leave these two out'
+        raise InputError(Problem(what, Argument("kinds"), why, remedy)) from None
+
+
+#: Models to compare a network with, by name.
+BASELINES: dict[str, Fitter] = {
+    "mean": _mean,
+    "linear": _linear,
+    "table": _table,
+    "gaussian-process": _gaussian_process,
+    "boosted-trees": _boosted_trees,
+}
+
+
+def baselines(
+    data: Any,
+    *,
+    features: Sequence[str],
+    targets: Sequence[str],
+    seed: int,
+    groups: str = "",
+    kinds: Iterable[str] = ("mean", "linear", "table"),
+    table_over: str = "phase",
+) -> dict[str, dict[str, ErrorMeasures]]:
+    """Errors of simpler models over the held-out rows of the same split.
+
+    Parameters
+    ----------
+    data : mapping, xarray.Dataset, pandas.DataFrame or result with ``to_xarray``
+        As of :func:`train`.
+    features, targets : sequence of str
+        Columns to predict from, and to predict.
+    seed : int
+        That of :func:`train`, for the same split.
+    groups : str
+        That of :func:`train`.
+    kinds : iterable of str
+        ``"mean"``; ``"linear"``; ``"table"``, the mean over each of 64 places of ``table_over``;
+        ``"gaussian-process"`` and ``"boosted-trees"`` of scikit-learn.
+    table_over : str
+        Column of the table, such as the mesh phase; it need not be a feature.
+
+    Returns
+    -------
+    dict of str to dict of str to ErrorMeasures
+        By kind and target.
+
+    Raises
+    ------
+    InputError
+        If a kind is unknown, a column is missing, or scikit-learn is not installed.
+
+    Examples
+    --------
+    >>> x = np.linspace(0.0, 1.0, 50)
+    >>> found = baselines({"x": x, "y": 3 * x}, features=["x"], targets=["y"], seed=1,
+    ...                   kinds=["mean", "linear"])
+    >>> round(found["linear"]["y"].determination, 6)
+    1.0
+    """
+    ready = prepare(data, features, targets, seed=seed, groups=groups)
+    answers = {}
+    for kind in kinds:
+        require_one_of("kinds", kind, BASELINES)
+        own = ready
+        if kind == "table":
+            own = prepare(data, [table_over], targets, seed=seed, groups=groups)
+        answers[kind] = {
+            str(name): _errors(own, BASELINES[kind], column, seed)
+            for column, name in enumerate(targets)
+        }
+    return answers
+
+
+def _errors(ready: Prepared, fitter: Fitter, column: int, seed: int) -> ErrorMeasures:
+    inputs, target = ready.feature_scaling.scaled(ready.features), ready.targets[:, column]
+    rows, held = ready.split.training, ready.split.test
+    predict = fitter(inputs[rows], target[rows], seed)
+    return ErrorMeasures.of(target[held], predict(inputs[held]))

@@ -1,0 +1,188 @@
+"""Feed-forward network of one output: layers, start of the weights, Jacobian."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from tribodyn.checks import require_whole
+from tribodyn.errors import Argument, InputError, Problem, require_one_of
+from tribodyn.types import Array
+
+#: Rows that are worked on at a time, so that they stay in the cache of the processor.
+_ROWS = 4096
+#: Most weights: the normal equations of Levenberg and Marquardt hold their square.
+_MOST_WEIGHTS = 5000
+
+
+def _relu(x: Any) -> Any:
+    """The positive part; a complex step follows the real one."""
+    return np.where(np.real(x) > 0.0, x, 0.0)
+
+
+#: Function and its slope at the value that it gave. ``2/(1 + exp(-2 x)) - 1`` is the hyperbolic
+#: tangent; the slope of ReLU at its kink is taken as zero.
+ACTIVATIONS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    "tansig": (np.tanh, lambda y: 1.0 - y * y),
+    "relu": (_relu, lambda y: (y > 0.0).astype(float)),
+}
+
+
+@dataclass(frozen=True)
+class Network:
+    """Layers of a network whose output is linear; its weights are one vector.
+
+    Parameters
+    ----------
+    inputs : int
+        Number of inputs, each scaled to the range 0 to 1.
+    hidden : tuple of int
+        Neurons of the hidden layers.
+    activations : tuple of str
+        ``"tansig"`` or ``"relu"`` for each of them.
+
+    Raises
+    ------
+    InputError
+        If the layers and their activations do not fit together, or the network is too large.
+
+    Examples
+    --------
+    >>> Network(4, (11, 11), ("tansig", "relu")).size
+    199
+    """
+
+    inputs: int
+    hidden: tuple[int, ...]
+    activations: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        if not all(isinstance(each, tuple | list) for each in (self.hidden, self.activations)):
+            what = f"hidden = {self.hidden!r}, activations = {self.activations!r}"
+            raise InputError(Problem(what, Argument("hidden"), "", "Give both as tuples"))
+        for count in (self.inputs, *self.hidden):
+            require_whole("hidden", count)
+        for name in self.activations:
+            require_one_of("activations", name, ACTIVATIONS)
+        if not self.hidden or len(self.hidden) != len(self.activations):
+            what = f"{len(self.hidden)} hidden layers and {len(self.activations)} activations"
+            raise InputError(Problem(what, Argument("hidden"), "Each layer has one", "Give both"))
+        if self.size > _MOST_WEIGHTS:
+            what, why = f"a network of {self.size} weights", f"At most {_MOST_WEIGHTS} are trained"
+            raise InputError(Problem(what, Argument("hidden"), why, "Take fewer neurons"))
+
+    @property
+    def shapes(self) -> list[tuple[int, int]]:
+        """Neurons and inputs of every layer, the output last."""
+        return [(after, before) for before, after in pairwise((self.inputs, *self.hidden, 1))]
+
+    @property
+    def size(self) -> int:
+        """Number of weights and biases."""
+        return sum(after * (before + 1) for after, before in self.shapes)
+
+    def layers(self, weights: Any) -> Iterator[tuple[Any, Any]]:
+        """Cut the vector of weights into a matrix and a bias for each layer.
+
+        Parameters
+        ----------
+        weights : (size,) array
+
+        Yields
+        ------
+        tuple of ((neurons, inputs) array, (neurons,) array)
+        """
+        begin = 0
+        for after, before in self.shapes:
+            end = begin + after * before
+            yield weights[begin:end].reshape(after, before), weights[end : end + after]
+            begin = end + after
+
+    def start(self, random: np.random.Generator) -> Array:
+        """Weights to begin with, after Nguyen and Widrow.
+
+        Parameters
+        ----------
+        random : numpy.random.Generator
+
+        Returns
+        -------
+        (size,) array
+
+        Notes
+        -----
+        The active stretches of the neurons of a layer cover the range of its inputs evenly: rows of
+        the length ``0.7 neurons^(1/inputs)`` in random directions. D. Nguyen and B. Widrow, Int.
+        Joint Conf. Neural Networks (1990) III-21. The output begins near zero.
+        """
+        parts = []
+        for layer, (after, before) in enumerate(self.shapes):
+            if layer == len(self.hidden):
+                parts += [0.1 * random.uniform(-1.0, 1.0, after * before), np.full(1, 0.5)]
+                continue
+            rows = random.uniform(-1.0, 1.0, (after, before))
+            reach = 0.7 * after ** (1.0 / before)
+            rows *= reach / np.linalg.norm(rows, axis=1, keepdims=True)
+            bias = reach * np.linspace(-1.0, 1.0, after) if after > 1 else np.zeros(1)
+            bias *= np.sign(random.uniform(-1.0, 1.0, after))
+            if layer == 0:  # from the range -1 to 1 to the range 0 to 1
+                rows, bias = 2.0 * rows, bias - rows.sum(axis=1)
+            parts += [rows.reshape(-1), bias]
+        return np.concatenate(parts)
+
+    def evaluate(self, weights: Any, inputs: Any) -> Any:
+        """Output of the network.
+
+        Parameters
+        ----------
+        weights : (size,) array
+        inputs : (n, inputs) array
+            Scaled inputs.
+
+        Returns
+        -------
+        (n,) array
+        """
+        layers = list(self.layers(weights))
+        parts = []
+        for begin in range(0, max(len(inputs), 1), _ROWS):
+            signal = inputs[begin : begin + _ROWS]
+            for (matrix, bias), name in zip(layers[:-1], self.activations, strict=True):
+                signal = ACTIVATIONS[name][0](signal @ matrix.T + bias)
+            matrix, bias = layers[-1]
+            parts.append((signal @ matrix.T + bias)[:, 0])
+        return np.concatenate(parts)
+
+    def jacobian(self, weights: Array, inputs: Array) -> tuple[Array, Array]:
+        """Output of the network and its derivatives by the weights, found backwards.
+
+        Parameters
+        ----------
+        weights : (size,) array
+        inputs : (n, inputs) array
+            Scaled inputs.
+
+        Returns
+        -------
+        tuple of ((n,) array, (n, size) array)
+        """
+        layers = list(self.layers(weights))
+        signals, slopes = [inputs], []
+        for (matrix, bias), name in zip(layers[:-1], self.activations, strict=True):
+            value, slope = ACTIVATIONS[name]
+            signals.append(value(signals[-1] @ matrix.T + bias))
+            slopes.append(slope(signals[-1]))
+        matrix, bias = layers[-1]
+        output = (signals[-1] @ matrix.T + bias)[:, 0]
+        parts: list[Array] = []
+        back = np.ones((len(inputs), 1))
+        for layer in range(len(layers) - 1, -1, -1):
+            rows = (back[:, :, None] * signals[layer][:, None, :]).reshape(len(inputs), -1)
+            parts[:0] = [rows, back]
+            if layer:
+                back = (back @ layers[layer][0]) * slopes[layer - 1]
+        return output, np.concatenate(parts, axis=1)

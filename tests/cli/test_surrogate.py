@@ -1,0 +1,47 @@
+"""``tribodyn surrogate``: a model from one command, asked by another."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import tribodyn as td
+from tribodyn.cli import call
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+_WORDS = ("surrogate", "train", "time-varying-friction", "force_scale=0.8 .. 1.6",
+          "friction_scale=0 .. 2", "--size", "128", "--set", "stiffness.model=rectangular",
+          "--set", "stiffness.pair_stiffness=2e8 N/m")  # fmt: skip
+
+
+def test_a_model_is_trained_and_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "model.nc"
+    assert call([*_WORDS, "--out", str(path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["features"] == ["force_scale", "friction_scale"]
+    error = found["errors"]["rms_mesh_force"]
+    assert error["rows"] == 26
+    assert error["determination"] > 0.999
+    assert error["unit"] == "N"
+
+    asked = ["surrogate", "predict", str(path), "force_scale=1", "friction_scale=1"]
+    assert call([*asked, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["rms_mesh_force"]
+    assert told["low"] < told["value"] < told["high"]
+    case = td.load_case("time-varying-friction").replace(
+        {"stiffness.model": "rectangular", "stiffness.pair_stiffness": 2e8}
+    )
+    computed = td.run(case).summary()["rms_mesh_force"]
+    assert told["value"] == pytest.approx(computed, abs=4.0 * error["band"])
+
+    assert call(asked) == 0
+    assert "rms_mesh_force" in capsys.readouterr().out
+    assert call([*asked[:3], "force_scale=1", "friction=1"]) == 2
+    message = capsys.readouterr().err
+    assert "friction is no input of this model" in message
+    assert "friction_scale is missing" in message
+    assert call([*_WORDS, "--out", str(path)]) == 2
+    assert "exists already" in capsys.readouterr().err
