@@ -233,11 +233,14 @@ def load_figures() -> None:
 def figures_of(result: Any) -> list[str]:
     """Names of the figures that draw this type of result."""
     load_figures()
-    return [
-        name
-        for name, figure in ((name, FIGURES[name]) for name in FIGURES)
-        if not isinstance(figure, Drawing) or figure.subject(result) is not None
-    ]
+    return [name for name in FIGURES if _draws(FIGURES[name], result)]
+
+
+def _draws(figure: Callable[..., Any], result: Any) -> bool:
+    try:
+        return not isinstance(figure, Drawing) or figure.subject(result) is not None
+    except InputError:  # It draws gears of another kind.
+        return False
 
 
 def draw(result: Any, name: str = "", *arguments: Any, **options: Any) -> Any:

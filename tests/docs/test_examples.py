@@ -248,6 +248,13 @@ def printed_tables(text: str) -> None:
     assert "Table 1: 8 value" in text
 
 
+def hypoid(text: str) -> None:
+    # figures of another program for this pair: friction, force along the pinion's axis, efficiency
+    assert figure(text, "friction coefficient, mean") == pytest.approx(0.0110, rel=5e-3)
+    assert figure(text, "mean force of the teeth, y") == pytest.approx(14070.0, rel=2e-3)
+    assert figure(text, "efficiency") == pytest.approx(0.9945, abs=6e-4)
+
+
 EXPECTED: dict[str, Callable[[str], None]] = {
     "01_first_light.py": first_light,
     "02_roughness_study.py": roughness_study,
@@ -269,6 +276,7 @@ EXPECTED: dict[str, Callable[[str], None]] = {
     "18_losses.py": losses,
     "19_printed_tables.py": printed_tables,
     "20_learning.py": learning,
+    "21_hypoid.py": hypoid,
 }
 
 

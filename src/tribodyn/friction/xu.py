@@ -133,7 +133,7 @@ def _require_plausible(coefficient: Array, roughness: float) -> None:
         f"xu-2007 gives a friction coefficient of {np.max(coefficient):.3g} "
         f"with a roughness of up to {roughness:.4g} um",
         where="argument roughness",
-        why="the regression grows with exp(exp(S)) and means nothing far beyond the 0.6 um "
+        why="The regression grows with exp(exp(S)) and means nothing far beyond the 0.6 um "
         "and the other limits of its fit",
         remedy="Check the roughness and its unit, or choose another friction law, such as mixed",
     )

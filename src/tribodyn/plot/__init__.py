@@ -36,6 +36,7 @@ from tribodyn.plot.motion.courses import (
     bearing_force,
     friction_force,
     mesh_force,
+    tooth_force,
     transmission_error,
 )
 from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
@@ -128,6 +129,7 @@ __all__ = [
     "surrogate",
     "sweep",
     "tip_relief_map",
+    "tooth_force",
     "tracked_orders",
     "transmission_error",
     "waterfall",

@@ -34,6 +34,25 @@ SECTIONS = (
     "campbell",
 )
 
+#: The same of a hypoid pair.
+HYPOID_SECTIONS = (
+    "hypoid_pair",
+    "ease_off",
+    "hypoid_contact",
+    "hypoid_load",
+    "hypoid_pressure",
+    "hypoid_friction",
+    "mesh_force",
+    "tooth_force",
+    "transmission_error",
+    "acceleration",
+    "spectrum",
+    "bearing_force",
+    "bearing_spectrum",
+    "mode_shapes",
+    "campbell",
+)
+
 #: Room above the panels for marks and buttons [px].
 _MARGIN = 44
 
@@ -96,6 +115,7 @@ def _joined(blocks: Iterable[Block]) -> list[Block]:
 
 def figure_blocks(result: Any) -> list[Block]:
     """Draw every figure of the report; what lacks for one reason is told once."""
-    names = [*SECTIONS, *(["coupling"] if result.coupling is not None else [])]
+    usual = HYPOID_SECTIONS if result.case.gears.kind == "hypoid" else SECTIONS
+    names = [*usual, *(["coupling"] if result.coupling is not None else [])]
     figures = (FIGURES[name] for name in names)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

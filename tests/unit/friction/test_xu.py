@@ -115,5 +115,5 @@ def test_arguments_must_not_be_negative(name):
 
 @pytest.mark.parametrize("roughness", [3e-6, 0.2, 200.0])
 def test_roughness_far_outside_is_refused_and_does_not_overflow(roughness):
-    with pytest.raises(InputError, match=r"xu-2007 gives.*roughness in m"):
+    with pytest.raises(InputError, match=r"xu-2007 gives.*Check the roughness and its unit"):
         friction(roughness_rms=roughness)

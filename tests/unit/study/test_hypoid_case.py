@@ -11,8 +11,11 @@ import tribodyn
 from tribodyn.dynamics import steady_state
 from tribodyn.errors import InputError, ModelWarning, collected
 from tribodyn.gear import tooth_contact
+from tribodyn.plot import FIGURES
+from tribodyn.report.blocks import HYPOID_SECTIONS
 from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.assembly import geometry, whole_system
+from tribodyn.study.pipeline.citations import cite
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 NAME = "hypoid-mixed-ehl"
@@ -107,6 +110,12 @@ def test_what_cannot_be_is_refused_with_its_line(changes, place, told):
         assert word.rpartition(".")[2] in message
 
 
+def test_papers_are_those_of_what_the_pair_uses():
+    told = cite(built_in())
+    assert "Xu, H." in told
+    assert "Weber" not in told
+
+
 def test_spur_gears_have_no_axes_that_cross():
     case = tribodyn.load_case("fzg-roughness")
     with pytest.raises(InputError, match="axes that cross"):
@@ -176,3 +185,17 @@ def test_both_sides_lose_power_and_the_torsional_pair_runs():
     orbit = steady_state(whole_system(simple, mesh), mesh.mesh_frequency, steps=256)
     lost = 314.0 * (500.0 + RATIO * (orbit.extra_force[1] - 500.0 / RATIO))
     assert lost == pytest.approx(mesh.mean_friction_power, rel=0.02)
+
+
+def test_the_report_draws_gears_contact_and_forces_in_space(result):
+    known = dir(result)
+    assert {"plot_hypoid_pair", "plot_tooth_force", "plot_hypoid_pressure"} <= set(known)
+    assert "plot_gear_pair" not in known
+    blocks = {name: FIGURES[name](result) for name in HYPOID_SECTIONS if "force" in name}
+    panels = {trace.name for trace in blocks["tooth_force"].data}
+    assert panels == {"x", "y", "z"}
+    mean = result.summary()["mean_mesh_force_y"]
+    course = next(trace for trace in blocks["tooth_force"].data if trace.name == "y")
+    assert np.mean(course.y) == pytest.approx(mean, rel=0.02)
+    assert "along its own axis" in blocks["bearing_force"].layout.title.text
+    assert all(not FIGURES[name].missing(result) for name in HYPOID_SECTIONS)

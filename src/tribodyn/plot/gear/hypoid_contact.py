@@ -101,7 +101,7 @@ def _error(contact: ToothContact) -> Panel:
     caption="The flank of the wheel: where the marking compound is squeezed away, the path of the "
     "contact over it, and the contact lines of the conjugate flanks. Below, how far each pair lets "
     "the wheel run ahead; the pair whose curve is on top touches. Curves end where edges touch.",
-    of="ToothContact",
+    of=("ToothContact", "Result.hypoid_contact"),
     made_by="tribodyn.gear.tooth_contact makes one.",
 )
 def hypoid_contact(contact: ToothContact) -> Any:

@@ -118,7 +118,7 @@ def _scene(eye: tuple[float, float, float], **axes: str) -> dict[str, Any]:
     heading="The pair in space",
     caption="Both gears in mesh at the calculation point, to scale, on their root cones. Turn it "
     "with the mouse.",
-    of="HypoidFlanks",
+    of=("HypoidFlanks", "Result.case.hypoid_flanks"),
     made_by=_MADE_BY,
 )
 def hypoid_pair(flanks: HypoidFlanks) -> Any:
@@ -159,7 +159,7 @@ def hypoid_pair(flanks: HypoidFlanks) -> Any:
     caption="What the pinion's flank has less than the one that would touch everywhere, over the "
     "flank of the wheel: along its pitch cone towards the heel, across it towards the tip. Dots "
     "lie on both flanks; zero is where the flanks touch first.",
-    of="HypoidFlanks",
+    of=("HypoidFlanks", "Result.case.hypoid_flanks"),
     made_by=_MADE_BY,
 )
 def ease_off(flanks: HypoidFlanks) -> Any:

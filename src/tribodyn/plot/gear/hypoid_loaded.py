@@ -78,7 +78,7 @@ def _across() -> dict[str, Any]:
     heading="Pressure on the flank",
     caption="The flank of the wheel: greatest Hertzian pressure of every cell while its pair runs "
     "through the mesh. What is blank never carries; the dashed line is the flank of both gears.",
-    of="HypoidLoadedContact",
+    of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
 def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
@@ -107,7 +107,7 @@ def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
     heading="Load sharing and transmission error",
     caption="Over one mesh cycle: the part of the torque on each pair, by how much the wheel lags "
     "without load and under it, and the mesh stiffness on the line of action.",
-    of="HypoidLoadedContact",
+    of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
 def hypoid_load(loaded: HypoidLoadedContact) -> Any:
@@ -150,7 +150,7 @@ def hypoid_load(loaded: HypoidLoadedContact) -> Any:
     heading="Friction and film on the flank",
     caption="The flank of the wheel: friction coefficient of every cell, and the film over the "
     "composite roughness; lines at 0.2 and 2 part boundary, mixed and full film lubrication.",
-    of="HypoidFriction",
+    of=("HypoidFriction", "Result.hypoid_friction"),
     made_by="tribodyn.mesh.hypoid_friction makes one.",
 )
 def hypoid_friction(rubbed: HypoidFriction) -> Any:

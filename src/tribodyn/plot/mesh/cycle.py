@@ -114,7 +114,12 @@ def roll_angle_positions(mesh: MeshTable) -> dict[str, float]:
 
 
 def mesh_events(mesh: MeshTable, repeats: int = CYCLES) -> list[tuple[str, float]]:
-    """Name the phases at which a tooth pair enters, leaves or rolls without sliding."""
+    """Name the phases at which a tooth pair enters, leaves or rolls without sliding.
+
+    Without gears nothing is known of pairs: the beginnings of the mesh cycles are marked.
+    """
+    if getattr(mesh, "gears", mesh) is None:
+        return [("cycle", float(cycle)) for cycle in range(repeats + 1)]
     age = positions(mesh)
     marks = [("enters", 0.0), ("leaves", age["E"] % 1.0)]
     if 0.0 <= age["C"] < age["E"]:

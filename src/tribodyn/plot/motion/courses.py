@@ -20,6 +20,17 @@ if TYPE_CHECKING:
 GEARS = (("pinion", PINION), ("wheel", WHEEL))
 #: Axis of the coordinate and the words for it.
 DIRECTIONS = (("y", "along the line of action"), ("x", "across the line of action"))
+_ALONG = "along the line of action"
+
+
+def directions(result: Result) -> tuple[tuple[str, str], ...]:
+    """Axes of the coordinates of a gear and the words for them: in a plane, or in space."""
+    in_space = "pinion_z" in result.response.names
+    return tuple(series.directions_of(result.response.names).values()) if in_space else DIRECTIONS
+
+
+def _along(result: Result) -> str:
+    return dict(directions(result))["y"]
 
 
 def words_of(quantity: str, direction: str) -> str:
@@ -27,9 +38,9 @@ def words_of(quantity: str, direction: str) -> str:
     return f"{axis_words(quantity)}<br>{direction}"
 
 
-def _motion_panels(motion: Motion, quantity: str) -> list[Panel]:
+def _motion_panels(result: Result, quantity: str) -> list[Panel]:
     """Show a signal of both gears over the mesh cycle or over time."""
-    unit = display_unit(quantity)
+    motion, unit = Motion(result), display_unit(quantity)
 
     def curve(gear: str, axis: str, color: str) -> dict[str, Any]:
         x, y = motion.curve(quantity, motion.of_gear(quantity, gear, axis))
@@ -40,7 +51,7 @@ def _motion_panels(motion: Motion, quantity: str) -> list[Panel]:
             axis_label(quantity, words_of(quantity, words)),
             [curve(gear, axis, color) for gear, color in GEARS],
         )
-        for axis, words in DIRECTIONS
+        for axis, words in directions(result)
     ]
 
 
@@ -186,11 +197,12 @@ def _settling(result: Result, quantity: str) -> str:
 
 
 def _shake_caption(result: Result) -> str:
-    return (
-        "How the two gear centres shake. Along the line of action the jumps of the stiffness act, "
-        "across it only friction does: without friction the lower panel is flat. "
-        + _settling(result, "acceleration")
-    ).rstrip()
+    planar = (
+        "Along the line of action the jumps of the stiffness act, across it only friction does: "
+        "without friction the lower panel is flat. "
+    )
+    told = planar if _along(result) == _ALONG else ""
+    return ("How the two gear centres shake. " + told + _settling(result, "acceleration")).rstrip()
 
 
 @run_drawing(
@@ -201,18 +213,19 @@ def acceleration(result: Result) -> Any:
     motion = Motion(result)
     strongest = np.max(np.abs(motion.measured(motion.of_gear("acceleration", "pinion", "y"))))
     return stack(
-        f"The pinion shakes with up to {rounded('acceleration', strongest)} along the line of "
-        f"action{motion.window}",
+        f"The pinion shakes with up to {rounded('acceleration', strongest)} "
+        f"{_along(result)}{motion.window}",
         motion.label,
-        _motion_panels(motion, "acceleration"),
+        _motion_panels(result, "acceleration"),
         motion.layout(),
     )
 
 
 def _bearing_caption(result: Result) -> str:
+    planar = "Along the line of action the bearings carry the mesh force, across it the friction. "
     return (
         "The mean force loads the bearings; what varies around it shakes the housing and is heard. "
-        "Along the line of action the bearings carry the mesh force, across it the friction. "
+        + (planar if _along(result) == _ALONG else "")
         + _settling(result, "bearing_force")
     ).rstrip()
 
@@ -226,8 +239,37 @@ def bearing_force(result: Result) -> Any:
     swing = np.ptp(motion.measured(motion.of_gear("bearing_force", "pinion", "y")))
     return stack(
         f"The force on the pinion's bearing varies by {rounded('bearing_force', swing)} peak to "
-        f"peak along the line of action{motion.window}",
+        f"peak {_along(result)}{motion.window}",
         motion.label,
-        _motion_panels(motion, "bearing_force"),
+        _motion_panels(result, "bearing_force"),
         motion.layout(),
     )
+
+
+def _in_a_plane(result: Result) -> str:
+    if "pinion_z" in result.response.names:
+        return ""
+    return "The teeth of these gears push in a plane, along one line of action."
+
+
+@run_drawing(
+    "tooth_force",
+    heading="Mesh force in space",
+    caption="Force of the teeth on the wheel with friction in the axes of the pinion: x along the "
+    "common perpendicular of both axes, y along the pinion's own, z across both.",
+    missing=_in_a_plane,
+)
+def tooth_force(result: Result) -> Any:
+    """Draw the three components of the force of the teeth."""
+    motion, fine = Motion(result), result.response.fine
+    found = series.tooth_force(result, series.one_sided_phase(fine), motion.mesh_force)
+    values = np.zeros((fine.phase.size, 3)) if found is None else found
+    panels = []
+    for axis, color, course in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):
+        x, y = motion.curve("mesh_force", course)
+        curve = line(x, y, axis, color, unit=display_unit("mesh_force"), width=1.5)
+        panels.append(Panel(axis_label("mesh_force", f"{axis_words('mesh_force')}<br>{axis}"),
+                            [curve]))  # fmt: skip
+    means = [rounded("mesh_force", float(fine.weight @ course)) for course in values.T]
+    title = f"On average the teeth push with {means[0]}, {means[1]} and {means[2]}{motion.window}"
+    return stack(title, motion.label, panels, motion.layout())

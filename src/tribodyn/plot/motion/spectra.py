@@ -14,7 +14,7 @@ from tribodyn.plot.look.labels import axis_label, display_unit, displayed, round
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, TOP, TOTAL, Trace, button_row
 from tribodyn.plot.mesh.cycle import run_drawing
-from tribodyn.plot.motion.courses import DIRECTIONS, GEARS, words_of
+from tribodyn.plot.motion.courses import GEARS, directions, words_of
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.types import Array
 
@@ -84,7 +84,7 @@ def _gear_panels(result: Result, quantity: str) -> list[Panel]:
             words_of(quantity, words),
             [(gear, color, motion.of_gear(quantity, gear, axis)) for gear, color in GEARS],
         )
-        for axis, words in DIRECTIONS
+        for axis, words in directions(result)
     ]
 
 
