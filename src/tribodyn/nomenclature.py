@@ -83,10 +83,10 @@ pressure_viscosity_coefficient | alpha | 1/Pa | 1/GPa | slope of ln(viscosity) o
 temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per kelvin at ambient pressure | "0.04 1/K"
 eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear | "5 MPa"
 limiting_stress | tau_L0 | Pa | MPa | limiting shear stress of the oil at ambient pressure | "2 MPa"
-limiting_stress_slope | Lambda | | | rise of the limiting shear stress of the oil per pressure | 0.05
 heat_transfer | hA | W/K | W/K | heat that surroundings take up per kelvin that gears and oil are warmer | "15 W/K"
 ambient_temperature | T_amb | K | degC | temperature of the surroundings | "20 degC"
-specific_heat | c | J/kg/K | J/kg/K | heat that warms a kilogram by one kelvin | "460 J/kg/K"
+specific_heat | c_p | J/kg/K | J/kg/K | heat that warms a kilogram by one kelvin | "460 J/kg/K"
+limiting_stress_slope | Lambda_L | | | rise of the limiting shear stress of the oil per pressure | 0.05
 carreau_stress | G | Pa | MPa | shear stress from which the oil thins after Carreau | "5 MPa"
 carreau_exponent | n | | | exponent of the shear stress over a high shear rate after Carreau | 0.5
 yasuda_exponent | a | | | sharpness of the bend from Newton's oil to a power of the shear rate | 2.0

@@ -15,6 +15,7 @@ from tribodyn.plot import FIGURES
 from tribodyn.report.blocks import HYPOID_SECTIONS
 from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.assembly import geometry, whole_system
+from tribodyn.study.pipeline.citations import cite
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 NAME = "hypoid-mixed-ehl"
@@ -107,6 +108,12 @@ def test_what_cannot_be_is_refused_with_its_line(changes, place, told):
     assert told in message
     for word in place.split():
         assert word.rpartition(".")[2] in message
+
+
+def test_papers_are_those_of_what_the_pair_uses():
+    told = cite(built_in())
+    assert "Xu, H." in told
+    assert "Weber" not in told
 
 
 def test_spur_gears_have_no_axes_that_cross():

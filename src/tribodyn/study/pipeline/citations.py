@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import tribodyn
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Model
+from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.section import section_at
 
@@ -39,6 +40,8 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
 
     unlisted: dict[str, dict[str, Any]] = {}
     for table in ("stiffness", "friction", "film", "dynamics", "solver"):
+        if is_idle(table, case.gears.kind):
+            continue
         model = getattr(case, table).chosen
         keys += model.papers
         if not model.papers and model.source and not _is_built_in(model):
