@@ -27,7 +27,7 @@ STEPS = 10
 def main(words: Sequence[str] | None = None) -> None:
     """Print seconds of the table, of the training beside MINPACK, and of the predictions."""
     quick = arguments(__doc__, words).quick
-    case = load_case("fzg-film").replace({"film.model": "none", "stiffness.model": "analytic"})
+    case = load_case("fzg-film").replace({"film.model": "none"})
     lanes, rows, count = (4, 100, 1000) if quick else (100, 100, 10**6)
     with quiet():
         vibration_data(case, seed=1, trajectories=lanes, samples=1)  # what is compiled once
