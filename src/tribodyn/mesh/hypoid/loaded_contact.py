@@ -243,7 +243,7 @@ def hypoid_loaded_contact(
     for name, count, least in (("steps", steps, 16), ("cells", cells, 4)):
         require_between(name, require_whole(name, count, least), least, 2000)
     grid = phase_grid((0.0,), steps)
-    lines = contact_cells(flanks, misalignment or Misalignment(), grid.phase, cells)
+    lines = _lines(flanks, misalignment or Misalignment(), grid, cells)
     return _loaded(lines, grid, torque, line_stiffness, material or Material())
 
 
@@ -251,6 +251,19 @@ def _required_torque(pinion_torque: float) -> float:
     torque = require_number("pinion_torque", pinion_torque)
     require_between("pinion_torque", torque, 1e-6, 1e7, "N*m", remedy="Give its amount")
     return torque
+
+
+def _lines(
+    flanks: HypoidFlanks, misalignment: Misalignment, grid: PhaseGrid, cells: int
+) -> ContactCells:
+    """Contact lines, which know no torque: those found last stay with the flanks."""
+    key = (misalignment, grid.phase.size, cells)
+    known, kept = vars(flanks).get("_lines_found_last", (None, None))
+    if isinstance(kept, ContactCells) and known == key:
+        return kept
+    lines = contact_cells(flanks, misalignment, grid.phase, cells)
+    vars(flanks)["_lines_found_last"] = (key, lines)
+    return lines
 
 
 def carried(cells: ContactCells, line_stiffness: float, lag: Array) -> tuple[Array, Array, Array]:
