@@ -88,7 +88,7 @@ _PLANAR, _SPATIAL = ("spur-6dof", "fzg-12dof"), "hypoid-14dof"
 def _kind(given: Given) -> Found:
     """What a kind of gear pair needs, and what it cannot have."""
     kind = given.get("gears.kind", "spur")
-    narrow = _NARROW.get(kind, ())
+    narrow = _NARROW.get(kind, ()) if isinstance(kind, str) else ()
     for key, names, why in narrow:
         if given.get(key, names[0]) not in names:
             remedy = f"Write {' or '.join(names)}"

@@ -364,7 +364,8 @@ def as_meant(
     result: dict[str, Any] = {}
     found: Found = []
     places: dict[str, str] = {}
-    for name, value in data.items():
+    # Keys of a case that is written in Python may be anything.
+    for name, value in ((str(key), value) for key, value in data.items()):
         strange = section is not None and name not in known and (path or name != "assumed")
         meant = _meant(name, section) if strange and section else ""
         inner, table = known.get(meant or name), isinstance(value, Mapping)
