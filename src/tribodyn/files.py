@@ -40,8 +40,15 @@ _CANNOT_EXCHANGE = (errno.EINVAL, errno.ENOSYS, errno.ENOTSUP, errno.EPERM)
 #: Without locks, what nobody has touched for so long is left over [s].
 _LONG = 86400.0
 #: What an earlier version wrote before the report.
-_BEFORE_REPORT = {"case.toml", "summary.json", "mesh.nc", "response.nc", "sweep.csv", "sweep.nc",
-                  "bifurcation.nc"}  # fmt: skip
+_BEFORE_REPORT = {
+    "case.toml",
+    "summary.json",
+    "mesh.nc",
+    "response.nc",
+    "sweep.csv",
+    "sweep.nc",
+    "bifurcation.nc",
+}
 
 
 def cannot_write(place: object, error: Exception) -> Problem:

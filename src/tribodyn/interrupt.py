@@ -87,9 +87,11 @@ class Threads:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None,
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
         trace: TracebackType | None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Wait for the threads; after an error nothing new begins, and an interruption ends all."""
         try:
             if error is not None and not isinstance(error, Exception):

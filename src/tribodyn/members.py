@@ -21,9 +21,12 @@ __all__ = ["Members"]
 NAME = "members.jsonl"
 #: What a study is told by, and how a message calls it.
 _WORDS = {
-    "study": "it is another study", "version": "another version of tribodyn began it",
-    "case": "its case differs", "over": "other values vary", "options": "its options differ",
-}  # fmt: skip
+    "study": "it is another study",
+    "version": "another version of tribodyn began it",
+    "case": "its case differs",
+    "over": "other values vary",
+    "options": "its options differ",
+}
 
 
 class Members:

@@ -151,8 +151,11 @@ def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:
 
     if "coupling_loading" not in data:
         return None
-    columns = {name.removeprefix("coupling_"): data[name].values
-               for name in map(str, data.data_vars) if name.startswith("coupling_")}  # fmt: skip
+    columns = {
+        name.removeprefix("coupling_"): data[name].values
+        for name in map(str, data.data_vars)
+        if name.startswith("coupling_")
+    }
     order = np.arange(1.0, data.sizes["pass"] + 1.0)
     kind, tolerance = str(data.attrs["coupling_kind"]), float(data.attrs["coupling_tolerance"])
     return Coupling(iteration=order, phase=mesh.phase, kind=kind, tolerance=tolerance, **columns)
@@ -169,16 +172,23 @@ def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:
         why = f"Its motion has {', '.join(names)}, its case {', '.join(system.names)}"
         raise InputError("these files are of different results", str(folder), why, _REMEDY)
     frequency = float(told["mesh_frequency"])
-    ends = [np.hstack([data[f"{end}{name}"].values for name in ("position", "velocity")])
-            for end in ("", "end_")]  # fmt: skip
+    ends = [
+        np.hstack([data[f"{end}{name}"].values for name in ("position", "velocity")])
+        for end in ("", "end_")
+    ]
     extra = data["extra_force"].values if "extra_force" in data else np.zeros(system.size)
     if "floquet_multipliers" in data:
         real, imaginary = data["floquet_multipliers"].values
         facts["floquet_multipliers"] = real + 1j * imaginary
     response = build_response(
-        compile_for(system, frequency, rows // periods), frequency, np.vstack(ends), extra,
+        compile_for(system, frequency, rows // periods),
+        frequency,
+        np.vstack(ends),
+        extra,
         error=float(told["steady_state_error"]),
-        step_error=float(told.get("step_error", "nan")), converged=bool(told["converged"]),
-        **{name: int(told[name]) for name in ("cycles_used", "search_cycles", "period")}, **facts,
-    )  # fmt: skip
+        step_error=float(told.get("step_error", "nan")),
+        converged=bool(told["converged"]),
+        **{name: int(told[name]) for name in ("cycles_used", "search_cycles", "period")},
+        **facts,
+    )
     return later(response, float(data["time"].values[0]))

@@ -24,9 +24,16 @@ from tribodyn.stored import LARGEST, read_bytes
 
 #: Spellings of units that differ from ours, without blanks.
 _UNITS = {
-    "C": "degC", "°": "deg", "mum": "um", "1/min": "rpm", "none": "", "Nm": "N*m",
-    "kg/dm^3": "kg/dm^3", "N/(mmmum)": "N/mm/um", "kgm^2": "kg*m^2",
-}  # fmt: skip
+    "C": "degC",
+    "°": "deg",
+    "mum": "um",
+    "1/min": "rpm",
+    "none": "",
+    "Nm": "N*m",
+    "kg/dm^3": "kg/dm^3",
+    "N/(mmmum)": "N/mm/um",
+    "kgm^2": "kg*m^2",
+}
 _REMEDY = "Write it again with the program that it comes from"
 #: Components of one model at most: real gearboxes have some hundred.
 _MOST = 100_000

@@ -70,11 +70,18 @@ def write_tables(result: Result, folder: str | PathLike[str]) -> Path:
 
 def _tables(result: Result) -> Iterator[tuple[str, Table]]:
     summary = result.summary()
-    yield "summary", (["figure", "value", "unit", "meaning"], [
-        list(summary), list(summary.values()),
-        [SUMMARY[name].unit or "1" for name in summary],
-        [SUMMARY[name].meaning for name in summary],
-    ])  # fmt: skip
+    yield (
+        "summary",
+        (
+            ["figure", "value", "unit", "meaning"],
+            [
+                list(summary),
+                list(summary.values()),
+                [SUMMARY[name].unit or "1" for name in summary],
+                [SUMMARY[name].meaning for name in summary],
+            ],
+        ),
+    )
     for kind, data in (("mesh", result.mesh.to_xarray()), ("motion", result.to_xarray())):
         groups: dict[tuple[str, ...], list[str]] = {}
         for name, variable in data.data_vars.items():

@@ -16,23 +16,29 @@ from tribodyn.study.case.read import read_case
 #: Values closer than this are the same: files carry decimal fractions of millimetres.
 _SAME = 1e-9
 _MODELS = {
-    "film.model": "moes", "stiffness.model": "fe2d", "friction.law": "xu-2007",
-    "dynamics.model": "spur-6dof", "dynamics.mesh_law": "force-law",
-}  # fmt: skip
+    "film.model": "moes",
+    "stiffness.model": "fe2d",
+    "friction.law": "xu-2007",
+    "dynamics.model": "spur-6dof",
+    "dynamics.mesh_law": "force-law",
+}
 _ASSUMED = {
     "dynamics.bearing_stiffness": (500e6, "a usual stiffness of shaft and bearings together"),
     "dynamics.backlash": (0.1e-3, "a usual play"),
     "gears.driver": ("pinion", "the file says of no torque where it comes from"),
     "lubricant.name": ("ISO VG 220", "a usual gear oil"),
     "lubricant.temperature": (333.15, "a usual temperature of gear oil"),
-}  # fmt: skip
+}
 _NOT_THERE = "not in the REXS file; "
 
 
 def case_from_rexs(
-    model: GearboxModel, stage: int | None = None, load_case: int | None = None, *,
+    model: GearboxModel,
+    stage: int | None = None,
+    load_case: int | None = None,
+    *,
     changes: dict[str, Any] | None = None,
-) -> Case:  # fmt: skip
+) -> Case:
     """Case of a spur stage of a gearbox model under one load.
 
     Parameters
@@ -122,10 +128,14 @@ def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, An
         data |= {
             f"gears.{name}.{key}": value
             for key in (
-                "teeth", "profile_shift_coefficient", "face_width", "tip_diameter", "roughness_ra"
+                "teeth",
+                "profile_shift_coefficient",
+                "face_width",
+                "tip_diameter",
+                "roughness_ra",
             )
             if (value := getattr(gear, key)) is not None
-        }  # fmt: skip
+        }
     shaft = model.shaft_of(pinion.id)
     if shaft in load.speeds and shaft in load.torques:
         data["operation.speed"] = load.speeds[shaft]
@@ -198,8 +208,13 @@ def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str
         oil = Lubricant.from_temperature(
             temperature, ((313.15, cold), (373.15, warm)), density, base_oil="mineral"
         )
-        keys = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient",
-                "temperature_viscosity_coefficient", "temperature")  # fmt: skip
+        keys = (
+            "dynamic_viscosity",
+            "density",
+            "pressure_viscosity_coefficient",
+            "temperature_viscosity_coefficient",
+            "temperature",
+        )
         data = {f"lubricant.{key}": getattr(oil, key) for key in keys}
         estimate = "as of a mineral oil, from the viscosity by AGMA 925"
         notes = {"lubricant.pressure_viscosity_coefficient": _NOT_THERE + estimate}

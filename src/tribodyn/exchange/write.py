@@ -52,8 +52,12 @@ def write_rexs(case: Case, path: str | PathLike[str], *, force: bool = False) ->
     target = Path(path)
     writer = _WRITERS.get(target.suffix.lower())
     if writer is None:
-        raise InputError(f'the name ends in "{target.suffix}"', str(path), "",
-                         f"Let it end in {', '.join(_WRITERS)}")  # fmt: skip
+        raise InputError(
+            f'the name ends in "{target.suffix}"',
+            str(path),
+            "",
+            f"Let it end in {', '.join(_WRITERS)}",
+        )
     if case.gears.kind != "spur":
         what = f'gears of the kind "{case.gears.kind}" are no cylindrical stage'
         raise InputError(what, "gears.kind", "", "Write a case of spur gears")
@@ -73,10 +77,14 @@ def _parts(case: Case) -> dict[str, Any]:
     torque = operation.torque if case.gears.driver == operation.speed_of else -operation.torque
     load: list[dict[str, Any]] = [
         _part(_UNIT, "gear_unit", "", [("load_duration_fraction", "%", 100.0)]),
-        _part(_SHAFTS[driver], "shaft", "",
-              [("rotational_speed", "1 / min", operation.speed * 30.0 / math.pi)]),
+        _part(
+            _SHAFTS[driver],
+            "shaft",
+            "",
+            [("rotational_speed", "1 / min", operation.speed * 30.0 / math.pi)],
+        ),
         _part(_LOAD, "external_load", "", [("torque_around_u_axis", "N m", torque)]),
-    ]  # fmt: skip
+    ]
     temperature = case.lubricant.temperature if case.lubricant else None
     if temperature is not None:
         kelvin = [("temperature_lubricant", "C", temperature - 273.15)]
@@ -157,10 +165,14 @@ def _relations(loaded: int, oil: bool) -> list[dict[str, Any]]:
         ]
     links += [("reference", {"origin": _CASING, "referenced": _OIL})] if oil else []
     return [
-        {"id": n, "type": kind, **({"order": 1} if kind == "ordered_reference" else {}),
-         "refs": [{"role": role, "id": number} for role, number in roles.items()]}
+        {
+            "id": n,
+            "type": kind,
+            **({"order": 1} if kind == "ordered_reference" else {}),
+            "refs": [{"role": role, "id": number} for role, number in roles.items()],
+        }
         for n, (kind, roles) in enumerate(links, start=1)
-    ]  # fmt: skip
+    ]
 
 
 def _part(number: int, kind: str, name: str, attributes: list[Attribute]) -> dict[str, Any]:
@@ -173,12 +185,15 @@ def tree_of(case: Case) -> dict[str, Any]:
 
     def plain(parts: list[dict[str, Any]]) -> list[dict[str, Any]]:
         return [
-            {**part, "attributes": [
-                {"id": name, **({} if unit == "none" else {"unit": unit}), kinds[type(v)]: v}
-                for name, unit, v in part["attributes"]
-            ]}
+            {
+                **part,
+                "attributes": [
+                    {"id": name, **({} if unit == "none" else {"unit": unit}), kinds[type(v)]: v}
+                    for name, unit, v in part["attributes"]
+                ],
+            }
             for part in parts
-        ]  # fmt: skip
+        ]
 
     tree = _parts(case)
     (load,) = tree["load_spectrum"]["load_cases"]
@@ -229,5 +244,7 @@ def _as_zip(case: Case) -> bytes:
 
 
 _WRITERS: dict[str, Callable[[Case], bytes]] = {
-    ".rexs": _as_xml, ".rexsj": _as_json, ".rexsz": _as_zip,
-}  # fmt: skip
+    ".rexs": _as_xml,
+    ".rexsj": _as_json,
+    ".rexsz": _as_zip,
+}

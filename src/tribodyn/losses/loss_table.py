@@ -252,13 +252,14 @@ def _too_long(
     """Rows with more cells than the head, as a comma as decimal sign makes them."""
     return [
         Problem(
-            f"{len(cells)} cells below {len(head)} columns", f"{file}:{number}",
+            f"{len(cells)} cells below {len(head)} columns",
+            f"{file}:{number}",
             "A comma as decimal sign parts a number in two",
             "Write numbers with a point, or part the cells by semicolons",
         )
         for number, cells in lines
-        if any(cell.strip() for cell in cells[len(head):])
-    ]  # fmt: skip
+        if any(cell.strip() for cell in cells[len(head) :])
+    ]
 
 
 def _column(

@@ -177,10 +177,7 @@ def compare(
         size, own_lines = gains[name] * size, gains[name] * own_lines
         whole = factor * float(np.std(measured[name]))
         rows.append((name, "rms", unit, _rms(size[order > 0.0]), whole))
-        rows.append(
-            (name, "rms of mesh harmonics", unit, _rms(own_lines),
-             factor * _rms(found))
-        )  # fmt: skip
+        rows.append((name, "rms of mesh harmonics", unit, _rms(own_lines), factor * _rms(found)))
         for number, pair in enumerate(zip(own_lines, factor * found, strict=True), start=1):
             rows.append((name, f"mesh harmonic {number}", unit, float(pair[0]), float(pair[1])))
         lines[name] = Lines((order * own, size), (told[0], factor * told[1]))
@@ -198,17 +195,21 @@ def _refuse(measured: Any, channels: Any) -> None:
     if not isinstance(measured, Recording):
         raise InputError(
             Problem(
-                f"measured = {shortened(repr(measured))}", Argument("measured"),
-                "Wanted: a Recording", "Read it with tribodyn.measurement.read",
+                f"measured = {shortened(repr(measured))}",
+                Argument("measured"),
+                "Wanted: a Recording",
+                "Read it with tribodyn.measurement.read",
             )
-        )  # fmt: skip
+        )
     if not isinstance(channels, Mapping) or not channels:
         raise InputError(
             Problem(
-                "no channels are compared", Argument("channels"), "",
+                "no channels are compared",
+                Argument("channels"),
+                "",
                 'Write {"acc": "acceleration_loa_pinion"}',
             )
-        )  # fmt: skip
+        )
 
 
 def _rms(amplitudes: Array) -> float:
@@ -222,10 +223,12 @@ def _frequency(data: Any) -> float:
     except (AttributeError, KeyError, TypeError, ValueError):
         raise InputError(
             Problem(
-                "it has no mesh frequency", Argument("computed"),
-                "Wanted: the result of tribodyn.run, or its data set", "Give the result",
+                "it has no mesh frequency",
+                Argument("computed"),
+                "Wanted: the result of tribodyn.run, or its data set",
+                "Give the result",
             )
-        ) from None  # fmt: skip
+        ) from None
 
 
 def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
@@ -236,17 +239,20 @@ def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
         known = sorted(each.removesuffix("_spectrum") for each in names if "_spectrum" in each)
         raise InputError(
             Problem(
-                f'there is no computed signal "{signal}"', Argument("channels"),
+                f'there is no computed signal "{signal}"',
+                Argument("channels"),
                 f"It has {', '.join(known)}" if known else "It is no steady state",
                 "Write one of these" if known else 'Compute with solver.method = "steady"',
             )
-        )  # fmt: skip
+        )
     order = np.asarray(data["order"].values, dtype=float)
     if order.max() < count:
         raise InputError(
-            f"harmonics = {count}", where=Argument("harmonics"),
-            why=f"The computed motion holds {order.max():.0f}", remedy="Ask for fewer",
-        )  # fmt: skip
+            f"harmonics = {count}",
+            where=Argument("harmonics"),
+            why=f"The computed motion holds {order.max():.0f}",
+            remedy="Ask for fewer",
+        )
     return order, np.asarray(data[name].values, dtype=float), str(data[name].attrs.get("units", ""))
 
 
@@ -258,9 +264,11 @@ def _same_unit(given: str, wanted: str, name: str) -> float:
         raise InputError(
             Problem(
                 f'channel {name} is in "{given}", the computed signal in "{wanted}"',
-                Argument("channels"), str(error), "Give units or sensitivity when reading it",
+                Argument("channels"),
+                str(error),
+                "Give units or sensitivity when reading it",
             )
-        ) from None  # fmt: skip
+        ) from None
 
 
 def _measured(
@@ -278,16 +286,18 @@ def _measured(
     numbers = np.arange(1, count + 1)
     if places[-1] < count * (1.0 + tolerance):
         raise InputError(
-            f"mesh harmonic {count} is beyond the record", where=Argument("harmonics"),
+            f"mesh harmonic {count} is beyond the record",
+            where=Argument("harmonics"),
             why=f"Sampled with {recording.sample_rate:g} Hz it reaches harmonic {places[-1]:.3g}",
             remedy="Ask for fewer, or sample faster",
-        )  # fmt: skip
+        )
     if places[1] > 0.05:
         raise InputError(
-            f"the record lasts {recording.duration:g} s", where=Argument("measured"),
+            f"the record lasts {recording.duration:g} s",
+            where=Argument("measured"),
             why="Mesh harmonics are parted from what lies beside them over 20 mesh cycles or more",
             remedy="Record longer",
-        )  # fmt: skip
+        )
     found = [
         size[np.abs(places - number) <= max(tolerance * number, 0.51 * places[1])].max()
         for number in numbers

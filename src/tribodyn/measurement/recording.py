@@ -250,10 +250,11 @@ def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:
     match = _SENSITIVITY.fullmatch(str(text))
     where = Argument(f"sensitivity of channel {name}")
     wrong = Problem(
-        f'sensitivity = "{text}"', where,
+        f'sensitivity = "{text}"',
+        where,
         f"Wanted: volts, or what the channel holds ({unit}), over the unit that is measured",
         'Write "100 mV/g", "10 mV/N" or "0.5 V/(N*m)"',
-    )  # fmt: skip
+    )
     if match is None:
         raise InputError(wrong)
     below = match[3].strip().removeprefix("(").removesuffix(")")

@@ -84,10 +84,11 @@ def synthetic_run_up(
     top = max(map(float, orders), default=0.0) * float(speeds.max()) / (2.0 * np.pi)
     if not top < 0.5 * sample_rate:
         raise InputError(
-            f"the highest order reaches {top:.6g} Hz", where=Argument("orders"),
+            f"the highest order reaches {top:.6g} Hz",
+            where=Argument("orders"),
             why=f"Only frequencies below half of {sample_rate:g} Hz can be recorded",
             remedy="Sample faster, or leave it out",
-        )  # fmt: skip
+        )
     random = np.random.default_rng(require_whole("seed", seed, 0))
     signal = mains * np.cos(2.0 * np.pi * 50.0 * time) + noise * random.standard_normal(size)
     for order, amplitude in orders.items():
@@ -118,10 +119,11 @@ def _pulses(
     moments = np.interp(np.arange(1, int(turned[-1]) + 1), turned, time)
     if moments.size < 8 + 4 * (missing + double):
         raise InputError(
-            f"the shaft gives {moments.size} pulses", where=Argument("duration"),
+            f"the shaft gives {moments.size} pulses",
+            where=Argument("duration"),
             why="At least eight are needed, and four more for each that is missing or double",
             remedy="Turn longer or faster, or take more pulses per revolution",
-        )  # fmt: skip
+        )
     apart = np.diff(moments)
     gaps = np.minimum(np.append(apart, apart[-1]), np.append(apart[0], apart))
     moments = moments + jitter * gaps * random.standard_normal(moments.size)

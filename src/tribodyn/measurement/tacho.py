@@ -121,12 +121,13 @@ def edges(values: Array, threshold: float | None, edge: str = "rising") -> Array
     if last.size < 4:
         raise ComputationError(
             Problem(
-                f"{last.size} pulses found", Argument("tacho"),
+                f"{last.size} pulses found",
+                Argument("tacho"),
                 f"At least four are needed; looked for edges through {level:.4g}, with levels "
                 f"{_HYSTERESIS * height:.4g} below and above",
                 "Give the threshold, the other edge, or a longer record",
             )
-        )  # fmt: skip
+        )
     low, high = values[last], values[last + 1]
     return np.asarray(last + (level - low) / (high - low))
 
@@ -247,9 +248,12 @@ def _on_curve(moments: Array, count: Array, time: Array) -> Array:
     best, pulses = np.inf, 2
     while pulses <= min(_COARSEST, moments.size // 4):
         knots = np.concatenate(
-            (np.repeat(moments[0], 4), moments[pulses : -max(pulses // 2, 2) : pulses],
-             np.repeat(moments[-1], 4))
-        )  # fmt: skip
+            (
+                np.repeat(moments[0], 4),
+                moments[pulses : -max(pulses // 2, 2) : pulses],
+                np.repeat(moments[-1], 4),
+            )
+        )
         basis = BSpline.design_matrix(moments, knots, 3)
         fit = BSpline(knots, spsolve((basis.T @ basis).tocsc(), basis.T @ count), 3)
         left = 1.0 - (knots.size - 4) / moments.size

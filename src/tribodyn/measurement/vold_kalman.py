@@ -74,9 +74,11 @@ class TrackedOrders(Record):
         if not found.size:
             known = ", ".join(f"{each:g}" for each in self.order)
             raise InputError(
-                f"order {order:g} asked for", where=Argument("order"), why=f"Tracked: {known}",
+                f"order {order:g} asked for",
+                where=Argument("order"),
+                why=f"Tracked: {known}",
                 remedy="Track it",
-            )  # fmt: skip
+            )
         row = int(found[0])
         return np.asarray(self.amplitude[row] * np.cos(order * self.angle + self.phase[row]))
 
@@ -169,27 +171,32 @@ def track_orders(
 def _refuse(values: Array, turned: Array, wanted: Array) -> None:
     if wanted.ndim != 1 or np.unique(wanted).size != wanted.size:
         raise InputError(
-            f"orders = {wanted.tolist()}", where=Argument("orders"),
-            why="Each order is followed once", remedy="Give a list of different orders",
-        )  # fmt: skip
+            f"orders = {wanted.tolist()}",
+            where=Argument("orders"),
+            why="Each order is followed once",
+            remedy="Give a list of different orders",
+        )
     if turned.size != values.size:
         raise InputError(
             f"angle has {turned.size} samples, the signal has {values.size}",
-            where=Argument("angle"), why="Each sample of the signal has its own angle",
-        )  # fmt: skip
+            where=Argument("angle"),
+            why="Each sample of the signal has its own angle",
+        )
     if values.size * wanted.size > _MOST:
         raise InputError(
-            f"{wanted.size} orders over {values.size} samples", where=Argument("orders"),
+            f"{wanted.size} orders over {values.size} samples",
+            where=Argument("orders"),
             why=f"At most {_MOST} unknowns are solved at once",
             remedy="Follow fewer orders together, or cut the record in parts",
-        )  # fmt: skip
+        )
     top = float(wanted.max() * np.abs(np.diff(turned)).max())
     if top > np.pi:
         raise InputError(
-            f"order {wanted.max():g} asked for", where=Argument("orders"),
+            f"order {wanted.max():g} asked for",
+            where=Argument("orders"),
             why=f"At the highest speed it has {2 * np.pi / top:.3g} samples in a period, not two",
             remedy="Leave it out, or sample faster",
-        )  # fmt: skip
+        )
 
 
 def _equations(waves: ComplexArray, weight: float) -> ComplexArray:

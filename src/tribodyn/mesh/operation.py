@@ -82,8 +82,11 @@ class FilmOverOperation(Record):
     def _parts(self) -> Parts:
         """With coordinates of the dimensions, by which frames and selections find values."""
         parts = super()._parts()
-        for dim, name in (("torque", "pinion_torque"), ("speed", "pinion_speed"),
-                          ("position", "path")):  # fmt: skip
+        for dim, name in (
+            ("torque", "pinion_torque"),
+            ("speed", "pinion_speed"),
+            ("position", "path"),
+        ):
             parts.coordinates[dim] = (dim, *parts.coordinates[name][1:])
         return parts
 

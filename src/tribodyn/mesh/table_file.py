@@ -180,9 +180,11 @@ class TableFile:
         missing = [name for name in _FRICTION if name not in self.columns]
         if missing and "friction_direction" not in self.columns:
             _refuse(
-                self.path, f"the column {missing[0]} is missing", "Friction needs a direction",
+                self.path,
+                f"the column {missing[0]} is missing",
+                "Friction needs a direction",
                 f"Add {', '.join(missing)}, or friction_direction",
-            )  # fmt: skip
+            )
 
 
 def read_table_file(path: str | os.PathLike[str]) -> TableFile:
@@ -292,10 +294,11 @@ def _gridded(
     edges = tuple(float(phase[a]) for a, _ in pieces)
     intervals = tuple(b - a - 1 for a, b in pieces)
     even = all(
-        count >= 4 and count % 2 == 0
+        count >= 4
+        and count % 2 == 0
         and np.allclose(phase[a:b], np.linspace(phase[a], phase[b - 1], b - a), 0.0, _EVEN)
         for count, (a, b) in zip(intervals, pieces, strict=True)
-    )  # fmt: skip
+    )
     edges = (0.0, *edges[1:])
     if even:
         rows = np.concatenate([np.arange(a, b) for a, b in pieces])

@@ -92,8 +92,15 @@ class Motions:
     def _kept(self, index: int) -> list[Any]:
         """What is kept of a motion."""
         recent = self.recent[index] if len(self.recent) else None
-        return [self.start[index], self.state[index], self.force[index], self.period[index],
-                self.change[index], self.rate[index], recent]  # fmt: skip
+        return [
+            self.start[index],
+            self.state[index],
+            self.force[index],
+            self.period[index],
+            self.change[index],
+            self.rate[index],
+            recent,
+        ]
 
     def queue(self, indices: Any) -> None:
         """Say which motions are to be marched."""

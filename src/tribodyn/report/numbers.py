@@ -91,9 +91,12 @@ def compared_friction(summary: Mapping[str, float]) -> list[Compared]:
         own = name.removesuffix(_ENDING)
         if own != name and own in summary:
             found.append(
-                Compared(describe(own, summary[own]), describe(name, nominal),
-                         _change(float(summary[own]), float(nominal)))
-            )  # fmt: skip
+                Compared(
+                    describe(own, summary[own]),
+                    describe(name, nominal),
+                    _change(float(summary[own]), float(nominal)),
+                )
+            )
     return found
 
 
@@ -104,17 +107,27 @@ def _change(own: float, nominal: float) -> str:
 
 #: Head of the table, in reports and on the screen.
 HEAD = (
-    "Mode", f"Frequency [{display_unit('frequency')}]", "Damping [%]", "Moves", "Strained",
+    "Mode",
+    f"Frequency [{display_unit('frequency')}]",
+    "Damping [%]",
+    "Moves",
+    "Strained",
     *(f"{display_unit('speed')} at harmonic {order}" for order in ORDERS),
-)  # fmt: skip
+)
 
 
 def cells(mode: Mode) -> list[str]:
     """One mode as it is printed."""
     speeds = (significant(float(displayed("speed", speed)), 4) for speed in mode.speeds)
     damping = significant(100.0 * mode.damping_ratio, 3)
-    return [str(mode.number), significant(mode.frequency, 4), damping, mode.moves, mode.strains,
-            *speeds]  # fmt: skip
+    return [
+        str(mode.number),
+        significant(mode.frequency, 4),
+        damping,
+        mode.moves,
+        mode.strains,
+        *speeds,
+    ]
 
 
 def modes_table(result: Any) -> list[list[str]]:

@@ -72,23 +72,30 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
     for point in found.points[:_ROWS]:
         keys = zip(found.axes, point.values, strict=True)
         cells = [axis.show(value).partition(" ")[0] for axis, value in keys]
-        shown = [SUMMARY[n].show(point.figures[n]).partition(" ")[0] if n in point.figures else ""
-                 for n in names]  # fmt: skip
+        shown = [
+            SUMMARY[n].show(point.figures[n]).partition(" ")[0] if n in point.figures else ""
+            for n in names
+        ]
         rows.append([*cells, *shown, point.failed])
     failed = [point for point in found.points if point.failed]
     lacking = "" if found.complete else f"Interrupted: {len(found.points)} of {found.failed.size}"
     page = _Page(
-        kind="sweep", lead=repr(found)[6:-1], blocks=blocks,
-        varied=[axis.key for axis in found.axes], notice_heading="Take care",
+        kind="sweep",
+        lead=repr(found)[6:-1],
+        blocks=blocks,
+        varied=[axis.key for axis in found.axes],
+        notice_heading="Take care",
         cards=[("Values", f"{len(found.points)}"), ("Failed", f"{len(failed)}")],
         notices=[
             *([f"{lacking} values are done."] if lacking else []),
             *dict.fromkeys(point.failed for point in failed),
         ],
-        head=[*head, "Failed"], rows=rows,
+        head=[*head, "Failed"],
+        rows=rows,
         more=f"The first {_ROWS} values; all of them are in sweep.csv."
-        if len(found.points) > _ROWS else "",
-    )  # fmt: skip
+        if len(found.points) > _ROWS
+        else "",
+    )
     return _write(Path(path), found.case, page)
 
 
@@ -136,12 +143,16 @@ def write_bifurcation_report(
     if lost := int(found.ran_away.sum()):
         counts.append(("Ran away", str(lost)))
     page = _Page(
-        kind="bifurcation diagram", lead=lead,
-        varied=[found.parameter_name], notice_heading="What it says",
+        kind="bifurcation diagram",
+        lead=lead,
+        varied=[found.parameter_name],
+        notice_heading="What it says",
         blocks=[drawn_block("bifurcation", "Motion once per mesh cycle", found.plot(), caption)],
-        cards=[("Motions", str(int(found.finished.sum()))), *counts], notices=list(told), head=head,
+        cards=[("Motions", str(int(found.finished.sum()))), *counts],
+        notices=list(told),
+        head=head,
         rows=rows,
-    )  # fmt: skip
+    )
     return _write(Path(path), case, page)
 
 
@@ -187,9 +198,16 @@ def write_study_report(
         for number, (heading, drawn, caption) in enumerate(figures, 1)
     ]
     page = _Page(
-        kind=kind, lead=told[0], varied=[], blocks=blocks, cards=[], notice_heading="What it says",
-        notices=list(told), head=head, rows=rows,
-    )  # fmt: skip
+        kind=kind,
+        lead=told[0],
+        varied=[],
+        blocks=blocks,
+        cards=[],
+        notice_heading="What it says",
+        notices=list(told),
+        head=head,
+        rows=rows,
+    )
     return _write(Path(path), case, page)
 
 
@@ -222,12 +240,17 @@ def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
     ]
     failed = dict.fromkeys(point.failed for point in found.points if point.failed)
     page = _Page(
-        kind="friction experiment", lead=found.lead, varied=["gears.driver", "friction.law",
-        "gears.composite_roughness"], blocks=blocks,
-        cards=[(claim.case, claim.verdict) for claim in found.claims], notice_heading="Take care",
-        notices=[*failed], head=found.CLAIM_HEAD, rows=list(found.claim_rows()),
+        kind="friction experiment",
+        lead=found.lead,
+        varied=["gears.driver", "friction.law", "gears.composite_roughness"],
+        blocks=blocks,
+        cards=[(claim.case, claim.verdict) for claim in found.claims],
+        notice_heading="Take care",
+        notices=[*failed],
+        head=found.CLAIM_HEAD,
+        rows=list(found.claim_rows()),
         more="The figures of every steady state are in sweep.csv and sweep.nc.",
-    )  # fmt: skip
+    )
     return _write(Path(path), found.case, page)
 
 
@@ -257,13 +280,22 @@ def write_paper_report(found: Any, path: str | os.PathLike[str]) -> Path:
     origins = zip(found.table(), found.rows, strict=True)
     rows = [[*([] if one else [row["case"]]), *cells, row["reason"]] for cells, row in origins]
     head = [*([] if one else ["Case"]), *found.HEAD, "Reason"]
-    odd = [f"{row['case']}, {row['table']}, {row['row']}: {row['verdict']}, expected was "
-           f"{row['expected']}" for row in found.surprises]  # fmt: skip
+    odd = [
+        f"{row['case']}, {row['table']}, {row['row']}: {row['verdict']}, expected was "
+        f"{row['expected']}"
+        for row in found.surprises
+    ]
     page = _Page(
-        kind="printed and computed", lead=f"{', '.join(found.papers)}: {found.lead}", varied=[],
-        blocks=[], cards=[(name, str(count)) for name, count in counts.most_common()],
-        notice_heading="Not as expected", notices=odd, head=head, rows=rows,
-    )  # fmt: skip
+        kind="printed and computed",
+        lead=f"{', '.join(found.papers)}: {found.lead}",
+        varied=[],
+        blocks=[],
+        cards=[(name, str(count)) for name, count in counts.most_common()],
+        notice_heading="Not as expected",
+        notices=odd,
+        head=head,
+        rows=rows,
+    )
     return _write(Path(path), None, page)
 
 
@@ -274,11 +306,16 @@ def _headed(words: str, unit: str) -> str:
 
 #: Keys of the case -> what the operating point calls them.
 _CHIPS = {
-    "operation.speed": "Speed", "operation.torque": "Torque", "gears.driver": "Driver",
-    "film.model": "Film model", "friction.law": "Friction law",
-    "stiffness.model": "Stiffness model", "dynamics.model": "Structure",
-    "gears.composite_roughness": "Composite roughness", "lubricant.name": "Oil",
-}  # fmt: skip
+    "operation.speed": "Speed",
+    "operation.torque": "Torque",
+    "gears.driver": "Driver",
+    "film.model": "Film model",
+    "friction.law": "Friction law",
+    "stiffness.model": "Stiffness model",
+    "dynamics.model": "Structure",
+    "gears.composite_roughness": "Composite roughness",
+    "lubricant.name": "Oil",
+}
 
 
 def _write(path: Path, case: Any, page: _Page) -> Path:

@@ -121,9 +121,13 @@ def coupled(
     columns: dict[str, Any] = dict(zip(_CHANGES, np.array(rows).T, strict=True))
     order = np.arange(1.0, len(rows) + 1.0)
     how = Coupling(
-        iteration=order, phase=mesh.phase, loading=loading, kind=kind, tolerance=tolerance,
+        iteration=order,
+        phase=mesh.phase,
+        loading=loading,
+        kind=kind,
+        tolerance=tolerance,
         **columns,
-    )  # fmt: skip
+    )
     return case, mesh, how
 
 
@@ -133,9 +137,12 @@ def _under(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
 
     settings = contact_settings(case)
     table = loaded_mesh(
-        case.gear_pair, settings, (case.pinion_speed, case.pinion_torque),
-        force_law=mesh_law_of(case) == "force-law", loading=loading,
-    ).table(settings)  # fmt: skip
+        case.gear_pair,
+        settings,
+        (case.pinion_speed, case.pinion_torque),
+        force_law=mesh_law_of(case) == "force-law",
+        loading=loading,
+    ).table(settings)
     return replace(
         table,
         static_transmission_error=nominal.static_transmission_error,

@@ -198,9 +198,14 @@ class Surrogate(Record):
     def _parts(self) -> Parts:
         parts = super()._parts()
         for number, (network, weights) in enumerate(self.networks):
-            parts.variables[f"weights_{number}"] = (f"weight_{number}", weights, {
-                "hidden": list(network.hidden), "activations": " ".join(network.activations),
-            })  # fmt: skip
+            parts.variables[f"weights_{number}"] = (
+                f"weight_{number}",
+                weights,
+                {
+                    "hidden": list(network.hidden),
+                    "activations": " ".join(network.activations),
+                },
+            )
         parts.attributes["kind"] = _KIND
         return parts
 

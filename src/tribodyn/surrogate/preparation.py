@@ -48,9 +48,11 @@ class Scaling:
     def of(cls, columns: Array) -> Scaling:
         """Fit to rows (n, columns); missing values are left out."""
         return cls(
-            np.nanmin(columns, axis=0), np.nanmax(columns, axis=0),
-            np.nanmean(columns, axis=0), np.nanstd(columns, axis=0),
-        )  # fmt: skip
+            np.nanmin(columns, axis=0),
+            np.nanmax(columns, axis=0),
+            np.nanmean(columns, axis=0),
+            np.nanstd(columns, axis=0),
+        )
 
     def filled(self, columns: Array) -> Array:
         """Put the mean of the training rows where values are missing."""
@@ -266,10 +268,15 @@ def prepare(
     scaling = Scaling.of(inputs[split.training])
     still = [str(n) for n, same in zip(features, scaling.low == scaling.high, strict=True) if same]
     if still:
-        warn("constant-feature", f"{', '.join(still)} does not vary over the training rows, and "
-             "says nothing about the targets.", stacklevel=3)  # fmt: skip
-    return Prepared(inputs, outputs, split, scaling, Scaling.of(outputs[split.training]),
-                    int(np.sum(~kept)))  # fmt: skip
+        warn(
+            "constant-feature",
+            f"{', '.join(still)} does not vary over the training rows, and "
+            "says nothing about the targets.",
+            stacklevel=3,
+        )
+    return Prepared(
+        inputs, outputs, split, scaling, Scaling.of(outputs[split.training]), int(np.sum(~kept))
+    )
 
 
 def _kept(columns: Array, split: Split, limit: float | None) -> Mask:

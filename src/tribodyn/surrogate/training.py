@@ -221,9 +221,15 @@ def _prepared(
     data: Any, features: Sequence[str], targets: Sequence[str], seed: int, groups: str, by: Training
 ) -> Prepared:
     return prepare(
-        data, features, targets, seed=seed, groups=groups, shares=by.shares,
-        outlier_limit=by.outlier_limit, moving_average=by.moving_average,
-    )  # fmt: skip
+        data,
+        features,
+        targets,
+        seed=seed,
+        groups=groups,
+        shares=by.shares,
+        outlier_limit=by.outlier_limit,
+        moving_average=by.moving_average,
+    )
 
 
 def _fitted(
@@ -239,12 +245,16 @@ def _fitted(
     random = np.random.default_rng([seed, column])
     fits = [
         levenberg_marquardt(
-            residuals.squares, residuals.mean_square, network.start(random),
-            validation=validation.mean_square, damping=training.damping, epochs=training.epochs,
+            residuals.squares,
+            residuals.mean_square,
+            network.start(random),
+            validation=validation.mean_square,
+            damping=training.damping,
+            epochs=training.epochs,
             patience=training.patience,
         )
         for _ in range(training.starts)
-    ]  # fmt: skip
+    ]
     best = min(fits, key=lambda fit: validation.mean_square(fit.weights))
     span = float(ready.target_scaling.span[column])
     error = span * (network.evaluate(best.weights, inputs[held]) - target[held])

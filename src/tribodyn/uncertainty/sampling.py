@@ -71,18 +71,22 @@ def sample(
     if not isinstance(distributions, Mapping) or not distributions:
         raise InputError(
             Problem(
-                "no quantity is spread", Argument("distributions"), "Wanted: a mapping of names",
+                "no quantity is spread",
+                Argument("distributions"),
+                "Wanted: a mapping of names",
                 'Write {"friction.coefficient": "0.05 +- 0.83 %"}',
             )
-        )  # fmt: skip
+        )
     made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     count = require_whole("size", size)
     if count * len(made) > _MOST:
         why = f"At most {_MOST:g} numbers are drawn at once"
         raise InputError(Problem(f"size = {count}", Argument("size"), why, "Draw several samples"))
     shares = uniform(count, len(made), method, require_whole("seed", seed, 0))
-    values = {name: np.asarray(each.ppf(column), dtype=float)
-              for (name, each), column in zip(made.items(), shares.T, strict=True)}  # fmt: skip
+    values = {
+        name: np.asarray(each.ppf(column), dtype=float)
+        for (name, each), column in zip(made.items(), shares.T, strict=True)
+    }
     for name, drawn in values.items():
         if not np.all(np.isfinite(drawn)):
             what = "the distribution gives values that are not finite"

@@ -105,10 +105,11 @@ def sobol_indices(
             raise InputError(
                 Problem(
                     f"the function returns {found.dtype} values of the shape {found.shape}",
-                    Argument("function"), f"It was given {columns.shape[1]} values of each input",
+                    Argument("function"),
+                    f"It was given {columns.shape[1]} values of each input",
                     "Return one number for each",
                 )
-            )  # fmt: skip
+            )
         if not np.all(np.isfinite(found)):
             raise ComputationError("the function returns values that are not finite")
         if np.ptp(found) == 0.0:

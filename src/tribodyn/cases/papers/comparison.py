@@ -42,8 +42,14 @@ class PaperComparison(Record):
     points: tuple[str, ...]
     asked: int
     HEAD: ClassVar[tuple[str, ...]] = (
-        "Table", "Row", "Unit", "Printed", "Computed", "Deviation [%]", "Verdict"
-    )  # fmt: skip
+        "Table",
+        "Row",
+        "Unit",
+        "Printed",
+        "Computed",
+        "Deviation [%]",
+        "Verdict",
+    )
 
     @property
     def complete(self) -> bool:
@@ -75,8 +81,15 @@ class PaperComparison(Record):
             apart = "0" if row["deviation"] == 0.0 else apart
             unit = "" if row["unit"] == "1" else row["unit"]
             odd = "" if row["verdict"] == row["expected"] else f" (expected {row['expected']})"
-            yield [row["table"], row["row"], unit, _text(row["printed"]),
-                   _text(row["computed"]), apart, row["verdict"] + odd]  # fmt: skip
+            yield [
+                row["table"],
+                row["row"],
+                unit,
+                _text(row["printed"]),
+                _text(row["computed"]),
+                apart,
+                row["verdict"] + odd,
+            ]
 
     def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Write ``report.html`` and ``rows.csv`` into a new directory.
@@ -168,8 +181,13 @@ def compare_with_paper(
     chosen = tuple(dict.fromkeys(names)) or tuple(papers())
     rows = [row for name in chosen for row in printed_rows(name)]
     jobs = Jobs(rows)
-    told = {"study": "paper", "version": tribodyn.__version__, "options": list(chosen),
-            "case": "", "over": sorted(jobs.names.values())}  # fmt: skip
+    told = {
+        "study": "paper",
+        "version": tribodyn.__version__,
+        "options": list(chosen),
+        "case": "",
+        "over": sorted(jobs.names.values()),
+    }
     kept = (Members() if members is None else members).begin(told)
     found = jobs.done(kept, partial, progress)
     lacking = [row for row in rows if any(jobs.names[each] not in found for each in asked_by(row))]
@@ -188,8 +206,14 @@ def _rows(
     judged = verdicts(rows, computed)
     for row, (value, failed), verdict in zip(rows, values, judged, strict=True):
         yield {
-            "case": row.paper, "table": row.table, "row": row.row, "unit": row.unit,
-            "printed": row.printed, "computed": value, "deviation": deviation(row, value),
-            "expected": row.expected, "verdict": verdict,
+            "case": row.paper,
+            "table": row.table,
+            "row": row.row,
+            "unit": row.unit,
+            "printed": row.printed,
+            "computed": value,
+            "deviation": deviation(row, value),
+            "expected": row.expected,
+            "verdict": verdict,
             "reason": f"{row.reason} {failed}".strip(),
-        }  # fmt: skip
+        }

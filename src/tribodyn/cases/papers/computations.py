@@ -56,9 +56,11 @@ class Meshes:
         key = loads_of(case)
         if key not in self._loaded:
             self._loaded[key] = loaded_mesh(
-                case.gear_pair, contact_settings(case), (case.pinion_speed, case.pinion_torque),
+                case.gear_pair,
+                contact_settings(case),
+                (case.pinion_speed, case.pinion_torque),
                 force_law=mesh_law_of(case) == "force-law",
-            )  # fmt: skip
+            )
         return self._loaded[key].table(contact_settings(case))
 
 
@@ -66,8 +68,11 @@ class Meshes:
 def _check(case: Case, meshes: Meshes) -> Figures:
     """Numbers of the case itself, its geometry, operating point and oil; bodies of spur gears."""
     known = dict(case.values())
-    numbers = {key: float(v) for key, v in known.items()
-               if isinstance(v, int | float) and not isinstance(v, bool)}  # fmt: skip
+    numbers = {
+        key: float(v)
+        for key, v in known.items()
+        if isinstance(v, int | float) and not isinstance(v, bool)
+    }
     oil = operating_figures(case)
     if "oil_viscosity" in oil:
         oil["oil_kinematic_viscosity"] = oil["oil_viscosity"] / oil["oil_density"]
@@ -87,8 +92,9 @@ def _spur_pair(case: Case) -> dict[str, float]:
     from tribodyn.contact import effective_modulus
 
     pair, steel = case.gear_pair, case.material_properties
-    bodies = {f"gears.{gear}.{key}": None for gear in _GEARS
-              for key in ("mass", "moment_of_inertia")}  # fmt: skip
+    bodies = {
+        f"gears.{gear}.{key}": None for gear in _GEARS for key in ("mass", "moment_of_inertia")
+    }
     solid = geometry(case.replace(bodies))
     path = pair.pinion.base_radius * math.tan(pair.operating_pressure_angle)
     return {
@@ -114,8 +120,12 @@ def _mesh(case: Case, meshes: Meshes) -> Figures:
 def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
     """Friction at both ends, in single contact, in the recess, at the pitch point."""
     ratio = case.gear_pair.transverse_contact_ratio
-    ages = {"start": _INSIDE, "single": 0.5 * ratio, "double": 0.5 * (1.0 + ratio),
-            "end": ratio - _INSIDE}  # fmt: skip
+    ages = {
+        "start": _INSIDE,
+        "single": 0.5 * ratio,
+        "double": 0.5 * (1.0 + ratio),
+        "end": ratio - _INSIDE,
+    }
     friction = {
         f"friction_{place}": float(mesh.at("friction_coefficient", age % 1.0)[int(age)])
         for place, age in ages.items()
@@ -178,9 +188,14 @@ def _line_contact(
     options: dict[str, Any] = {"domain": (-2.5, 1.5), "inlet": "zero"} if source_domain else {}
     with collected():
         film = solve_line_contact(
-            load, given["equivalent_radius_pitch_point"], here.pinion_speed * path,
-            oil, effective_modulus(steel, steel), nodes=1025, **options,
-        )  # fmt: skip
+            load,
+            given["equivalent_radius_pitch_point"],
+            here.pinion_speed * path,
+            oil,
+            effective_modulus(steel, steel),
+            nodes=1025,
+            **options,
+        )
     rising = np.diff(film.pressure) > 0.0
     peaks = 1 + np.flatnonzero(rising[:-1] & ~rising[1:])
     return {

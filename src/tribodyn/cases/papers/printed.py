@@ -59,8 +59,11 @@ def printed_rows(paper: str) -> tuple[PrintedRow, ...]:
     known = papers()
     if paper not in known:
         why = f"There are tables for {', '.join(known)}"
-        raise InputError(Problem(f'no printed tables are known for "{paper}"', "", why,
-                                 "Take one of them, or --all"))  # fmt: skip
+        raise InputError(
+            Problem(
+                f'no printed tables are known for "{paper}"', "", why, "Take one of them, or --all"
+            )
+        )
     tables = tomllib.loads(known[paper].read_text(encoding="utf-8"))["tables"]
     return tuple(_row(paper, table, row) for table in tables for row in table["rows"])
 

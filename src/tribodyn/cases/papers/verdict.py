@@ -49,9 +49,7 @@ def deviation(row: PrintedRow, computed: float | str | None) -> float | None:
     return computed / nearest - 1.0 if nearest else None
 
 
-def verdicts(
-    rows: Sequence[PrintedRow], computed: Sequence[float | str | None]
-) -> list[str]:  # fmt: skip
+def verdicts(rows: Sequence[PrintedRow], computed: Sequence[float | str | None]) -> list[str]:
     """Verdict of every row: its value, or the course of its series, or neither."""
     runs = {name: _runs_alike(rows, computed, name) for name in {series_of(row) for row in rows}}
     return [
@@ -70,8 +68,9 @@ def _runs_alike(
 ) -> bool:
     if not name[2]:
         return False
-    pairs = [(row, value) for row, value in zip(rows, computed, strict=True)
-             if series_of(row) == name]  # fmt: skip
+    pairs = [
+        (row, value) for row, value in zip(rows, computed, strict=True) if series_of(row) == name
+    ]
     found = [value for _, value in pairs if isinstance(value, float)]
     printed = [row.printed for row, _ in pairs if isinstance(row.printed, int | float)]
     level = pairs[0][0].level

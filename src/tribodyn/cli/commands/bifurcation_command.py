@@ -140,6 +140,11 @@ def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, f
         (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
         write_dataset(found.to_xarray(), place / "bifurcation.nc")
         write_bifurcation_report(
-            found, case, place / "bifurcation.html", lead=findings.lead(),
-            told=findings.sentences(), head=head, rows=rows,
-        )  # fmt: skip
+            found,
+            case,
+            place / "bifurcation.html",
+            lead=findings.lead(),
+            told=findings.sentences(),
+            head=head,
+            rows=rows,
+        )

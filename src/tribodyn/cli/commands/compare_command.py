@@ -101,19 +101,29 @@ def _with_recording(
         check_place(out, force)
     result = load_result(first)
     found = compared(
-        result, read(second, sensitivity=sensitivity), channels, harmonics=harmonics,
+        result,
+        read(second, sensitivity=sensitivity),
+        channels,
+        harmonics=harmonics,
         gain="fit" if number is None else number,
-    )  # fmt: skip
+    )
     names = ("channel", "measure", "unit", "computed", "measured", "error")
     columns = tuple(getattr(found, name) for name in names)
-    rows = [[str(c), str(m), f"{made:.6g} {u}", f"{told:.6g} {u}", f"{100.0 * error:+.3g} %"]
-            for c, m, u, made, told, error in zip(*columns, strict=True)]  # fmt: skip
+    rows = [
+        [str(c), str(m), f"{made:.6g} {u}", f"{told:.6g} {u}", f"{100.0 * error:+.3g} %"]
+        for c, m, u, made, told, error in zip(*columns, strict=True)
+    ]
     head = ("channel", "figure", "computed", "measured", "error, of the measured value")
     how = "fitted" if found.fitted else "given"
     told = [f"Gain of {name}, {how}: {value:.6g}" for name, value in found.gains.items()]
-    facts = {"gains": dict(found.gains), "fitted": found.fitted, "rows": [
-        dict(zip(names, (str(c), str(m), str(u), float(a), float(b), float(e)), strict=True))
-        for c, m, u, a, b, e in zip(*columns, strict=True)]}  # fmt: skip
+    facts = {
+        "gains": dict(found.gains),
+        "fitted": found.fitted,
+        "rows": [
+            dict(zip(names, (str(c), str(m), str(u), float(a), float(b), float(e)), strict=True))
+            for c, m, u, a, b, e in zip(*columns, strict=True)
+        ],
+    }
     if out is None:
         say("\n".join([*told, table([head, *rows])])) if not json else say_json(facts)
         return

@@ -127,8 +127,10 @@ def _tell_remarks(model: GearboxModel) -> None:
 
 def _tables(model: GearboxModel) -> str:
     """Stages and loads as text."""
-    parts = [f"{model.application or 'REXS'}, REXS {model.version}: "
-             f"{sum(model.components.values())} components"]  # fmt: skip
+    parts = [
+        f"{model.application or 'REXS'}, REXS {model.version}: "
+        f"{sum(model.components.values())} components"
+    ]
     head = ["stage", "z", "m_n [mm]", "beta [deg]", "a [mm]", "b [mm]", "x", "alpha_wt [deg]",
             "sum x from a"]  # fmt: skip
     if model.stages:
@@ -166,9 +168,11 @@ def _load_row(model: GearboxModel, load: Load, stage: Stage) -> list[str]:
     one, two = (model.shaft_of(g.id) for g in (stage.gear_1, stage.gear_2))
     speeds = [load.speeds.get(s) if s is not None else None for s in (one, two)]
     torque = load.torques.get(one) if one is not None else None
-    mesh = None if speeds[0] is None or stage.planetary else (
-        speeds[0] * abs(stage.gear_1.teeth) / (2.0 * math.pi)
-    )  # fmt: skip
+    mesh = (
+        None
+        if speeds[0] is None or stage.planetary
+        else (speeds[0] * abs(stage.gear_1.teeth) / (2.0 * math.pi))
+    )
     values = [speeds[0] and speeds[0] * _TO_RPM, torque, mesh, speeds[1] and speeds[1] * _TO_RPM]
     share = "" if load.share is None else f"{load.share * 100:g} %"
     return [str(load.id), share, str(stage.id), *("" if v is None else f"{v:.6g}" for v in values)]

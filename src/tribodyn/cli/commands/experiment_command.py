@@ -81,8 +81,10 @@ def experiment(
             say(f"\nThe {driver} drives, torque held: {held}\n")
             say(table([found.EFFECT_HEAD, *effects]))
         for claim in claims:
-            say(f"\n{claim['claim']} ({claim['source_of']})\n  printed:  {claim['printed']}\n"
-                f"  computed: {claim['computed']}\n  {claim['why']}.")  # fmt: skip
+            say(
+                f"\n{claim['claim']} ({claim['source_of']})\n  printed:  {claim['printed']}\n"
+                f"  computed: {claim['computed']}\n  {claim['why']}."
+            )
     for failed in dict.fromkeys(point.failed for point in found.points if point.failed):
         tell(f"failed: {failed}")
     return ended(found, target)

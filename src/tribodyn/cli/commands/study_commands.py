@@ -54,9 +54,14 @@ def finish(kind: str, case: Case, target: Path, found: Found, force: bool, json:
             (place / "best.toml").write_text(found.best.to_toml(), encoding="utf-8")
         write_dataset(found.data.to_xarray(), place / "study.nc")
         write_study_report(
-            case, place / "report.html", kind=kind, told=found.told, figures=found.figures,
-            head=found.head, rows=found.rows,
-        )  # fmt: skip
+            case,
+            place / "report.html",
+            kind=kind,
+            told=found.told,
+            figures=found.figures,
+            head=found.head,
+            rows=found.rows,
+        )
     if json:
         say_json(found.facts)
     else:
@@ -113,8 +118,11 @@ def modes(
     told = [
         f"{diagram.plot().layout.title.text}; speeds are those of the {ready.operation.speed_of}."
     ]
-    facts = {"mesh_frequency": mesh_frequency, "orders": list(ORDERS),
-             "modes": [vars(row) for row in rows]}  # fmt: skip
+    facts = {
+        "mesh_frequency": mesh_frequency,
+        "orders": list(ORDERS),
+        "modes": [vars(row) for row in rows],
+    }
     answer = Found(found, figures, told, HEAD, [cells(row) for row in rows], facts)
     finish("modes", ready, target, answer, force, json)
 
@@ -156,8 +164,10 @@ def harris(
         "peak_to_peak_transmission_error": found.peak_to_peak_transmission_error,
         "mean_mesh_stiffness_secant": found.mean_mesh_stiffness_secant,
     }
-    rows = [[f"{t:.4g}", f"{m * 1e6:.4g}", f"{p * 1e6:.4g}", f"{k * 1e-6:.4g}"]
-            for t, m, p, k in zip(*columns.values(), strict=True)]  # fmt: skip
+    rows = [
+        [f"{t:.4g}", f"{m * 1e6:.4g}", f"{p * 1e6:.4g}", f"{k * 1e-6:.4g}"]
+        for t, m, p, k in zip(*columns.values(), strict=True)
+    ]
     head = ["Pinion torque [N*m]", "Mean error [um]", "Peak to peak [um]", "Stiffness [N/um]"]
     figure = found.plot()
     figures = [(plot.harris_map.heading, figure, plot.harris_map.caption_of(found))]
@@ -201,17 +211,26 @@ def relief(
     ready, target = begun("relief", case, out, set_, force)
     found = optimize_tip_relief(ready, list(torque) or None, gears=gears)
     before, after = found.peak_to_peak_before, found.peak_to_peak_after
-    rows = [[f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
-            for t, b, a in zip(found.torque, before, after, strict=True)]  # fmt: skip
+    rows = [
+        [f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
+        for t, b, a in zip(found.torque, before, after, strict=True)
+    ]
     head = ["Pinion torque [N*m]", "Peak to peak before [um]", "Peak to peak after [um]"]
-    told = [f"A relief of {found.amount * 1e6:.3g} um over {found.length * 1e3:.4g} mm of roll "
-            f"length; best.toml is the case with it."]  # fmt: skip
+    told = [
+        f"A relief of {found.amount * 1e6:.3g} um over {found.length * 1e3:.4g} mm of roll "
+        f"length; best.toml is the case with it."
+    ]
     if found.on_edge:
         told.append("It lies at the edge of what was searched: a wider range may hold a better.")
     figures = [(plot.tip_relief_map.heading, found.plot(), plot.tip_relief_map.caption_of(found))]
-    facts = {"amount": found.amount, "length": found.length, "torque": found.torque.tolist(),
-             "peak_to_peak_before": before.tolist(), "peak_to_peak_after": after.tolist(),
-             "on_edge": bool(found.on_edge)}  # fmt: skip
+    facts = {
+        "amount": found.amount,
+        "length": found.length,
+        "torque": found.torque.tolist(),
+        "peak_to_peak_before": before.tolist(),
+        "peak_to_peak_after": after.tolist(),
+        "on_edge": bool(found.on_edge),
+    }
     answer = Found(found, figures, told, head, rows, facts, found.case)
     finish("relief", ready, target, answer, force, json)
 

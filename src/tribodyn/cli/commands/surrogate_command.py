@@ -58,9 +58,12 @@ def surrogate(
 
 
 def _train(
-    source: str, values: tuple[str, ...], draw: tuple[int, int],
-    places: tuple[Path | None, list[str]], json: bool,
-) -> None:  # fmt: skip
+    source: str,
+    values: tuple[str, ...],
+    draw: tuple[int, int],
+    places: tuple[Path | None, list[str]],
+    json: bool,
+) -> None:
     from tribodyn.cli.bar import progress_bar
     from tribodyn.study.uncertain.operating_data import RESPONSE, operating_data
     from tribodyn.surrogate import Training, train
@@ -77,14 +80,18 @@ def _train(
         inputs = [name for name in data.columns if name not in RESPONSE]
         varied = [name for name in RESPONSE if np.ptp(data[name]) > 1e-9 * abs(data[name]).max()]
         shares = Training(shares=(7.0, 1.0, 2.0))
-        model = train(data, features=inputs, targets=varied, seed=seed, training=shares,
-                      progress=progress)  # fmt: skip
+        model = train(
+            data, features=inputs, targets=varied, seed=seed, training=shares, progress=progress
+        )
     show_warnings((warning.code, warning.message) for warning in told)
     model.save(path)
     if json:
-        facts = {name: {**vars(each), "band": _finite(float(half)), "unit": str(unit)}
-                 for (name, each), half, unit in zip(
-                     model.errors.items(), model.band, model.target_unit, strict=True)}  # fmt: skip
+        facts = {
+            name: {**vars(each), "band": _finite(float(half)), "unit": str(unit)}
+            for (name, each), half, unit in zip(
+                model.errors.items(), model.band, model.target_unit, strict=True
+            )
+        }
         say_json({"model": str(path), "features": inputs, "level": model.level, "errors": facts})
     else:
         say("\n".join([case.title, *_told(model)]))
@@ -95,14 +102,22 @@ def _told(model: Surrogate) -> list[str]:
     """Errors over the held-out points, one line for each target."""
     head = ["target", "R^2", "mean relative error", "largest error", f"{model.level:.0%} band"]
     rows = [
-        [name, f"{each.determination:.5f}", f"{100.0 * each.mean_absolute_relative:.3g} %",
-         f"{each.largest:.3g} {_unit(unit)}", f"+- {half:.3g} {_unit(unit)}"]
+        [
+            name,
+            f"{each.determination:.5f}",
+            f"{100.0 * each.mean_absolute_relative:.3g} %",
+            f"{each.largest:.3g} {_unit(unit)}",
+            f"+- {half:.3g} {_unit(unit)}",
+        ]
         for (name, each), half, unit in zip(
-            model.errors.items(), model.band, model.target_unit, strict=True)
-    ]  # fmt: skip
+            model.errors.items(), model.band, model.target_unit, strict=True
+        )
+    ]
     count = model.true.shape[1]
-    return [f"Learned from {model.training_rows} operating points, errors over {count} others.",
-            table([head, *rows])]  # fmt: skip
+    return [
+        f"Learned from {model.training_rows} operating points, errors over {count} others.",
+        table([head, *rows]),
+    ]
 
 
 def _unit(text: str) -> str:
@@ -130,8 +145,11 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
             [str(name), f"{value:.6g} {_unit(unit)}", f"{low:.6g} to {high:.6g} {_unit(unit)}"]
         )
         facts[str(name)] = {
-            "value": value, "low": _finite(low), "high": _finite(high), "unit": str(unit),
-        }  # fmt: skip
+            "value": value,
+            "low": _finite(low),
+            "high": _finite(high),
+            "unit": str(unit),
+        }
     say_json(facts) if json else say(table(rows))
 
 
@@ -140,10 +158,16 @@ def _inputs(model: Surrogate, given: dict[str, Any]) -> dict[str, float]:
     from tribodyn.units import UnitProblemError, parse
 
     units = dict(zip(map(str, model.features), map(str, model.feature_unit), strict=True))
-    problems = [Problem(f"{name} is no input of this model", name, f"It has {', '.join(units)}")
-                for name in given if name not in units]  # fmt: skip
-    problems += [Problem(f"{name} is missing", name, "", f'Write "{name}=VALUE {unit}"'.strip())
-                 for name, unit in units.items() if name not in given]  # fmt: skip
+    problems = [
+        Problem(f"{name} is no input of this model", name, f"It has {', '.join(units)}")
+        for name in given
+        if name not in units
+    ]
+    problems += [
+        Problem(f"{name} is missing", name, "", f'Write "{name}=VALUE {unit}"'.strip())
+        for name, unit in units.items()
+        if name not in given
+    ]
     inputs = {}
     for name, value in given.items():
         try:

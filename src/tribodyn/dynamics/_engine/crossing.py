@@ -252,9 +252,16 @@ def _note(law: Law, start: float, end: float, w: Array, parts: Array) -> None:
 
 @nb.njit(**ONCE)
 def _try(
-    method: Any, law: Law, base: int, width: float, part: Array, w: Array, room: Array,
-    start: float, target: float,
-) -> bool:  # fmt: skip
+    method: Any,
+    law: Law,
+    base: int,
+    width: float,
+    part: Array,
+    w: Array,
+    room: Array,
+    start: float,
+    target: float,
+) -> bool:
     """March the part of a step from ``start`` to ``target`` with the sides at its beginning."""
     for node in range(3):
         row_within(law, base, start + 0.5 * node * (target - start), part, I64(node))

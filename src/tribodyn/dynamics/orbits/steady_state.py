@@ -207,9 +207,13 @@ def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> f
     grid = halved(mapping.compiled.grid)
     nodes, program = compile_on(mapping.compiled.system, grid)
     fine.compiled = replace(
-        mapping.compiled, grid=grid, nodes=nodes, program=program, parameters=None,
+        mapping.compiled,
+        grid=grid,
+        nodes=nodes,
+        program=program,
+        parameters=None,
         step_number=0.5 * mapping.compiled.step_number,
-    )  # fmt: skip
+    )
     point, way = orbit.point, np.inf
     for _ in range(_ROUNDS):
         step = newton_step(orbit.matrix, fine.follow(point)[0] - point)[0]

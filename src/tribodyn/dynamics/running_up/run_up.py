@@ -134,9 +134,13 @@ def run_up(
 
 
 def _march(
-    marcher: CycleMarcher, path: SpeedProfile, count: int, state: Array, kept: Samples,
+    marcher: CycleMarcher,
+    path: SpeedProfile,
+    count: int,
+    state: Array,
+    kept: Samples,
     progress: Progress,
-) -> tuple[Array, Array, list[int], float]:  # fmt: skip
+) -> tuple[Array, Array, list[int], float]:
     """March all cycles: their moments, extra forces and steps, and the largest step number."""
     moments, extras, used, largest = [], [], [], 0.0
     for table, begin, end in _chunks(marcher.tables, path, count):

@@ -144,8 +144,9 @@ def hypoid14(
     """
     held = supports or HypoidSupports()
     require_between("backlash", backlash, 0.0, np.inf, "m")
-    inertia = _inertia(pair_of("mass", mass, "kg"),
-                       pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"), held)  # fmt: skip
+    inertia = _inertia(
+        pair_of("mass", mass, "kg"), pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"), held
+    )
     stiffness, damping = _springs(inertia, held)
     along, rubbing = in_space(mesh)
     one = Contact(

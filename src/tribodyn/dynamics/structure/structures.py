@@ -141,10 +141,14 @@ def _supports(default: Any) -> dict[str, Option]:
         "bearing_stiffness": number(default, 1e3, 1e13, _GUARD, of="bearing_stiffness", **pair),
         "bearing_damping": number(None, 0.0, 1e9, _GUARD, of="bearing_damping", **pair),
         "bearing_damping_ratio": number(
-            0.02, 0.0, 2.0, "supports lie between 0.01 and 0.1",
-            meaning="damping of each gear on its bearing over its critical value", absent=_FIXED,
+            0.02,
+            0.0,
+            2.0,
+            "supports lie between 0.01 and 0.1",
+            meaning="damping of each gear on its bearing over its critical value",
+            absent=_FIXED,
         ),
-    }  # fmt: skip
+    }
 
 
 def both(value: Support | None) -> Pair:
@@ -207,11 +211,14 @@ _SHAFT = {
     "stiffness": (75397.3113, 1.0, 1e12, "shaft_stiffness", "torsional stiffness of shaft {0}{1}"),
     "damping": (1.0, 0.0, 1e6, "shaft_damping", "torsional damping of shaft {0}"),
     "moment_of_inertia": (
-        6.829922680095e-3, 1e-14, 1e7, "moment_of_inertia",
+        6.829922680095e-3,
+        1e-14,
+        1e7,
+        "moment_of_inertia",
         "polar moment of inertia of the disc of shaft {0}",
     ),
     "mass": (1.5, 1e-7, 1e6, "mass", "mass of the disc of shaft {0}"),
-}  # fmt: skip
+}
 _BETWEEN = {1: ", between its disc and the wheel", 2: ", between its disc and the pinion"}
 
 
@@ -219,12 +226,17 @@ def _shaft_options() -> dict[str, Option]:
     """Options and defaults of the benchmark rig, first elastic mode at 492 Hz; none is printed."""
     return {
         f"shaft{shaft}_{name}": number(
-            default, low, high, _GUARD, of=quantity,
-            meaning=meaning.format(shaft, _BETWEEN[shaft]), absent=_NO_SHAFTS,
+            default,
+            low,
+            high,
+            _GUARD,
+            of=quantity,
+            meaning=meaning.format(shaft, _BETWEEN[shaft]),
+            absent=_NO_SHAFTS,
         )
         for shaft in (1, 2)
         for name, (default, low, high, quantity, meaning) in _SHAFT.items()
-    }  # fmt: skip
+    }
 
 
 @STRUCTURES.define(
@@ -274,13 +286,17 @@ def _hypoid_options() -> dict[str, Option]:
         "engine_moment_of_inertia": ("moment_of_inertia", "of what drives the pinion's shaft"),
         "load_moment_of_inertia": ("moment_of_inertia", "of what the wheel's shaft drives"),
         "diametral_moment_of_inertia": (
-            "moment_of_inertia", "of each gear about an axis across its own"),
+            "moment_of_inertia",
+            "of each gear about an axis across its own",
+        ),
         "bearing_stiffness": ("bearing_stiffness", "of the bearings across the axis of each gear"),
         "axial_bearing_stiffness": ("bearing_stiffness", "of the bearings along the axis"),
         "tilting_stiffness": ("shaft_stiffness", "of the bearings against tilting of each gear"),
         "shaft_stiffness": (
-            "shaft_stiffness", "against twist from engine to pinion and from wheel to load"),
-    }  # fmt: skip
+            "shaft_stiffness",
+            "against twist from engine to pinion and from wheel to load",
+        ),
+    }
     usual, found = HypoidSupports(), {}
     for name, (of, words) in given.items():
         value = getattr(usual, name)
@@ -289,15 +305,25 @@ def _hypoid_options() -> dict[str, Option]:
         low, high = (1e-14, 1e7) if of == "moment_of_inertia" else (1.0, 1e13)
         kind = "moment of inertia" if of == "moment_of_inertia" else "stiffness"
         found[name] = number(
-            default, low, high, _GUARD, of=of, meaning=f"{kind} {words}", absent=_OWN_AXES,
+            default,
+            low,
+            high,
+            _GUARD,
+            of=of,
+            meaning=f"{kind} {words}",
+            absent=_OWN_AXES,
             pair=each is not None,
-        )  # fmt: skip
+        )
     for part, words in (("bearing", "of each support"), ("shaft", "of each shaft")):
         name = f"{part}_damping_ratio"
         found[name] = number(
-            getattr(usual, name), 0.0, 2.0, "supports lie between 0.01 and 0.1",
-            meaning=f"damping {words} over its critical value", absent=_OWN_AXES,
-        )  # fmt: skip
+            getattr(usual, name),
+            0.0,
+            2.0,
+            "supports lie between 0.01 and 0.1",
+            meaning=f"damping {words} over its critical value",
+            absent=_OWN_AXES,
+        )
     return found
 
 

@@ -376,9 +376,12 @@ def _crossing(points: WithinSteps, step: Index, state: Array, before: Array, aft
 
 
 def _part(
-    points: WithinSteps, step: Index, phase: tuple[Array, Array], ends: tuple[Array, Array],
+    points: WithinSteps,
+    step: Index,
+    phase: tuple[Array, Array],
+    ends: tuple[Array, Array],
     side: Array,
-) -> tuple[Array, Array, Array, Forces]:  # fmt: skip
+) -> tuple[Array, Array, Array, Forces]:
     """Both ends and the middle of a part of two steps, on one side of the contacts."""
     duration = (phase[1] - phase[0])[:, None] / points.beat
     q, v = (item[:, 0] for item in with_middles(duration, np.stack(ends, axis=1)))

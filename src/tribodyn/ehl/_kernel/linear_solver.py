@@ -214,9 +214,14 @@ def coarse_tangent(
 
 @nb.njit(inline="always", **BURIED)
 def _correct(
-    fine: Grid, k: int, imposed: bool, target: float, coarse: CoarseTangent, work: LinearWork,
+    fine: Grid,
+    k: int,
+    imposed: bool,
+    target: float,
+    coarse: CoarseTangent,
+    work: LinearWork,
     z: Array,
-) -> float:  # fmt: skip
+) -> float:
     """Coarse correction of the scaled rows ``z``, which keep what it leaves over; its load."""
     cH, cP, scale, x = work.by_film, work.by_pressure, work.scale, work.correction
     r, p, h = coarse.right, coarse.pressure, coarse.film
@@ -261,9 +266,15 @@ def _correct(
         x[i - 1] = p2
         total += p2
         z[i - 1] -= scale[i - 1] * (
-            cH[i, 0] * h0 + cH[i, 1] * h1 + cH[i, 2] * h2 + cH[i, 3] * h3
-            + cP[i, 0] * p0 + cP[i, 1] * p1 + cP[i, 2] * p2 + cP[i, 3] * p3
-        )  # fmt: skip
+            cH[i, 0] * h0
+            + cH[i, 1] * h1
+            + cH[i, 2] * h2
+            + cH[i, 3] * h3
+            + cP[i, 0] * p0
+            + cP[i, 1] * p1
+            + cP[i, 2] * p2
+            + cP[i, 3] * p3
+        )
         h0, h1, h2 = h1, h2, h3
         p0, p1, p2 = p1, p2, p3
     if imposed:
@@ -313,9 +324,14 @@ def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
 
 @nb.njit(inline="always", **BURIED)
 def _precondition(
-    grid: Grid, k: int, imposed: bool, target: float, coarse: CoarseTangent, work: LinearWork,
+    grid: Grid,
+    k: int,
+    imposed: bool,
+    target: float,
+    coarse: CoarseTangent,
+    work: LinearWork,
     z: Array,
-) -> None:  # fmt: skip
+) -> None:
     """Overwrite scaled rows 1..k by the correction; ``target`` is its share of the load."""
     border, correction = work.border, work.correction
     if coarse.factors.size > 0:
@@ -360,16 +376,28 @@ def _apply(grid: Grid, k: int, imposed: bool, work: LinearWork, x: Array, y: Arr
     )
     for i in range(2, k + 1):
         y[i - 1] = scale[i - 1] * (
-            cH[i, 0] * h[i - 2] + cH[i, 1] * h[i - 1] + cH[i, 2] * h[i] + cH[i, 3] * h[i + 1]
-            + cP[i, 0] * p[i - 2] + cP[i, 1] * p[i - 1] + cP[i, 2] * p[i] + cP[i, 3] * p[i + 1]
-        )  # fmt: skip
+            cH[i, 0] * h[i - 2]
+            + cH[i, 1] * h[i - 1]
+            + cH[i, 2] * h[i]
+            + cH[i, 3] * h[i + 1]
+            + cP[i, 0] * p[i - 2]
+            + cP[i, 1] * p[i - 1]
+            + cP[i, 2] * p[i]
+            + cP[i, 3] * p[i + 1]
+        )
 
 
 @nb.njit(**BURIED)
 def linear_solve(
-    grid: Grid, k: int, imposed: bool, tolerance: float, coarse: CoarseTangent, work: LinearWork,
-    rhs: Array, x: Array,
-) -> int:  # fmt: skip
+    grid: Grid,
+    k: int,
+    imposed: bool,
+    tolerance: float,
+    coarse: CoarseTangent,
+    work: LinearWork,
+    rhs: Array,
+    x: Array,
+) -> int:
     """Solve ``J x = rhs`` by GMRES after :func:`prepare`; products, negative where it fails.
 
     ``rhs`` has the rows 1..k of the mass balance first, then the load row; ``x`` receives the

@@ -107,10 +107,15 @@ def _level(grids: Grids, g: int) -> Level:
     a, b, n = grids.first[g], grids.first[g + 1], grids.n >> g
     plan = grids.plans[grids.plan[g] : grids.plan[g + 1]]
     return Level(
-        Grid(n, grids.width / n, grids.influence[a:b], plan), grids.P[a:b], grids.H[a:b],
-        grids.injected[a:b], grids.target[a:b], grids.excess[a:b], grids.shape[a:b],
+        Grid(n, grids.width / n, grids.influence[a:b], plan),
+        grids.P[a:b],
+        grids.H[a:b],
+        grids.injected[a:b],
+        grids.target[a:b],
+        grids.excess[a:b],
+        grids.shape[a:b],
         grids.near[g],
-    )  # fmt: skip
+    )
 
 
 @nb.njit(**INNER)
@@ -314,9 +319,14 @@ def _build(digest: str) -> Any:
             used += 1
             g -= 1
             grids.free[g] = refine(
-                m, level.grid.dx, level.P, grids.free[g + 1], load, contact.tail,
+                m,
+                level.grid.dx,
+                level.P,
+                grids.free[g + 1],
+                load,
+                contact.tail,
                 _level(grids, g).P,
-            )  # fmt: skip
+            )
         for i in range(m + 1):
             P[i], H[i], shape[i] = level.P[i], level.H[i], level.shape[i]
         return Cycled(

@@ -82,9 +82,13 @@ def level_work(n: int, coarsest: int, lam: float, oil: Array) -> LevelWork:
     """Arrays for the finest grid of ``n`` intervals and the coarsest one."""
     a, m = np.zeros((4, n + 2)), coarsest + 1
     dense = CoarsestWork(
-        np.empty((m, m)), np.empty(m, np.int64), np.empty(m), np.empty(m), np.empty(m),
+        np.empty((m, m)),
+        np.empty(m, np.int64),
+        np.empty(m),
+        np.empty(m),
+        np.empty(m),
         np.zeros(1, np.int64),
-    )  # fmt: skip
+    )
     return LevelWork(
         lam, oil, make_fields(n), a[0], np.empty((n + 1, 4)), np.empty((n + 1, 4)),
         np.empty(film_work_size(n)), np.empty((n, LEFT + RIGHT + 1)), a[1], a[2], a[3],

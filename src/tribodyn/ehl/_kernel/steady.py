@@ -76,8 +76,12 @@ def _build(digest: str) -> Any:
         """Solve on all grids from ``first`` to ``n`` intervals; state, last grid, first, count."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         start, lam, oil, load, tail = (
-            contact.start, contact.lam, contact.oil, contact.load, contact.tail,
-        )  # fmt: skip
+            contact.start,
+            contact.lam,
+            contact.oil,
+            contact.load,
+            contact.tail,
+        )
         # Typed, or each literal would make the compiler translate the callees anew.
         m: Any = nb.int64(first)
         level: Any = nb.int64(0)
@@ -85,9 +89,12 @@ def _build(digest: str) -> Any:
         before, film_before, once = np.empty(0), np.empty(0), np.empty(0)
         coarse = no_coarse()
         passing = Limits(
-            limits.pressure, max(limits.flux, _PASSING_FLUX), limits.steps, limits.linear,
+            limits.pressure,
+            max(limits.flux, _PASSING_FLUX),
+            limits.steps,
+            limits.linear,
             limits.change,
-        )  # fmt: skip
+        )
         while True:
             grid, work = make_grid(m, (contact.end - start) / m), newton_work(m, flag)
             shape = _gap(m, start, grid.dx, n // m, contact.profile)

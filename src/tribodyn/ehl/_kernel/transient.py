@@ -185,9 +185,14 @@ def _solve(
 
 @nb.njit(inline="always", **BURIED)
 def _carry(
-    contact: TransientContact, setting: _Setting, ratio: float, table: Array, P: Array, H: Array,
+    contact: TransientContact,
+    setting: _Setting,
+    ratio: float,
+    table: Array,
+    P: Array,
+    H: Array,
     state: Instant,
-) -> tuple[int, Instant]:  # fmt: skip
+) -> tuple[int, Instant]:
     """Carry a steady state, in place, from the inputs of the first row to those of the last."""
     n, start, dx = contact.n, contact.start, contact.dx
     first, last, row = table[0], table[table.shape[0] - 1], np.empty(table.shape[1])
@@ -231,9 +236,15 @@ def _carry(
 
 @nb.njit(**BURIED)
 def _keep(
-    contact: TransientContact, P: Array, H: Array, cavity: Array, state: Instant, steps: int,
-    parts: int, record: Array,
-) -> None:  # fmt: skip
+    contact: TransientContact,
+    P: Array,
+    H: Array,
+    cavity: Array,
+    state: Instant,
+    steps: int,
+    parts: int,
+    record: Array,
+) -> None:
     """Fill a line of the record."""
     n, dx, k = contact.n, contact.dx, state.free
     total, highest, late = 0.0, 0.0, 0.0

@@ -87,8 +87,12 @@ def _on(problem: ContactProblem, grid: DiscreteContact, intervals: int) -> Discr
         )
     outcome = newton_engine(
         replace(
-            problem, nodes=intervals + 1, profile=profile, start=grid, film_tolerance=0.0,
+            problem,
+            nodes=intervals + 1,
+            profile=profile,
+            start=grid,
+            film_tolerance=0.0,
             coarsest=min(intervals, grid.n),
         )
-    )  # fmt: skip
+    )
     return outcome.grid if outcome.converged else None

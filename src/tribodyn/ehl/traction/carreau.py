@@ -13,12 +13,14 @@ from tribodyn.types import Array
 
 #: The numbers of the law as options.
 THINNING = {
-    "carreau_stress": number(5e6, 1e3, 1e9, "oils lie between 10 kPa and 10 MPa",
-                             of="carreau_stress"),
-    "carreau_exponent": number(0.5, 0.05, 1.0, "1 is Newton's oil, oils have 0.3 to 0.9",
-                               of="carreau_exponent"),
+    "carreau_stress": number(
+        5e6, 1e3, 1e9, "oils lie between 10 kPa and 10 MPa", of="carreau_stress"
+    ),
+    "carreau_exponent": number(
+        0.5, 0.05, 1.0, "1 is Newton's oil, oils have 0.3 to 0.9", of="carreau_exponent"
+    ),
     "yasuda_exponent": number(2.0, 0.2, 20.0, "2 is Carreau's own", of="yasuda_exponent"),
-}  # fmt: skip
+}
 
 
 def carreau_shear_stress(

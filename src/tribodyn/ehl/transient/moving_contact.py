@@ -324,10 +324,17 @@ class MovingContact:
                 periodic = float(profile.beyond == "periodic")
                 ends[side] = profile.position[0] / b, profile.spacing / b, periodic
         return TransientContact(
-            self.nodes - 1, self.domain[0], self.dx, float(depth), self.numbers.lam,
-            self.numbers.oil, imposed, self.flooded, Profiles(heights[0], heights[1], ends),
+            self.nodes - 1,
+            self.domain[0],
+            self.dx,
+            float(depth),
+            self.numbers.lam,
+            self.numbers.oil,
+            imposed,
+            self.flooded,
+            Profiles(heights[0], heights[1], ends),
             Limits(self.tolerance, self.tolerance, 40, 1e-3, 0.3),
-        )  # fmt: skip
+        )
 
     def check_roughness(self) -> None:
         """Warn of waves that the grid does not resolve."""

@@ -219,9 +219,15 @@ def solve_transient_line_contact(
     """
     _require_options(effective_modulus, start, nodes, inlet, tolerance, keep_every)
     inputs = read_inputs(
-        time, load_per_width, equivalent_radius, entrainment_speed, impose=impose,
-        approach=approach, surface_speeds=surface_speeds, roughness=roughness,
-    )  # fmt: skip
+        time,
+        load_per_width,
+        equivalent_radius,
+        entrainment_speed,
+        impose=impose,
+        approach=approach,
+        surface_speeds=surface_speeds,
+        roughness=roughness,
+    )
     scale = reference_scale(
         inputs.time, inputs.load, inputs.radius, inputs.entrainment_speed, effective_modulus
     )

@@ -67,8 +67,14 @@ class EaseOff:
             require_between(each.name, value, low, _MOST, "m", remedy="10 um is 10e-6")
             object.__setattr__(self, each.name, value)
         if self.relief_length is not None:
-            require_between("relief_length", require_number("relief_length", self.relief_length),
-                            1e-6, 0.1, "m", remedy="3 mm is 3e-3")  # fmt: skip
+            require_between(
+                "relief_length",
+                require_number("relief_length", self.relief_length),
+                1e-6,
+                0.1,
+                "m",
+                remedy="3 mm is 3e-3",
+            )
         self._require_center()
         if self.bias**2 > 4.0 * self.lengthwise_crowning * self.profile_crowning:
             most = 2.0 * math.sqrt(self.lengthwise_crowning * self.profile_crowning)

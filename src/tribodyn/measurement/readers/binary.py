@@ -81,9 +81,11 @@ def uff(path: Path) -> Content:
             )
         )
         raise InputError(
-            "holds no time history", where=str(path), why=f"It has {found}",
+            "holds no time history",
+            where=str(path),
+            why=f"It has {found}",
             remedy="Export the time histories as dataset 58, and look whether the file is whole",
-        )  # fmt: skip
+        )
     return Content(channels, units, rates)
 
 
@@ -108,8 +110,11 @@ def tdms(path: Path) -> Content:
     held = library.TdmsFile.read(path)
     status = getattr(held, "file_status", None)
     if status is not None and status.incomplete_final_segment:
-        raise InputError("its last segment is incomplete", where=str(path),
-                         why="The file is cut short, or was still being written")  # fmt: skip
+        raise InputError(
+            "its last segment is incomplete",
+            where=str(path),
+            why="The file is cut short, or was still being written",
+        )
     several = len(held.groups()) > 1
     for group in held.groups():
         for channel in group.channels():

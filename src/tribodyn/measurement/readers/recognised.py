@@ -24,8 +24,12 @@ class Format(NamedTuple):
 
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_TEXT = Format("text in columns", (".csv", ".txt", ".dat", ".asc", ".tsv"),
-               lambda head: not text.looks_binary(head), text.content)  # fmt: skip
+_TEXT = Format(
+    "text in columns",
+    (".csv", ".txt", ".dat", ".asc", ".tsv"),
+    lambda head: not text.looks_binary(head),
+    text.content,
+)
 #: In the order in which they are asked; text is what nothing else claims.
 FORMATS = (
     Format("WAV", (".wav",), lambda head: head[:4] in (b"RIFF", b"RIFX", b"RF64"), binary.wav),

@@ -140,11 +140,13 @@ def thinned(solution: Any, points: int) -> NDArray[np.intp]:
     n = len(solution.position)
     if n <= points:
         return np.arange(n)
-    curves = np.stack((
-        solution.pressure / solution.pressure.max(),
-        # the open gap beside the film is not in the picture
-        np.minimum(solution.film / solution.central_film, _FILMS) / _FILMS,
-    ))  # fmt: skip
+    curves = np.stack(
+        (
+            solution.pressure / solution.pressure.max(),
+            # the open gap beside the film is not in the picture
+            np.minimum(solution.film / solution.central_film, _FILMS) / _FILMS,
+        )
+    )
     bend = np.zeros(n)
     bend[1:-1] = np.max(np.abs(np.diff(curves, 2)), axis=0)
     density = np.sqrt(bend)

@@ -41,8 +41,14 @@ def film_over_operation(found: FilmOverOperation) -> Any:
         f"{rounded('torque', float(found.pinion_torque[row]))} and "
         f"{rounded('pinion_speed', float(found.pinion_speed[column]))} of the pinion"
     )
-    panels = [Panel(axis_label("film_thickness"), _curves(found, film, "film_thickness"),
-                    {"rangemode": "tozero"}, height=1.4)]  # fmt: skip
+    panels = [
+        Panel(
+            axis_label("film_thickness"),
+            _curves(found, film, "film_thickness"),
+            {"rangemode": "tozero"},
+            height=1.4,
+        )
+    ]
     if found.film_ratio is not None:
         ratio = np.nanmin(found.film_ratio, axis=2)
         curves = _curves(found, ratio, "film_ratio")

@@ -103,9 +103,14 @@ def _body(flanks: HypoidFlanks, gear: str) -> Trace:
         rows.append(_spun(place, axis, np.linspace(0.0, 2.0 * np.pi, _ROUND)))
     x, y, z = 1e3 * np.moveaxis(np.array(rows), -1, 0)
     return {
-        "type": "surface", "x": x + _origin(flanks, gear), "y": y, "z": z, "showscale": False,
-        "colorscale": [[0.0, MUTED], [1.0, MUTED]], "hoverinfo": "skip",
-    }  # fmt: skip
+        "type": "surface",
+        "x": x + _origin(flanks, gear),
+        "y": y,
+        "z": z,
+        "showscale": False,
+        "colorscale": [[0.0, MUTED], [1.0, MUTED]],
+        "hoverinfo": "skip",
+    }
 
 
 def _scene(eye: tuple[float, float, float], **axes: str) -> dict[str, Any]:
@@ -179,14 +184,26 @@ def ease_off(flanks: HypoidFlanks) -> Any:
     colors = [[0.0, "#f2f6fa"], [1.0, PINION]]
     hover = "along %{x:.4g} mm, across %{y:.4g} mm: %{z:.4g} µm<extra></extra>"
     surface: Trace = {
-        "type": "surface", "x": x, "y": y, "z": gap, "colorscale": colors, "hovertemplate": hover,
-        "colorbar": {"title": {"text": "Gap [µm]"}, "thickness": 14}, "name": "ease-off",
-    }  # fmt: skip
+        "type": "surface",
+        "x": x,
+        "y": y,
+        "z": gap,
+        "colorscale": colors,
+        "hovertemplate": hover,
+        "colorbar": {"title": {"text": "Gap [µm]"}, "thickness": 14},
+        "name": "ease-off",
+    }
     inside = flanks.active
     dots: Trace = {
-        "type": "scatter3d", "mode": "markers", "x": x[inside], "y": y[inside], "z": gap[inside],
-        "marker": {"size": 1.6, "color": INK}, "name": "on both flanks", "hoverinfo": "skip",
-    }  # fmt: skip
+        "type": "scatter3d",
+        "mode": "markers",
+        "x": x[inside],
+        "y": y[inside],
+        "z": gap[inside],
+        "marker": {"size": 1.6, "color": INK},
+        "name": "on both flanks",
+        "hoverinfo": "skip",
+    }
     most = float(np.max(gap[inside], initial=0.0))
     title = f"The pinion lacks up to {most:.3g} µm on the {flanks.side} flank"
     scene = _scene(

@@ -50,11 +50,18 @@ def _flank(
     )
     shown = griddata(places, values[carries], tuple(np.meshgrid(x, y)))
     heat: Trace = {
-        "type": "heatmap", "x": x, "y": y, "z": shown, "colorscale": _COLORS, "name": name,
+        "type": "heatmap",
+        "x": x,
+        "y": y,
+        "z": shown,
+        "colorscale": _COLORS,
+        "name": name,
         "colorbar": {"title": {"text": unit}, "thickness": 14, "y": bar[0], "len": bar[1]},
         "hovertemplate": f"along %{{x:.3g}} mm, across %{{y:.3g}} mm: %{{z:.3g}} {unit}"
-        "<extra></extra>", "showlegend": False, "hoverongaps": False,
-    }  # fmt: skip
+        "<extra></extra>",
+        "showlegend": False,
+        "hoverongaps": False,
+    }
     return [heat, _outline(loaded)]
 
 
@@ -63,10 +70,15 @@ def _regimes(heat: Trace) -> Trace:
     low, high = REGIME_LIMITS
     levels = {"start": low, "end": high, "size": high - low, "coloring": "none", "showlabels": True}
     return {
-        **{name: heat[name] for name in ("x", "y", "z")}, "type": "contour", "contours": levels,
-        "line": {"color": INK, "width": 1.5}, "showscale": False, "showlegend": False,
-        "hoverinfo": "skip", "name": "regimes",
-    }  # fmt: skip
+        **{name: heat[name] for name in ("x", "y", "z")},
+        "type": "contour",
+        "contours": levels,
+        "line": {"color": INK, "width": 1.5},
+        "showscale": False,
+        "showlegend": False,
+        "hoverinfo": "skip",
+        "name": "regimes",
+    }
 
 
 def _across() -> dict[str, Any]:

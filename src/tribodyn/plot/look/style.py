@@ -130,14 +130,24 @@ def player(
         for number, label in enumerate(words)
     ]
     bar = {
-        "yanchor": "top", "ticklen": 3, "font": {"color": "rgba(0,0,0,0)", "size": 1},
-        "currentvalue": {"font": {"color": INK, "size": 13}, "xanchor": "left"}, "steps": steps,
-    }  # fmt: skip
+        "yanchor": "top",
+        "ticklen": 3,
+        "font": {"color": "rgba(0,0,0,0)", "size": 1},
+        "currentvalue": {"font": {"color": INK, "size": 13}, "xanchor": "left"},
+        "steps": steps,
+    }
     menu = {
-        "type": "buttons", "direction": "right", "showactive": False, "x": 0.0, "xanchor": "left",
-        "y": buttons, "yanchor": "top", "bgcolor": "white", "font": {"size": 12},
+        "type": "buttons",
+        "direction": "right",
+        "showactive": False,
+        "x": 0.0,
+        "xanchor": "left",
+        "y": buttons,
+        "yanchor": "top",
+        "bgcolor": "white",
+        "font": {"size": 12},
         "buttons": [run, {"label": "pause", "method": "animate", "args": [[None], still]}],
-    }  # fmt: skip
+    }
     return {"sliders": [{**slider, **bar}], "updatemenus": [menu]}
 
 

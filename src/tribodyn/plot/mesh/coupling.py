@@ -14,10 +14,13 @@ if TYPE_CHECKING:
     from tribodyn.study.coupling import Coupling
 
 _WORDS = {
-    "load_change": "load", "share_change": "load share", "film_change": "film",
-    "friction_change": "friction coefficient", "stiffness_change": "stiffness",
+    "load_change": "load",
+    "share_change": "load share",
+    "film_change": "film",
+    "friction_change": "friction coefficient",
+    "stiffness_change": "stiffness",
     "oil_change": "viscosity",
-}  # fmt: skip
+}
 
 
 @drawing(
@@ -35,8 +38,9 @@ _WORDS = {
 def coupling(found: Coupling) -> Any:
     """Draw the change of each quantity per pass, and the load that was found."""
     curves = []
-    for (name, words), color in zip(_WORDS.items(), (TOTAL, PINION, WHEEL, *PAIR_COLORS),
-                                    strict=False):  # fmt: skip
+    for (name, words), color in zip(
+        _WORDS.items(), (TOTAL, PINION, WHEEL, *PAIR_COLORS), strict=False
+    ):
         change = getattr(found, name)
         if not change.any():
             continue

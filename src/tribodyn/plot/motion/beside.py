@@ -38,13 +38,20 @@ def result_comparison(found: ResultComparison) -> Any:
     motions = [Motion(each) for each in found.results]
     panels: list[Panel] = []
     for quantity, name in (
-        ("dynamic_transmission_error", "transmission_error"), ("mesh_force", "mesh_force"),
-    ):  # fmt: skip
+        ("dynamic_transmission_error", "transmission_error"),
+        ("mesh_force", "mesh_force"),
+    ):
         traces = [
-            line(*motion.curve(quantity, getattr(motion, name)), title, _COLORS[i % len(_COLORS)],
-                 unit=display_unit(quantity), width=1.8, dash=_DASHES[i // len(_COLORS)])
+            line(
+                *motion.curve(quantity, getattr(motion, name)),
+                title,
+                _COLORS[i % len(_COLORS)],
+                unit=display_unit(quantity),
+                width=1.8,
+                dash=_DASHES[i // len(_COLORS)],
+            )
             for i, (motion, title) in enumerate(zip(motions, found.names, strict=True))
-        ]  # fmt: skip
+        ]
         shown = [{**trace, "showlegend": not panels} for trace in traces]
         panels.append(Panel(axis_label(quantity), shown))
     changed = ", ".join(found.values) or "nothing"

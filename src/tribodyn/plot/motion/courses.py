@@ -268,8 +268,9 @@ def tooth_force(result: Result) -> Any:
     for axis, color, course in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):
         x, y = motion.curve("mesh_force", course)
         curve = line(x, y, axis, color, unit=display_unit("mesh_force"), width=1.5)
-        panels.append(Panel(axis_label("mesh_force", f"{axis_words('mesh_force')}<br>{axis}"),
-                            [curve]))  # fmt: skip
+        panels.append(
+            Panel(axis_label("mesh_force", f"{axis_words('mesh_force')}<br>{axis}"), [curve])
+        )
     means = [rounded("mesh_force", float(fine.weight @ course)) for course in values.T]
     title = f"On average the teeth push with {means[0]}, {means[1]} and {means[2]}{motion.window}"
     return stack(title, motion.label, panels, motion.layout())

@@ -51,13 +51,26 @@ def _curves(found: FrictionExperiment, name: str) -> list[Trace]:
             mu = found["mean_friction_coefficient"][row, column]
             order = np.argsort(mu)
             color = (PINION, WHEEL)[row]
-            curve = line(mu[order], values[row, column][order], f"{driving}, {held}", color,
-                         dash=_DASHES[column], width=1.2)  # fmt: skip
+            curve = line(
+                mu[order],
+                values[row, column][order],
+                f"{driving}, {held}",
+                color,
+                dash=_DASHES[column],
+                width=1.2,
+            )
             text = [found.rubbing[k].name for k in order]
             hover = f"%{{text}}<br>%{{x:.3f}}: %{{y:.4g}} {'N' if absolute else '%'}"
             marker = {"symbol": _SYMBOLS[column], "size": 7, "color": color}
-            traces.append({**curve, "mode": "lines+markers", "text": text, "marker": marker,
-                           "hovertemplate": f"{hover}<extra>{curve['name']}</extra>"})  # fmt: skip
+            traces.append(
+                {
+                    **curve,
+                    "mode": "lines+markers",
+                    "text": text,
+                    "marker": marker,
+                    "hovertemplate": f"{hover}<extra>{curve['name']}</extra>",
+                }
+            )
     return traces
 
 
@@ -110,8 +123,9 @@ def friction_effect(found: FrictionExperiment) -> Any:
 )
 def friction_claims(found: FrictionExperiment) -> Any:
     """Draw which claim holds under which assumption."""
-    known = [(claim.statement, claim.holds.ravel()) for claim in found.claims
-             if claim.holds is not None]  # fmt: skip
+    known = [
+        (claim.statement, claim.holds.ravel()) for claim in found.claims if claim.holds is not None
+    ]
     holds = np.array([each for _, each in known]).reshape(len(known), -1)
     settings = [f"{d}<br>{h.replace(' torque', '<br>torque')}" for d in DRIVING for h in HELD]
     heat = {
@@ -126,8 +140,11 @@ def friction_claims(found: FrictionExperiment) -> Any:
     title = f"Claims that hold everywhere: {whole} of {len(known)}; in some settings only: {part}"
     axes = {"yaxis": {"autorange": "reversed"}, "xaxis": {"side": "top"}}
     margin = {"t": 150, "l": 70, "r": 24, "b": 30}
-    return figure(title, [heat], {"height": 190 + 56 * len(known), "margin": margin, **axes,
-                                  "hovermode": "closest"})  # fmt: skip
+    return figure(
+        title,
+        [heat],
+        {"height": 190 + 56 * len(known), "margin": margin, **axes, "hovermode": "closest"},
+    )
 
 
 @drawing(
@@ -148,11 +165,17 @@ def friction_harmonics(found: FrictionExperiment) -> Any:
     colors, panels = (PINION, WHEEL, *PAIR_COLORS), []
     for row, driving in enumerate(DRIVING):
         bars = [
-            {"type": "bar", "x": list(range(1, _HARMONICS + 1)), "y": change[:, row, column, k],
-             "name": found.rubbing[k].name, "marker": {"color": colors[n % len(colors)]},
-             "showlegend": row == 0, "hovertemplate": "%{y:.3g} %"}
+            {
+                "type": "bar",
+                "x": list(range(1, _HARMONICS + 1)),
+                "y": change[:, row, column, k],
+                "name": found.rubbing[k].name,
+                "marker": {"color": colors[n % len(colors)]},
+                "showlegend": row == 0,
+                "hovertemplate": "%{y:.3g} %",
+            }
             for n, k in enumerate(drawn)
-        ]  # fmt: skip
+        ]
         panels.append(Panel(f"Change, the<br>{driving} [%]", bars))
     part = change[:, :, column, drawn]
     order, driver, place = np.unravel_index(int(np.nanargmax(np.abs(part))), part.shape)

@@ -122,13 +122,16 @@ def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
     panels = [
         Panel(
             f"Alternating rms of<br>{words} [{shown}]",
-            [*_speed_curves(sweep, rms, shown), *_jumps(sweep, rms, shown), *marks], top, 1.3,
+            [*_speed_curves(sweep, rms, shown), *_jumps(sweep, rms, shown), *marks],
+            top,
+            1.3,
         ),
         Panel(
             f"Range [{shown}]",
-            [*_speed_curves(sweep, span, shown), *_jumps(sweep, span, shown)], top,
+            [*_speed_curves(sweep, span, shown), *_jumps(sweep, span, shown)],
+            top,
         ),
-    ]  # fmt: skip
+    ]
     loss = 100.0 * sweep.contact_loss.max(axis=-1, initial=0.0)
     if np.any(loss > 0.0):
         panels.append(Panel("Contact lost [%]", _speed_curves(sweep, loss, "%"), top, 0.8))
@@ -182,11 +185,15 @@ def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> li
         return [curve]
     foot = float(np.nanmin(y)) if np.any(np.isfinite(y)) else 0.0
     cross = {
-        "type": "scatter", "mode": "markers", "x": np.asarray(x)[lost],
-        "y": np.full(int(lost.sum()), foot), "name": "failed", "text": list(failed[lost]),
+        "type": "scatter",
+        "mode": "markers",
+        "x": np.asarray(x)[lost],
+        "y": np.full(int(lost.sum()), foot),
+        "name": "failed",
+        "text": list(failed[lost]),
         "marker": {"symbol": "x", "size": 8, "color": MUTED},
         "hovertemplate": "%{text}<extra>failed</extra>",
-    }  # fmt: skip
+    }
     return [curve, cross]
 
 
@@ -206,17 +213,26 @@ def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
 def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
     first, second = study.axes
     heat = {
-        "type": "heatmap", "x": first.shown(), "y": second.shown(), "z": values.T,
-        "colorscale": "Viridis", "colorbar": {"title": {"text": label, "side": "right"}},
-        "text": study.failed.T, "hoverongaps": True,
+        "type": "heatmap",
+        "x": first.shown(),
+        "y": second.shown(),
+        "z": values.T,
+        "colorscale": "Viridis",
+        "colorbar": {"title": {"text": label, "side": "right"}},
+        "text": study.failed.T,
+        "hoverongaps": True,
         "hovertemplate": f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}<extra></extra>",
-    }  # fmt: skip
+    }
     return figure(
-        title, [heat], {
-            "height": 460, "hovermode": "closest", "xaxis": {"title": {"text": _axis_text(first)}},
+        title,
+        [heat],
+        {
+            "height": 460,
+            "hovermode": "closest",
+            "xaxis": {"title": {"text": _axis_text(first)}},
             "yaxis": {"title": {"text": _axis_text(second)}},
         },
-    )  # fmt: skip
+    )
 
 
 @drawing(

@@ -61,8 +61,11 @@ def _bifurcation_parameter(diagram: Bifurcation) -> tuple[Any, str]:
     if unit in ("", "-"):
         return diagram.parameter, words
     kind = name.rpartition("_")[2]
-    alike = [each.display_unit for each in QUANTITIES.values()
-             if each.unit == unit and each.name.rpartition("_")[2] == kind]  # fmt: skip
+    alike = [
+        each.display_unit
+        for each in QUANTITIES.values()
+        if each.unit == unit and each.name.rpartition("_")[2] == kind
+    ]
     shown = alike[0] if alike else unit
     factor = convert(1.0, unit, shown) if alike else 1.0
     return diagram.parameter * factor, f"{words} [{readable(shown)}]"
@@ -92,13 +95,18 @@ def _curves(diagram: Bifurcation, parameter: Any, values: Any, unit: str) -> lis
     return [
         {
             **line(
-                parameter, values[number], _WORDS[branch], _COLORS[branch], unit=unit,
-                dash="dot" if branch == "down" else "solid", width=1.6,
+                parameter,
+                values[number],
+                _WORDS[branch],
+                _COLORS[branch],
+                unit=unit,
+                dash="dot" if branch == "down" else "solid",
+                width=1.6,
             ),
             "showlegend": False,
         }
         for number, branch in enumerate(diagram.branches)
-    ]  # fmt: skip
+    ]
 
 
 def _two_motions(diagram: Bifurcation, parameter: Any, label: str) -> str:

@@ -63,12 +63,19 @@ def phase_portrait(portrait: PhasePortrait) -> Any:
     dashed = {"color": MUTED, "dash": "dash", "width": 1}
     lines = [
         {
-            "type": "line", "x0": x_factor * end, "x1": x_factor * end, "y0": 0, "y1": 1,
-            "yref": "paper", "line": dashed, "name": "the flanks part", "showlegend": end > 0.0,
+            "type": "line",
+            "x0": x_factor * end,
+            "x1": x_factor * end,
+            "y0": 0,
+            "y1": 1,
+            "yref": "paper",
+            "line": dashed,
+            "name": "the flanks part",
+            "showlegend": end > 0.0,
         }
         for end in ends
         if portrait.gap > 0.0 and (end > 0.0 or portrait.position.min() < 0.0)
-    ]  # fmt: skip
+    ]
     words = "Compression of the contact" if portrait.gap >= 0.0 else portrait.name.replace("_", " ")
     seen = np.append(portrait.position, [end for end in ends if lines and end > 0.0])
     layout = {
@@ -159,10 +166,14 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
     shown = slice(-last, None) if last else slice(None)
     words = "last points" if last else "points"
     trace = {
-        "type": "scatter", "mode": "markers", "x": x[shown], "y": y[shown], "name": words,
+        "type": "scatter",
+        "mode": "markers",
+        "x": x[shown],
+        "y": y[shown],
+        "name": words,
         "marker": {"size": 9 if last else 3.5, "color": PINION if last else TOTAL},
         "hovertemplate": f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>",
-    }  # fmt: skip
+    }
     layout = {
         "xaxis": {
             "title": {"text": f"{name.replace('_', ' ')} [{x_unit}]"},

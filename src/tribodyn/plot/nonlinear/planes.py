@@ -20,9 +20,14 @@ _COLORS = (PINION, PAIR_COLORS[3], PAIR_COLORS[0], PAIR_COLORS[1], PAIR_COLORS[2
 _NOWHERE = "#d5dae0"
 #: Words and colours of the periods; the last one is for motions without bounds.
 _PERIODS = (
-    ("1", "#eef3f7"), ("2", PINION), ("3", PAIR_COLORS[0]), ("4", PAIR_COLORS[2]),
-    ("5 to 16", PAIR_COLORS[3]), ("none", WHEEL), ("ran away", "#8a94a0"),
-)  # fmt: skip
+    ("1", "#eef3f7"),
+    ("2", PINION),
+    ("3", PAIR_COLORS[0]),
+    ("4", PAIR_COLORS[2]),
+    ("5 to 16", PAIR_COLORS[3]),
+    ("none", WHEEL),
+    ("ran away", "#8a94a0"),
+)
 #: From little to much.
 _SCALE = [[0.0, "#f7fbff"], [0.35, "#9ecae1"], [0.7, "#3182bd"], [1.0, "#08306b"]]
 #: Part of the motions whose rms the colours tell apart where the rest lies far beyond.
@@ -94,22 +99,33 @@ def basins(plane: Basins) -> Any:
     traces = [_plane(plane, x, y)]
     for number in range(len(plane.attractors)):
         color = _COLORS[number % len(_COLORS)]
-        traces.append({
-            "type": "scatter", "mode": "markers",
-            "x": factors[0] * _component(plane, number, one),
-            "y": factors[1] * _component(plane, number, two),
-            "name": _name(plane, number, factor, unit),
-            "marker": {
-                "symbol": "x", "size": 11, "color": color,
-                "line": {"color": "white", "width": 1.5},
-            },
-        })  # fmt: skip
+        traces.append(
+            {
+                "type": "scatter",
+                "mode": "markers",
+                "x": factors[0] * _component(plane, number, one),
+                "y": factors[1] * _component(plane, number, two),
+                "name": _name(plane, number, factor, unit),
+                "marker": {
+                    "symbol": "x",
+                    "size": 11,
+                    "color": color,
+                    "line": {"color": "white", "width": 1.5},
+                },
+            }
+        )
     if plane.unresolved:
         words = f"no attractor: {100.0 * plane.unresolved:.2g} %"
-        traces.append({
-            "type": "scatter", "mode": "markers", "x": [None], "y": [None], "name": words,
-            "marker": {"symbol": "square", "size": 11, "color": _NOWHERE},
-        })  # fmt: skip
+        traces.append(
+            {
+                "type": "scatter",
+                "mode": "markers",
+                "x": [None],
+                "y": [None],
+                "name": words,
+                "marker": {"symbol": "square", "size": 11, "color": _NOWHERE},
+            }
+        )
     layout = {
         "xaxis": {"title": {"text": x_label}, "range": [float(x[0]), float(x[-1])]},
         "yaxis": {"title": {"text": y_label}, "range": [float(y[0]), float(y[-1])]},
@@ -145,10 +161,15 @@ def _class(survey: ParameterMap) -> Any:
 
 def _heat(x: Any, y: Any, z: Any, words: str, **more: Any) -> dict[str, Any]:
     return {
-        "type": "heatmap", "x": x, "y": y, "z": np.asarray(z).T, "colorscale": _SCALE,
-        "hovertemplate": f"%{{x:.5g}}, %{{y:.4g}}: {words}<extra></extra>", "showlegend": False,
+        "type": "heatmap",
+        "x": x,
+        "y": y,
+        "z": np.asarray(z).T,
+        "colorscale": _SCALE,
+        "hovertemplate": f"%{{x:.5g}}, %{{y:.4g}}: {words}<extra></extra>",
+        "showlegend": False,
         **more,
-    }  # fmt: skip
+    }
 
 
 def _range(rms: Any) -> dict[str, float]:
@@ -164,10 +185,16 @@ def _periods(survey: ParameterMap, x: Any, y: Any) -> dict[str, Any]:
     scale = _stepped([color for _, color in _PERIODS])
     ticks = {"tickvals": list(range(len(_PERIODS))), "ticktext": [word for word, _ in _PERIODS]}
     return _heat(
-        x, y, _class(survey), "period %{customdata[0]}, %{customdata[1]}", zmin=-0.5,
-        zmax=len(_PERIODS) - 0.5, colorscale=scale, colorbar=ticks,
+        x,
+        y,
+        _class(survey),
+        "period %{customdata[0]}, %{customdata[1]}",
+        zmin=-0.5,
+        zmax=len(_PERIODS) - 0.5,
+        colorscale=scale,
+        colorbar=ticks,
         customdata=np.dstack((survey.period.T, survey.verdict.T)),
-    )  # fmt: skip
+    )
 
 
 def _map_title(survey: ParameterMap) -> str:
@@ -215,7 +242,12 @@ def parameter_map(survey: ParameterMap) -> Any:
         low, high = made.layout[f"yaxis{number + 1 if number else ''}"].domain
         bar = made.data[number].colorbar
         bar.update(
-            y=0.5 * (low + high), len=high - low, thickness=14, x=1.01, xanchor="left",
-            title={"text": words, "side": "right", "font": {"size": 13}}, outlinewidth=0,
-        )  # fmt: skip
+            y=0.5 * (low + high),
+            len=high - low,
+            thickness=14,
+            x=1.01,
+            xanchor="left",
+            title={"text": words, "side": "right", "font": {"size": 13}},
+            outlinewidth=0,
+        )
     return made

@@ -37,10 +37,11 @@ def _curve(result: CaseEnsemble, signal: str, x: Array) -> tuple[list[Trace], st
     factor, unit = scaled(band.mean, band.unit)
     traces = [
         *_area(x, factor * spread[0], factor * spread[1], f"{_SHARE:.0%} of the variants", _LIGHT),
-        *_area(x, factor * band.low, factor * band.high, f"{band.level:.0%} band of the mean",
-               _DARK),
+        *_area(
+            x, factor * band.low, factor * band.high, f"{band.level:.0%} band of the mean", _DARK
+        ),
         line(x, factor * band.mean, "mean", TOTAL, unit=unit),
-    ]  # fmt: skip
+    ]
     return traces, unit
 
 
@@ -109,8 +110,15 @@ def surrogate(result: Surrogate) -> Any:
         color = _COLORS[number % len(_COLORS)]
         ends = factor * np.array([true.min(), true.max()])
         half = factor * float(result.band[number])
-        points = marked(factor * true[chosen], factor * told[chosen], "held-out rows", color,
-                        size=4, symbol="circle", unit=unit)  # fmt: skip
+        points = marked(
+            factor * true[chosen],
+            factor * told[chosen],
+            "held-out rows",
+            color,
+            size=4,
+            symbol="circle",
+            unit=unit,
+        )
         traces = [points, line(ends, ends, "exact", TOTAL, width=1.2)]
         if np.isfinite(half):
             for sign, shown in ((1.0, True), (-1.0, False)):

@@ -135,9 +135,11 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
         f"{with_unit(float(tracked.amplitude[row, column]), tracked.unit)} at "
         f"{significant(float(rpm[column]), 4)} rpm",
         "Time [s]",
-        [Panel(amplitude_label(tracked.unit), curves, {"rangemode": "tozero"}, 1.4),
-         Panel("Speed [rpm]", [speed], {"rangemode": "tozero"}, 0.8)],
-    )  # fmt: skip
+        [
+            Panel(amplitude_label(tracked.unit), curves, {"rangemode": "tozero"}, 1.4),
+            Panel("Speed [rpm]", [speed], {"rangemode": "tozero"}, 0.8),
+        ],
+    )
 
 
 @drawing(
@@ -175,13 +177,14 @@ def comparison(comparison: Comparison) -> Any:
                 f"{name} [{readable(unit)}]",
                 [
                     line(frequency, size, "measured", MUTED, unit=unit, width=1.2),
-                    marked(at, made, f"computed{told}", PINION, size=9, symbol="circle-open",
-                           unit=unit),
+                    marked(
+                        at, made, f"computed{told}", PINION, size=9, symbol="circle-open", unit=unit
+                    ),
                 ],
                 {"rangemode": "tozero"},
                 1.2,
             )
-        )  # fmt: skip
+        )
         ends.append(top)
     harmonics = np.char.startswith(comparison.measure, "mesh harm")
     worst = int(np.argmax(np.where(harmonics, np.abs(comparison.error), -1.0)))

@@ -64,11 +64,14 @@ def _marks(found: Sequence[Any], factor: float, unit: str) -> dict[str, Any]:
     ]
     facts = [
         f"order {each.order:g} at {significant(each.frequency, 4)} Hz"
-        + (f", mode {each.mode} at {significant(each.mode_frequency, 4)} Hz" if each.mode >= 0
-           else ", no natural mode near")
+        + (
+            f", mode {each.mode} at {significant(each.mode_frequency, 4)} Hz"
+            if each.mode >= 0
+            else ", no natural mode near"
+        )
         + (f", near the mains of {each.mains:g} Hz" if each.mains else "")
         for each in found
-    ]  # fmt: skip
+    ]
     return {
         "type": "scatter",
         "mode": "markers+text",
@@ -150,9 +153,14 @@ def run_up(
         for number, (part, dash) in enumerate(parts):
             cut = order_cut(run, order, signal, part=part)
             trace = line(
-                displayed("speed", cut.speed), factor * cut.amplitude, f"order {order:g}", color,
-                unit=unit, dash=dash, width=1.8,
-            )  # fmt: skip
+                displayed("speed", cut.speed),
+                factor * cut.amplitude,
+                f"order {order:g}",
+                color,
+                unit=unit,
+                dash=dash,
+                width=1.8,
+            )
             cuts.append({**trace, "showlegend": number == 0, "legendgroup": f"{order:g}"})
     found = resonances(run, signal, orders=chosen, part=parts[0][0])
     if found:
@@ -197,9 +205,14 @@ def _orders(run: RunUp, speed: Array, top: float, several: bool) -> list[Trace]:
         words = [""] * across.size
         words[int(np.flatnonzero(seen)[-1])] = f"{order}×" if several else str(order)
         made = line(
-            displayed("speed", across[seen]), values[seen], f"mesh order {order}", MUTED,
-            unit="Hz", dash="dot", width=0.8,
-        )  # fmt: skip
+            displayed("speed", across[seen]),
+            values[seen],
+            f"mesh order {order}",
+            MUTED,
+            unit="Hz",
+            dash="dot",
+            width=0.8,
+        )
         text = {"mode": "lines+text", "text": words[: int(seen.sum())]}
         traces.append({**made, **text, "textposition": "top left", "showlegend": False})
     return traces
@@ -285,9 +298,12 @@ def run_up_map(
         amplitude = _over_frequency(made, run.teeth, frequency)[:, order]
         factor = 1e6 if unit == "m" else 1.0
         surface = amplitude_heatmap(
-            displayed("speed", speed), frequency, factor * amplitude,
-            "um" if unit == "m" else unit, "%{y:.5g} Hz at %{x:.4g}",
-        )  # fmt: skip
+            displayed("speed", speed),
+            frequency,
+            factor * amplitude,
+            "um" if unit == "m" else unit,
+            "%{y:.5g} Hz at %{x:.4g}",
+        )
         surfaces.append((float(amplitude.max()) or 1.0, surface))
         line_number, block = made.strongest()
         if made.amplitude[line_number, block] > loudest[0]:

@@ -377,9 +377,14 @@ class ContactProblem:
         """Call a kernel that solves every slice of every phase so many times."""
         parts, gaps = self.compliance, np.minimum(self.gaps, FAR)
         status = stoppable(
-            kernel, parts.structure, parts.local, parts.logarithm, gaps, *arguments,
+            kernel,
+            parts.structure,
+            parts.local,
+            parts.logarithm,
+            gaps,
+            *arguments,
             brief=solves * gaps.size <= _BRIEF,
-        )  # fmt: skip
+        )
         if status:
             what, remedy = _STATUS[status]
             raise ComputationError(what, "loaded tooth contact", "", remedy)

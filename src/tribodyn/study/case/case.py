@@ -169,8 +169,11 @@ class Case(Section, whole=True):
 
     def _chosen_by(self, changes: Mapping[str, Any]) -> dict[str, str]:
         """Models, laws and methods that changes choose anew, by key; unknown names are left out."""
-        selectors = [f"{name}.{t.kind.selector}" for name, t in self.fields.items()
-                     if isinstance(t, Table) and t.kind.selector]  # fmt: skip
+        selectors = [
+            f"{name}.{t.kind.selector}"
+            for name, t in self.fields.items()
+            if isinstance(t, Table) and t.kind.selector
+        ]
         chosen = {}
         for key in (*selectors, *_DECIDES):
             if key not in changes:

@@ -34,9 +34,13 @@ def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:
 
 
 _PASSED = (
-    "teeth", "profile_shift_coefficient", "tip_diameter", "bore_diameter", "mass",
+    "teeth",
+    "profile_shift_coefficient",
+    "tip_diameter",
+    "bore_diameter",
+    "mass",
     "moment_of_inertia",
-)  # fmt: skip
+)
 
 
 def flank_modification(data: Modification | None, chart: ProfileMap | None) -> FlankModification:
@@ -89,8 +93,10 @@ def _modifications(gears: Gears) -> _Modified:
             )
             return None
 
-    both = (modification("pinion", gears.pinion.modification),
-            modification("wheel", gears.wheel.modification))  # fmt: skip
+    both = (
+        modification("pinion", gears.pinion.modification),
+        modification("wheel", gears.wheel.modification),
+    )
     return _Modified(*both, tuple(problems))
 
 

@@ -156,9 +156,12 @@ class Gears(Section):
         REQUIRED, 0.05e-3, 0.1, "ISO 54 modules run from 1 to 50 mm", of="normal_module"
     )
     normal_pressure_angle: float = number(
-        REQUIRED, math.radians(10.0), math.radians(35.0), "basic racks lie between 14.5 and 30 deg",
-        of="normal_pressure_angle"
-    )  # fmt: skip
+        REQUIRED,
+        math.radians(10.0),
+        math.radians(35.0),
+        "basic racks lie between 14.5 and 30 deg",
+        of="normal_pressure_angle",
+    )
     center_distance: float | None = number(
         None, 1e-4, 10.0, _GUARD, of="center_distance", basis="the profile shifts, without backlash"
     )

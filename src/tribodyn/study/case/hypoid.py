@@ -27,8 +27,9 @@ _AMOUNT = 1e-3
 
 
 def _amount(meaning: str, low: float = 0.0) -> Any:
-    return number(0.0, low, _AMOUNT, _GUARD, unit="m", display_unit="um", example='"10 um"',
-                  meaning=meaning)  # fmt: skip
+    return number(
+        0.0, low, _AMOUNT, _GUARD, unit="m", display_unit="um", example='"10 um"', meaning=meaning
+    )
 
 
 def _shift(meaning: str, most: float = 2e-3, unit: str = "m", shown: str = "mm") -> Any:
@@ -45,14 +46,26 @@ class EaseOffData(Section):
     tip_relief: float = _amount("gap at the tip of the wheel")
     root_relief: float = _amount("gap at the lowest working depth of the wheel")
     relief_length: float | None = number(
-        None, 1e-6, 0.1, _GUARD, unit="m", display_unit="mm", example='"3 mm"',
-        meaning="length of both reliefs", basis="three tenths of the working depth",
-    )  # fmt: skip
+        None,
+        1e-6,
+        0.1,
+        _GUARD,
+        unit="m",
+        display_unit="mm",
+        example='"3 mm"',
+        meaning="length of both reliefs",
+        basis="three tenths of the working depth",
+    )
     center: tuple[float, ...] | None = numbers(
-        -1.0, 1.0, _GUARD, unit="m", display_unit="mm", example='"0 mm", "-2.2 mm"',
+        -1.0,
+        1.0,
+        _GUARD,
+        unit="m",
+        display_unit="mm",
+        example='"0 mm", "-2.2 mm"',
         meaning="place of the centre along and across the wheel's pitch cone",
         basis="the calculation point lengthwise, the middle of the working depth",
-    )  # fmt: skip
+    )
 
 
 class MountingData(Section):
@@ -90,10 +103,16 @@ def _of_blank(name: str) -> Option:
     (low, high, unit), given = RANGES[name], default is not inspect.Parameter.empty
     shown, example = _SHOWN[unit]
     option: Option = number(
-        default if given else REQUIRED, low, high, "designs in use lie well within", unit=unit,
-        display_unit=shown, example=example, meaning=_MEANINGS[name],
+        default if given else REQUIRED,
+        low,
+        high,
+        "designs in use lie well within",
+        unit=unit,
+        display_unit=shown,
+        example=example,
+        meaning=_MEANINGS[name],
         basis=_TAPER if default is None else "",
-    )  # fmt: skip
+    )
     return option
 
 
@@ -110,7 +129,13 @@ HYPOID_KEYS: dict[str, Option | Table] = {
     ),
     "hand_pinion": choice("left", HANDS, meaning="hand of the pinion; the wheel has the other one"),
     "line_stiffness": number(
-        14e9, 1e8, 1e12, _GUARD, unit="N/m^2", display_unit="N/(mm*um)", example='"14 N/(mm*um)"',
+        14e9,
+        1e8,
+        1e12,
+        _GUARD,
+        unit="N/m^2",
+        display_unit="N/(mm*um)",
+        example='"14 N/(mm*um)"',
         meaning="stiffness of the teeth of a pair over the length of their contact line",
     ),
     "entrainment": choice(
@@ -120,7 +145,7 @@ HYPOID_KEYS: dict[str, Option | Table] = {
     ),
     "ease_off": table(EaseOffData, "what the pinion has less than the conjugate flank", "empty"),
     "mounting": table(MountingData, "displacements of the gears from their places", "empty"),
-}  # fmt: skip
+}
 #: Keys that both kinds of gears with flanks have.
 ALSO_OF_HYPOID = ("composite_roughness", "roughness_rms", "roughness_ra")
 
@@ -196,8 +221,11 @@ def solid(flanks: HypoidFlanks, density: float) -> dict[str, tuple[float, float]
     for gear in ("pinion", "wheel"):
         cone = getattr(blank, f"pitch_angle_{gear}")
         outer, inner = (getattr(blank, f"{end}_cone_distance_{gear}") for end in ("outer", "inner"))
-        one, two, height = (outer * math.sin(cone), inner * math.sin(cone),
-                            (outer - inner) * math.cos(cone))  # fmt: skip
+        one, two, height = (
+            outer * math.sin(cone),
+            inner * math.sin(cone),
+            (outer - inner) * math.cos(cone),
+        )
         scale = math.pi * density * height
         mass = scale / 3.0 * (one**2 + one * two + two**2)
         found[gear] = (mass, scale / 10.0 * sum(one**k * two ** (4 - k) for k in range(5)))

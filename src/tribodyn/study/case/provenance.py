@@ -75,12 +75,16 @@ def reason_faults(marks: Any) -> Found:
     return [
         (
             f"assumed.{key}",
-            Problem(f"{key} = {written(reason)}", "", "Input should be a valid string",
-                    "Correct the value"),
+            Problem(
+                f"{key} = {written(reason)}",
+                "",
+                "Input should be a valid string",
+                "Correct the value",
+            ),
         )
         for key, reason in marks.items()
         if not isinstance(reason, str)
-    ]  # fmt: skip
+    ]
 
 
 def without_records(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -179,9 +183,12 @@ def tables(stated: Stated, marks: Mapping[str, str]) -> dict[str, Any]:
 
 
 _PROFILE = (
-    "gears.normal_module", "gears.normal_pressure_angle", "gears.addendum_coefficient",
-    "gears.dedendum_coefficient", "gears.rack_tip_radius_coefficient",
-)  # fmt: skip
+    "gears.normal_module",
+    "gears.normal_pressure_angle",
+    "gears.addendum_coefficient",
+    "gears.dedendum_coefficient",
+    "gears.rack_tip_radius_coefficient",
+)
 _TEETH = tuple(
     f"gears.{gear}.{name}"
     for gear in ("pinion", "wheel")
@@ -193,9 +200,12 @@ _OIL = tuple(
 )
 _LOAD = ("operation.speed", "operation.torque")
 _ROUGHNESS = (
-    "gears.composite_roughness", "gears.pinion.roughness_rms", "gears.wheel.roughness_rms",
-    "gears.pinion.roughness_ra", "gears.wheel.roughness_ra",
-)  # fmt: skip
+    "gears.composite_roughness",
+    "gears.pinion.roughness_rms",
+    "gears.wheel.roughness_rms",
+    "gears.pinion.roughness_ra",
+    "gears.wheel.roughness_ra",
+)
 _MASSES = tuple(
     f"gears.{gear}.{name}" for gear in ("pinion", "wheel") for name in ("mass", "moment_of_inertia")
 )
@@ -216,8 +226,10 @@ def body(gear: str) -> tuple[str, ...]:
 
 _ELASTIC = (
     *dict.fromkeys((*body("pinion"), *body("wheel"))),
-    "gears.center_distance", "material.youngs_modulus", "material.poissons_ratio",
-)  # fmt: skip
+    "gears.center_distance",
+    "material.youngs_modulus",
+    "material.poissons_ratio",
+)
 
 _FOUNDATIONS: dict[str, tuple[str, ...]] = {
     "gears.center_distance": (*_PROFILE[:2], *_TEETH),

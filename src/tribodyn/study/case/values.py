@@ -35,8 +35,11 @@ def _words() -> dict[str, Word]:
 
     text = files("tribodyn.study.case").joinpath("words.toml").read_text(encoding="utf-8")
     entries = tomllib.loads(text).values()
-    return {word: Word(**{k: v for k, v in entry.items() if k != "words"})
-            for entry in entries for word in entry["words"]}  # fmt: skip
+    return {
+        word: Word(**{k: v for k, v in entry.items() if k != "words"})
+        for entry in entries
+        for word in entry["words"]
+    }
 
 
 def word(text: str) -> Word | None:

@@ -116,8 +116,11 @@ def case_toml(case: Case) -> str:
     ):
         if getattr(case, name) is None:
             lines += ["", f"# [{name}] is not given: {why}"]
-    marks = {key: case.assumed.get(key, DEFAULT_MARK) for key, origin in origins.items()
-             if origin != "given" and values[key] is not None}  # fmt: skip
+    marks = {
+        key: case.assumed.get(key, DEFAULT_MARK)
+        for key, origin in origins.items()
+        if origin != "given" and values[key] is not None
+    }
     return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case)]) + "\n"
 
 

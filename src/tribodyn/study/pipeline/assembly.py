@@ -24,9 +24,14 @@ if TYPE_CHECKING:
 
 #: Modifications that are one figure each.
 _AMOUNTS = (
-    "tip_relief", "root_relief", "profile_crowning", "profile_slope", "crowning", "lead_slope",
+    "tip_relief",
+    "root_relief",
+    "profile_crowning",
+    "profile_slope",
+    "crowning",
+    "lead_slope",
     "run_out",
-)  # fmt: skip
+)
 
 
 def geometry(case: Case) -> dict[str, float]:
@@ -73,10 +78,22 @@ def _of_mesh_table(case: Case, table: TableFile) -> dict[str, float]:
 
 
 #: Dimensions of a blank that a summary tells, of the pair and of each gear.
-_BLANK = ("mean_normal_module", "limit_pressure_angle", "normal_pressure_angle_drive",
-          "normal_pressure_angle_coast", "offset_angle_pitch")  # fmt: skip
-_CONES = ("pitch_angle", "mean_spiral_angle", "mean_cone_distance", "mean_pitch_diameter",
-          "outer_tip_diameter", "face_angle", "root_angle")  # fmt: skip
+_BLANK = (
+    "mean_normal_module",
+    "limit_pressure_angle",
+    "normal_pressure_angle_drive",
+    "normal_pressure_angle_coast",
+    "offset_angle_pitch",
+)
+_CONES = (
+    "pitch_angle",
+    "mean_spiral_angle",
+    "mean_cone_distance",
+    "mean_pitch_diameter",
+    "outer_tip_diameter",
+    "face_angle",
+    "root_angle",
+)
 
 
 def _of_hypoid(case: Case, flanks: HypoidFlanks) -> dict[str, float]:
@@ -161,9 +178,11 @@ def damping_of(case: Case, mesh: MeshTable) -> Damping:
     mesh_damping = data.mesh_damping
     if mesh_damping is None:
         mass = equivalent_mass(
-            body["moment_of_inertia_pinion"], body["moment_of_inertia_wheel"],
-            body["base_radius_pinion"], body["base_radius_wheel"],
-        )  # fmt: skip
+            body["moment_of_inertia_pinion"],
+            body["moment_of_inertia_wheel"],
+            body["base_radius_pinion"],
+            body["base_radius_wheel"],
+        )
         mesh_damping = 2.0 * data.mesh_damping_ratio * math.sqrt(mesh.mean_mesh_stiffness * mass)
     supports = _supports(case, (body.get("mass_pinion", 0.0), body.get("mass_wheel", 0.0)))
     return Damping(mesh_damping, *supports)

@@ -130,11 +130,13 @@ def _body_share(case: Case, force: float) -> float:
     with collected():
         whole, teeth = (
             loaded_contact(
-                pair, torque, phases=_PHASES,
+                pair,
+                torque,
+                phases=_PHASES,
                 **{**settings, "options": {**settings["options"], "reference": reference}},
             ).deflection.mean()
             for reference in ("bore", "rim")
-        )  # fmt: skip
+        )
     return float(1.0 - teeth / whole)
 
 

@@ -66,9 +66,16 @@ def _transient(
             f"taken over {kept - kept // 2} of them. A shorter run is kept whole",
         )
     return simulate(
-        system, mesh_frequency, cycles, start, steps=steps, extra_force=extra, kept=kept,
-        progress=progress, **engine_arguments(case),
-    )  # fmt: skip
+        system,
+        mesh_frequency,
+        cycles,
+        start,
+        steps=steps,
+        extra_force=extra,
+        kept=kept,
+        progress=progress,
+        **engine_arguments(case),
+    )
 
 
 def engine_arguments(case: Case) -> dict[str, Any]:
@@ -107,9 +114,15 @@ def _marched_orbit(
     state, change, marched = (orbit.position[0], orbit.velocity[0]), np.inf, 0
     while marched < _MOST_CYCLES:
         motion = simulate(
-            system, frequency, _AT_ONCE * cycles, state, steps=steps, extra_force=extra,
-            progress=progress, **engine_arguments(case),
-        )  # fmt: skip
+            system,
+            frequency,
+            _AT_ONCE * cycles,
+            state,
+            steps=steps,
+            extra_force=extra,
+            progress=progress,
+            **engine_arguments(case),
+        )
         marched += _AT_ONCE * cycles
         last, before = motion.deflection[-cycles * steps :], motion.deflection[: -cycles * steps]
         size = float(np.abs(last).max())

@@ -192,9 +192,15 @@ def parts_of(result: Result) -> Parts:
         variables[name] = (("time", "coordinate"), getattr(response, name), told)
         coordinates[f"{name}_unit"] = ("coordinate", np.where(turns, turning, straight))
     pressed, force = _contacts(response)
-    variables["deflection"] = (("time", "contact"), pressed, _told(
-        "m", "compression of every contact, counted from the middle of the play: its flanks touch "
-        "at the attribute half_backlash"))  # fmt: skip
+    variables["deflection"] = (
+        ("time", "contact"),
+        pressed,
+        _told(
+            "m",
+            "compression of every contact, counted from the middle of the play: its flanks touch "
+            "at the attribute half_backlash",
+        ),
+    )
     variables["contact_force"] = (("time", "contact"), force, _told("N", "force of every contact"))
     for name, (values, unit, words) in signals(result, response).items():
         if not name.startswith("acceleration_"):  # they stand under acceleration
@@ -236,10 +242,13 @@ def _ends(result: Result) -> dict[str, Any]:
     """What a motion is built from again, beside its states at the steps."""
     response, friction = result.response, result.friction
     found: dict[str, Any] = {
-        f"end_{name}": ("coordinate", getattr(response.fine, name)[-1], {
-            "long_name": f"{name} at the end of the record"})
+        f"end_{name}": (
+            "coordinate",
+            getattr(response.fine, name)[-1],
+            {"long_name": f"{name} at the end of the record"},
+        )
         for name in ("position", "velocity")
-    }  # fmt: skip
+    }
     multipliers = response.floquet_multipliers
     if response.extra_force.size:
         told = {"long_name": "force or torque that balances the friction [N or N*m]"}
@@ -254,8 +263,11 @@ def _ends(result: Result) -> dict[str, Any]:
         found["friction_coefficients"] = (dims, friction.coefficients, told)
     if (coupling := result.coupling) is not None:
         told = _told("1", "change of each quantity from one pass of the coupling to the next")
-        found |= {f"coupling_{each.name}": ("pass", getattr(coupling, each.name), told)
-                  for each in fields(coupling) if each.name.endswith("_change")}  # fmt: skip
+        found |= {
+            f"coupling_{each.name}": ("pass", getattr(coupling, each.name), told)
+            for each in fields(coupling)
+            if each.name.endswith("_change")
+        }
         told = _told("1", "force of all pairs over that of the torque alone, by phase of the mesh")
         found["coupling_loading"] = ("knot", coupling.loading, told)
     return found
@@ -271,15 +283,18 @@ def _facts(result: Result) -> dict[str, Any]:
         "title": result.case.title,
         "half_backlash": result.half_backlash,
         "warnings": json.dumps([[each.code, each.message] for each in result.warnings]),
-        **{name: int(getattr(response, name))
-           for name in ("converged", "cycles_used", "search_cycles", "period")},
-    }  # fmt: skip
+        **{
+            name: int(getattr(response, name))
+            for name in ("converged", "cycles_used", "search_cycles", "period")
+        },
+    }
     if result.friction is not None:
         names = ("load", "limit", "fit_error")
         facts |= {f"friction_{name}": getattr(result.friction, name) for name in names}
     if result.coupling is not None:
-        facts |= {f"coupling_{name}": getattr(result.coupling, name)
-                  for name in ("kind", "tolerance")}  # fmt: skip
+        facts |= {
+            f"coupling_{name}": getattr(result.coupling, name) for name in ("kind", "tolerance")
+        }
     facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
     facts["figures"] = len(result.summary())
     return {**facts, **result.summary()}

@@ -194,8 +194,10 @@ def _static_error_figures(result: Result) -> dict[str, Any]:
     else:
         error = result.mesh.static_transmission_error
         figures = (
-            result.mesh.grid.mean(error), np.ptp(error), result.mesh.harmonics(name, _HARMONICS),
-        )  # fmt: skip
+            result.mesh.grid.mean(error),
+            np.ptp(error),
+            result.mesh.harmonics(name, _HARMONICS),
+        )
     mean, most, amplitudes = figures
     return {
         f"mean_{name}": mean,
@@ -288,11 +290,13 @@ def _hypoid_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
         return {}
     loaded = error + mesh.static_transmission_error
     return {
-        **{f"mean_mesh_force_{axis}": mean(samples, values)
-           for axis, values in zip("xyz", forces.T, strict=True)},
+        **{
+            f"mean_mesh_force_{axis}": mean(samples, values)
+            for axis, values in zip("xyz", forces.T, strict=True)
+        },
         "unloaded_transmission_error_peak_to_peak": np.ptp(error),
         "loaded_transmission_error_peak_to_peak": np.ptp(loaded),
-    }  # fmt: skip
+    }
 
 
 def _comparison(result: Result) -> dict[str, Any]:
@@ -306,8 +310,13 @@ def _comparison(result: Result) -> dict[str, Any]:
         **_error_figures(other, samples),
         **_friction_figures(other, samples),
     }
-    names = ("rms_mesh_force", "peak_mesh_force", "peak_to_peak_dynamic_transmission_error",
-             "rms_friction_force", "mean_friction_power")  # fmt: skip
+    names = (
+        "rms_mesh_force",
+        "peak_mesh_force",
+        "peak_to_peak_dynamic_transmission_error",
+        "rms_friction_force",
+        "mean_friction_power",
+    )
     found = {f"{name}_nominal_friction": figures[name] for name in names}
     return found | {"friction_fit_error": result.friction.fit_error}
 

@@ -177,9 +177,13 @@ class Findings:
     def sentences(self) -> list[str]:
         """Tell verdicts, run-aways, step limit, periods, jumps, and where two motions exist."""
         return [
-            *self._counts(), *self._lost(), *self._limit(), *self._periods(), *self._jumps(),
+            *self._counts(),
+            *self._lost(),
+            *self._limit(),
+            *self._periods(),
+            *self._jumps(),
             *self._two(),
-        ]  # fmt: skip
+        ]
 
     def figures(self) -> dict[str, Any]:
         """Return the same for a program, in SI."""
@@ -210,9 +214,15 @@ class Findings:
         found = self.found
         unit = f" [{self.axis.display_unit}]" if self.axis.display_unit else ""
         turns = "theta" in self.found.signal
-        head = [f"{self.axis.name.replace('_', ' ')}{unit}", "branch", "period",
-                "rms [rad]" if turns else "rms [um]",
-                "off the flank", "omega_max dt", "verdict"]  # fmt: skip
+        head = [
+            f"{self.axis.name.replace('_', ' ')}{unit}",
+            "branch",
+            "period",
+            "rms [rad]" if turns else "rms [um]",
+            "off the flank",
+            "omega_max dt",
+            "verdict",
+        ]
         cells = []
         for number, value in enumerate(self.axis.shown()):
             for branch, name in enumerate(found.branches):
@@ -221,12 +231,17 @@ class Findings:
                     loss = found.contact_loss_share[branch, number]
                     lost = found.ran_away[branch, number]
                     size = f"{rms if turns else 1e6 * rms:.5g}"
-                    cells.append([
-                        f"{value:.6g}", name, str(period) if period else "none",
-                        "ran away" if lost else size, "" if lost else f"{loss:.3g}",
-                        f"{found.step_number[number]:.3g}",
-                        str(found.verdict[branch, number]),
-                    ])  # fmt: skip
+                    cells.append(
+                        [
+                            f"{value:.6g}",
+                            name,
+                            str(period) if period else "none",
+                            "ran away" if lost else size,
+                            "" if lost else f"{loss:.3g}",
+                            f"{found.step_number[number]:.3g}",
+                            str(found.verdict[branch, number]),
+                        ]
+                    )
         return head, cells
 
     def _at(self, number: int) -> str:

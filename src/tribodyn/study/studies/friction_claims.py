@@ -63,9 +63,12 @@ _Judged = tuple[str, Mask, str]
 
 
 def _judged(
-    found: FrictionExperiment, case: str, statement: str, printed: str,
+    found: FrictionExperiment,
+    case: str,
+    statement: str,
+    printed: str,
     judge: Callable[[FrictionExperiment], _Judged],
-) -> Claim:  # fmt: skip
+) -> Claim:
     try:
         computed, holds, why = judge(found)
     except InputError as error:
@@ -119,7 +122,7 @@ def _vibration(found: FrictionExperiment) -> _Judged:
         f"Across the line of action friction itself excites, with the power {_span(power)} of the "
         f"coefficient; at 0.25 that is {_percent(share, sign=False)} of the squared vibration, "
         f"and the printed rise asks for {100.0 * needed:.0f} %",
-    )  # fmt: skip
+    )
 
 
 def _rms_force(found: FrictionExperiment) -> _Judged:
@@ -137,7 +140,7 @@ def _rms_force(found: FrictionExperiment) -> _Judged:
         f"The force follows the torque that is not held: its mean changes by {_percent(mean)}. The "
         f"change grows with the coefficient, {_percent(per_tenth)} for each 0.1, and with it with "
         f"the roughness; 12.5 % would need {needed} in the mean",
-    )  # fmt: skip
+    )
 
 
 def _fifth(found: FrictionExperiment) -> _Judged:
@@ -154,7 +157,7 @@ def _fifth(found: FrictionExperiment) -> _Judged:
         fifth > ENOUGH * 0.62,
         "Only a lightly damped mode at the fifth harmonic makes it so; the nearest one of this "
         f"pair is at {nearest / meshing:.3g} times its frequency",
-    )  # fmt: skip
+    )
 
 
 def _roughness(found: FrictionExperiment) -> _Judged:
@@ -200,7 +203,7 @@ def _constant_instead(found: FrictionExperiment) -> _Judged:
         f"Friction itself changes them by up to {_percent(whole[0].max(), sign=False)} and "
         f"{_percent(whole[1].max(), sign=False)}: with the same mean the course over the path adds "
         "little",
-    )  # fmt: skip
+    )
 
 
 _CLAIMS: tuple[tuple[Any, ...], ...] = (

@@ -43,10 +43,14 @@ DRIVERS, BALANCES = ("pinion", "wheel"), ("drive", "load", "both")
 NONE, CONSTANT, MIXED = "none", "constant", "mixed-ehl"
 #: Figures of the table of effects, and what they are multiplied by.
 _EFFECTS = {
-    "mean_friction_coefficient": 1.0, "mean_mesh_force": 1.0, "rms_mesh_force": 1.0,
-    "peak_to_peak_dynamic_transmission_error": 1e6, "dynamic_transmission_error_harmonic_1": 1e6,
-    "rms_bearing_force_loa_pinion": 1.0, "rms_bearing_force_oloa_pinion": 1.0,
-}  # fmt: skip
+    "mean_friction_coefficient": 1.0,
+    "mean_mesh_force": 1.0,
+    "rms_mesh_force": 1.0,
+    "peak_to_peak_dynamic_transmission_error": 1e6,
+    "dynamic_transmission_error_harmonic_1": 1e6,
+    "rms_bearing_force_loa_pinion": 1.0,
+    "rms_bearing_force_oloa_pinion": 1.0,
+}
 #: Laws that need the thickness of the film.
 _ON_FILM = frozenset({"mixed", MIXED, "matsumoto"})
 _KEYS = ("gears.driver", "operation.torque_balance", "friction")
@@ -88,13 +92,25 @@ class FrictionExperiment(Sweep):
 
     rubbing: tuple[Rubbing, ...] = ()
     CLAIM_HEAD: ClassVar[tuple[str, ...]] = (
-        "Source of", "Claim", "Printed", "Computed", "Verdict", "Holds where", "Why"
-    )  # fmt: skip
+        "Source of",
+        "Claim",
+        "Printed",
+        "Computed",
+        "Verdict",
+        "Holds where",
+        "Why",
+    )
 
     EFFECT_HEAD: ClassVar[tuple[str, ...]] = (
-        "Friction", "mu", "mean force [N]", "rms force [N]", "error p-p [um]", "harmonic 1 [um]",
-        "bearing along, rms [N]", "across, rms [N]",
-    )  # fmt: skip
+        "Friction",
+        "mu",
+        "mean force [N]",
+        "rms force [N]",
+        "error p-p [um]",
+        "harmonic 1 [um]",
+        "bearing along, rms [N]",
+        "across, rms [N]",
+    )
 
     @cached_property
     def claims(self) -> tuple[Claim, ...]:
@@ -131,9 +147,14 @@ class FrictionExperiment(Sweep):
         ------
         tuple of str
         """
-        row, column = (axis.values.index(value) for axis, value in zip(
-            self.axes, (self.case.gears.driver, self.case.operation.torque_balance), strict=False
-        ))  # fmt: skip
+        row, column = (
+            axis.values.index(value)
+            for axis, value in zip(
+                self.axes,
+                (self.case.gears.driver, self.case.operation.torque_balance),
+                strict=False,
+            )
+        )
         for k in (self.index(NONE), *self.nearest()):
             values = [self[name][row, column, k] * scale for name, scale in _EFFECTS.items()]
             if np.isfinite(values).all():
@@ -286,9 +307,7 @@ def friction_experiment(
     loaded = _loaded(base, progress)
     rubbing = tuple(_rubbing(base, loaded["pinion"], named, heights, coefficients))
     frictions = {one.name: one for one in rubbing}
-    axes = (
-        Axis(_KEYS[0], DRIVERS), Axis(_KEYS[1], BALANCES), Axis(_KEYS[2], tuple(frictions))
-    )  # fmt: skip
+    axes = (Axis(_KEYS[0], DRIVERS), Axis(_KEYS[1], BALANCES), Axis(_KEYS[2], tuple(frictions)))
 
     def compute(driver: str, balance: str, friction: str) -> Result:
         one, mesh = frictions[friction], loaded[driver]
@@ -330,8 +349,9 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
         changes["film.model"] = "newton"
     if case.film.model == "none" and not _ON_FILM.isdisjoint(laws):
         changes.setdefault("film.model", "dowson-higginson")
-    heights = [f"gears.{gear}.{name}" for gear in DRIVERS for name in ("roughness_rms",
-                                                                       "roughness_ra")]  # fmt: skip
+    heights = [
+        f"gears.{gear}.{name}" for gear in DRIVERS for name in ("roughness_rms", "roughness_ra")
+    ]
     given = {key: None for key in heights if key in case.given}
     rough = {"gears.composite_roughness": case.composite_roughness} if given else {}
     return case.replace({**changes, **given, **rough})
@@ -347,9 +367,11 @@ def _loaded(base: Case, progress: Progress) -> dict[str, LoadedMesh]:
         case = base.replace({_KEYS[0]: driver})
         with placed(case), collected():
             return loaded_mesh(
-                case.gear_pair, contact_settings(case), (case.pinion_speed, case.pinion_torque),
+                case.gear_pair,
+                contact_settings(case),
+                (case.pinion_speed, case.pinion_torque),
                 force_law=mesh_law_of(case) == "force-law",
-            )  # fmt: skip
+            )
 
     progress.start("Loads and films", len(DRIVERS))
     over_cases(load, DRIVERS, found, progress)
@@ -358,9 +380,12 @@ def _loaded(base: Case, progress: Progress) -> dict[str, LoadedMesh]:
 
 
 def _rubbing(
-    base: Case, loaded: LoadedMesh, laws: Sequence[str], heights: Sequence[float],
+    base: Case,
+    loaded: LoadedMesh,
+    laws: Sequence[str],
+    heights: Sequence[float],
     coefficients: Sequence[float],
-) -> list[Rubbing]:  # fmt: skip
+) -> list[Rubbing]:
     """Every friction of the experiment."""
     found = []
     for law in laws:

@@ -79,10 +79,12 @@ def identity(study: str, case: Case, over: Any, **options: Any) -> dict[str, Any
 
     text = json.dumps(over, default=str)
     return {
-        "study": study, "version": tribodyn.__version__, "options": options,
+        "study": study,
+        "version": tribodyn.__version__,
+        "options": options,
         "case": hashlib.sha256(case.to_toml().encode()).hexdigest(),
         "over": hashlib.sha256(text.encode()).hexdigest(),
-    }  # fmt: skip
+    }
 
 
 def over_cases(

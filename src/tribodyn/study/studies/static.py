@@ -38,8 +38,11 @@ class CaseTipReliefOptimum(TipReliefOptimum):
     def case(self) -> Case:
         """The case that was studied, with the relief that was found."""
         gears = ("pinion", "wheel") if self.gears == "both" else (self.gears,)
-        values = {"tip_relief": self.amount, "tip_relief_length": self.length,
-                  "tip_relief_shape": self.shape}  # fmt: skip
+        values = {
+            "tip_relief": self.amount,
+            "tip_relief_length": self.length,
+            "tip_relief_shape": self.shape,
+        }
         changed: Case = self.studied.replace(
             {f"gears.{gear}.modification.{n}": v for gear in gears for n, v in values.items()}
         )

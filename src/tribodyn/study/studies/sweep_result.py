@@ -130,8 +130,12 @@ class Sweep(Record):
         for point in self.points:
             keys = zip((axis.key for axis in self.axes), point.values, strict=True)
             figures = {name: point.figures.get(name) for name in self.figures}
-            yield {**dict(keys), **figures, "failed": point.failed,
-                   "warnings": " ".join(dict.fromkeys(point.warned))}  # fmt: skip
+            yield {
+                **dict(keys),
+                **figures,
+                "failed": point.failed,
+                "warnings": " ".join(dict.fromkeys(point.warned)),
+            }
 
     def _parts(self) -> Parts:
         names = self._dimensions()
@@ -140,11 +144,16 @@ class Sweep(Record):
             for name, axis in zip(names, self.axes, strict=True)
         }
         data: dict[str, Any] = {
-            name: (names, self[name], {
-                "units": SUMMARY[name].unit or "1", "long_name": SUMMARY[name].meaning,
-            })
+            name: (
+                names,
+                self[name],
+                {
+                    "units": SUMMARY[name].unit or "1",
+                    "long_name": SUMMARY[name].meaning,
+                },
+            )
             for name in self.figures
-        }  # fmt: skip
+        }
         warned = [" ".join(dict.fromkeys(point.warned)) for point in self.points]
         warned += [""] * (prod(self.shape) - len(warned))
         data["failed"] = (names, self.failed.astype(object))
@@ -198,11 +207,13 @@ class Sweep(Record):
         names = self.shown()
         head = [*(axis.key for axis in self.axes), *map(in_words, names), "failed"]
         rows = [
-            [*(axis.show(value) for axis, value in zip(self.axes, point.values, strict=True)),
-             *(SUMMARY[n].show(point.figures[n]) if n in point.figures else "" for n in names),
-             point.failed]
+            [
+                *(axis.show(value) for axis, value in zip(self.axes, point.values, strict=True)),
+                *(SUMMARY[n].show(point.figures[n]) if n in point.figures else "" for n in names),
+                point.failed,
+            ]
             for point in self.points
-        ]  # fmt: skip
+        ]
         return html_table(repr(self), head, rows)
 
     def shown(self, names: Sequence[str] = ()) -> list[str]:

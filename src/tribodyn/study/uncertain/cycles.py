@@ -79,8 +79,12 @@ def steady_cycles(lanes: Lanes, places: int, progress: Progress = SILENT) -> Cyc
         progress.advance(group.size)
     progress.finish()
     if restless:
-        warn("ensemble-period", f"{restless} of {lanes.count} variants do not repeat after one "
-             "mesh cycle; one cycle of their motion was taken.", stacklevel=3)  # fmt: skip
+        warn(
+            "ensemble-period",
+            f"{restless} of {lanes.count} variants do not repeat after one "
+            "mesh cycle; one cycle of their motion was taken.",
+            stacklevel=3,
+        )
     return Cycles(phase, signals, figures)
 
 

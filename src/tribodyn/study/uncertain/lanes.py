@@ -86,8 +86,9 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
             keyed[key] = column
     with placed(case), quiet():
         if keyed:
-            changes = [{key: float(column[lane]) for key, column in keyed.items()}
-                       for lane in range(count)]  # fmt: skip
+            changes = [
+                {key: float(column[lane]) for key, column in keyed.items()} for lane in range(count)
+            ]
             members = varied(case, changes, progress)
         else:
             members = [built(case)] * count
@@ -128,8 +129,9 @@ def _contact_without_load(case: Case, torques: Array) -> bool:
         return False
     with placed(case), quiet():
         torques = np.array([np.min(torques), np.max(torques), case.operation.torque])
-        systems = [built(case.replace({"operation.torque": float(each)})).system
-                   for each in torques]  # fmt: skip
+        systems = [
+            built(case.replace({"operation.torque": float(each)})).system for each in torques
+        ]
     # The structure under a torque of one, which is all that may be left of the torque.
     rows = []
     for system, torque in zip(systems, torques, strict=True):

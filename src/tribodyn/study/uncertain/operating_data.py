@@ -32,9 +32,13 @@ _LOW, _HIGH, _PLACES = 0.7, 1.3, 8
 
 def default_ranges(case: Case) -> dict[str, str]:
     """Ranges of torque, speed, friction and stiffness about the case, and of its roughness."""
-    ranges = {key: _about(float(getattr(case.operation, name)), unit)
-              for key, name, unit in (("operation.torque", "torque", "N*m"),
-                                      ("operation.speed", "speed", "rad/s"))}  # fmt: skip
+    ranges = {
+        key: _about(float(getattr(case.operation, name)), unit)
+        for key, name, unit in (
+            ("operation.torque", "torque", "N*m"),
+            ("operation.speed", "speed", "rad/s"),
+        )
+    }
     ranges |= dict.fromkeys(("friction_scale", "stiffness_scale"), f"{_LOW} .. {_HIGH}")
     if case.gears.composite_roughness is not None and case.friction.law not in ("none", "constant"):
         ranges["gears.composite_roughness"] = _about(case.gears.composite_roughness, "m")
@@ -103,7 +107,10 @@ def operating_data(
         mean, rms, high, greatest - least, np.sqrt(np.maximum(shaking**2 - middle**2, 0.0)),
         cycles.figures["friction_coefficient"][0],
     ), strict=True))  # fmt: skip
-    settings = {"over": {key: str(value) for key, value in ranges.items()}, "size": count,
-                "seed": int(seed)}  # fmt: skip
+    settings = {
+        "over": {key: str(value) for key, value in ranges.items()},
+        "size": count,
+        "seed": int(seed),
+    }
     made = data_set("operating_data", case, {**drawn, **answers}, settings)
     return DataSet(made.columns, {**made.units, **RESPONSE}, made.case, made.settings, made.version)

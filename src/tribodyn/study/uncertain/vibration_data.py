@@ -118,13 +118,21 @@ def vibration_data(
         name: np.repeat(values, count * rows // values.size) for name, values in drawn.items()
     }
     columns = {
-        "trajectory": np.repeat(np.arange(count, dtype=float), rows), **inputs, **columns,
+        "trajectory": np.repeat(np.arange(count, dtype=float), rows),
+        **inputs,
+        **columns,
         "cos_phase": np.cos(2.0 * np.pi * columns["phase"]),
         "sin_phase": np.sin(2.0 * np.pi * columns["phase"]),
-    }  # fmt: skip
-    settings = {"distributions": {k: str(v) for k, v in spread.items()}, "seed": int(seed),
-                "trajectories": count, "over": over, "samples": rows, "interval": float(interval),
-                "redraw": bool(redraw)}  # fmt: skip
+    }
+    settings = {
+        "distributions": {k: str(v) for k, v in spread.items()},
+        "seed": int(seed),
+        "trajectories": count,
+        "over": over,
+        "samples": rows,
+        "interval": float(interval),
+        "redraw": bool(redraw),
+    }
     return data_set("vibration_data", case, columns, settings)
 
 
@@ -134,8 +142,9 @@ def data_set(kind: str, case: Case, columns: dict[str, Array], settings: dict[st
 
     known = {**_KNOWN, **SIGNALS}
     specs = {name: spec_of(case, name) for name in columns}
-    units = {name: known.get(name) or (spec.unit if spec else "") or "1"
-             for name, spec in specs.items()}  # fmt: skip
+    units = {
+        name: known.get(name) or (spec.unit if spec else "") or "1" for name, spec in specs.items()
+    }
     told = json.dumps({"made_by": kind, **settings}, sort_keys=True)
     return DataSet(columns, units, case.to_toml(), told, tribodyn.__version__)
 
@@ -144,14 +153,20 @@ def _over_cycle(lanes: Lanes, rows: int, progress: Progress) -> dict[str, Array]
     cycles = steady_cycles(lanes, rows, progress)
     phase = np.tile(cycles.phase, lanes.count)
     time = phase / np.repeat(lanes.mesh_frequency, rows)
-    return {"time": time, "phase": phase,
-            **{name: values.reshape(-1) for name, values in cycles.signals.items()}}  # fmt: skip
+    return {
+        "time": time,
+        "phase": phase,
+        **{name: values.reshape(-1) for name, values in cycles.signals.items()},
+    }
 
 
 def _over_time(
-    case: Case, lanes: Lanes, drawn: Mapping[str, Array], places: tuple[int, float],
+    case: Case,
+    lanes: Lanes,
+    drawn: Mapping[str, Array],
+    places: tuple[int, float],
     progress: Progress,
-) -> dict[str, Array]:  # fmt: skip
+) -> dict[str, Array]:
     """March all lanes from rest, and look at them at even times."""
     frequency = float(lanes.mesh_frequency[0])
     if np.ptp(lanes.mesh_frequency) > 0.0 or len({id(each) for each in lanes.members}) > 1:
@@ -164,9 +179,12 @@ def _over_time(
         what, why = f"interval = {interval:g} s", f"A mesh cycle takes {1.0 / frequency:.3g} s"
         raise InputError(Problem(what, Argument("interval"), why, 'Give over="cycle"'))
     if interval * frequency > 0.25:
-        warn("data-aliased", f"{interval * frequency:.3g} mesh cycles lie between two rows: the "
-             'vibration of the mesh is not seen in between. over="cycle" shows all of it.',
-             stacklevel=4)  # fmt: skip
+        warn(
+            "data-aliased",
+            f"{interval * frequency:.3g} mesh cycles lie between two rows: the "
+            'vibration of the mesh is not seen in between. over="cycle" shows all of it.',
+            stacklevel=4,
+        )
     marched = _March(case, lanes)
     signals = {name: np.empty((lanes.count, rows)) for name in SIGNALS}
     again = {name: np.asarray(values).reshape(lanes.count, -1) for name, values in drawn.items()}
@@ -181,8 +199,11 @@ def _over_time(
     progress.finish()
     time = np.tile(at / frequency, lanes.count)
     phase = np.tile(np.clip(at - cycle, 0.0, 1.0), lanes.count)
-    return {"time": time, "phase": phase,
-            **{name: values.reshape(-1) for name, values in signals.items()}}  # fmt: skip
+    return {
+        "time": time,
+        "phase": phase,
+        **{name: values.reshape(-1) for name, values in signals.items()},
+    }
 
 
 class _March:
@@ -201,8 +222,9 @@ class _March:
                 extra += steady_state(
                     system, float(lanes.mesh_frequency[0]), steps=steps
                 ).extra_force
-        widest = {name: np.full(lanes.count, 1.1 * values.max())
-                  for name, values in lanes.factors.items()}  # fmt: skip
+        widest = {
+            name: np.full(lanes.count, 1.1 * values.max()) for name, values in lanes.factors.items()
+        }
         setting = Setting(system, lanes.mesh_frequency, 1, steps, extra, LaneParameters(**widest))
         self.marcher = prepare("rk4", setting)
         self.parameters, self.elapsed = lanes.parameters(), 0
@@ -237,8 +259,10 @@ class _March:
         law = forces(system, rows, beat, q[:, None], v[:, None], scales=scales,
                      extra=self.marcher.setting.extra_force[:, None])  # fmt: skip
         found = signals_at(system, self.member.mesh, rows, law, table[:, None, :])
-        return {name: np.broadcast_to(values, (self.lanes.count, 1))[:, 0]
-                for name, values in found.items()}  # fmt: skip
+        return {
+            name: np.broadcast_to(values, (self.lanes.count, 1))[:, 0]
+            for name, values in found.items()
+        }
 
 
 def _hermite(ends: Array, tau: float, h: float) -> tuple[Array, Array]:
