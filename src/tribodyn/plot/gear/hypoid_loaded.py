@@ -193,6 +193,7 @@ def hypoid_friction(rubbed: HypoidFriction) -> Any:
     ]
     title = (
         f"Mean friction coefficient {rubbed.mean_friction_coefficient:.3g} at "
-        f"{rubbed.pinion_speed:.4g} rad/s, film ratio from {rubbed.minimum_film_ratio:.3g}"
+        f"{rubbed.pinion_speed * 30.0 / np.pi:.4g} rpm, "
+        f"film ratio from {rubbed.minimum_film_ratio:.3g}"
     )
     return stack_rows(title, rows, {"hovermode": "closest"})
