@@ -95,7 +95,7 @@ def test_only_the_design_has_to_be_given():
         ({"normal_module": '"5 mm"'}, "normal_module", "is not used"),
         ({"kind": '"spur"'}, "gears.offset", 'It belongs to kind = "hypoid"'),
         ({"driver": '"wheel"'}, "gears.driver", "The pinion of a hypoid pair drives"),
-        ({"dynamics": '"spur-6dof"'}, "dynamics.model", "move in one plane"),
+        ({"dynamics": '"spur-6dof"'}, "dynamics.model", "takes gears of the kind spur or table"),
         ({"law": '"ehl"'}, "friction.law", "that of a formula"),
         ({"more": "[losses]\nwindage = false"}, "losses", "those of spur gears"),
         ({"more": '[gears.ease_off]\nbias = "20 um"'}, "gears.ease_off.bias", "cut into"),
@@ -118,7 +118,7 @@ def test_papers_are_those_of_what_the_pair_uses():
 
 def test_spur_gears_have_no_axes_that_cross():
     case = tribodyn.load_case("fzg-roughness")
-    with pytest.raises(InputError, match="axes that cross"):
+    with pytest.raises(InputError, match="takes gears of the kind hypoid or table"):
         case.replace({"dynamics.model": "hypoid-14dof", "dynamics.bearing_damping": None})
     with pytest.raises(InputError, match="no gear pair"):
         _ = built_in().gear_pair

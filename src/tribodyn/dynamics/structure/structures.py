@@ -89,6 +89,8 @@ class Structure(Model):
         One line for whoever chooses a structure.
     papers : tuple of str
         Keys of the bibliography of the package.
+    gears : tuple of str
+        Kinds of gear pairs that it takes; empty: all.
 
     Examples
     --------
@@ -103,6 +105,7 @@ class Structure(Model):
     source: str = ""
     meaning: str = ""
     papers: tuple[str, ...] = ()
+    gears: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Keep options and defaults apart."""
@@ -169,6 +172,7 @@ def support_damping(
 @STRUCTURES.define(
     "spur-6dof",
     options=_supports(REQUIRED),
+    gears=("spur", "table"),
     meaning="both gears move along and across the line of action on their supports and turn",
     papers=("he-gunda-singh",),
 )
@@ -243,6 +247,7 @@ def _shaft_options() -> dict[str, Option]:
     "fzg-12dof",
     options={**_supports(3.5e9), **_shaft_options()},
     turns_with={"shaft1_theta": "wheel", "shaft2_theta": "pinion"},
+    gears=("spur", "table"),
     meaning="two shafts with a disc each, wheel and pinion: all move across and along the line of "
     "action on supports and turn",
 )
@@ -331,6 +336,7 @@ def _hypoid_options() -> dict[str, Option]:
     "hypoid-14dof",
     options=_hypoid_options(),
     turns_with={"engine_theta": "pinion", "load_theta": "wheel"},
+    gears=("hypoid", "table"),
     meaning="both gears move along three axes, turn and tilt; shafts join them to engine and load",
 )
 def _hypoid14(gears: Gearing, **options: Any) -> System:

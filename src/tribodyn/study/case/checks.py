@@ -81,8 +81,6 @@ _NARROW: dict[str, tuple[tuple[str, tuple[str, ...], str], ...]] = {
     ),
 }
 _NO_BODIES = "A mesh table knows no gear bodies"
-#: Structures whose gears move in one plane, and that whose gears move in space.
-_PLANAR, _SPATIAL = ("spur-6dof", "fzg-12dof"), "hypoid-14dof"
 
 
 def _kind(given: Given) -> Found:
@@ -120,17 +118,20 @@ def _idle(given: Given, key: str, kind: str) -> Problem:
     return Problem(given.show(key), "", why, "Remove it, or change the kind")
 
 
-def _structure_of(given: Given, kind: str) -> Found:
-    """Gears whose axes cross move in space, others in a plane."""
+def _structure_of(given: Given, kind: Any) -> Found:
+    """A structure for gears in a plane takes none whose axes cross, and the other way round."""
+    from tribodyn.dynamics import STRUCTURES
+
     key = "dynamics.model"
-    model = given.get(key, _PLANAR[0])
-    if kind == "hypoid" and model in _PLANAR:
-        why = "The gears of that structure move in one plane"
-        remedy = f'Write model = "{_SPATIAL}" in [dynamics], or "torsional"'
-        yield key, Problem(f'model = "{model}" for a hypoid pair', "", why, remedy)
-    elif kind == "spur" and model == _SPATIAL:
-        why, remedy = "That structure has axes that cross", 'Choose "spur-6dof", for example'
-        yield key, Problem(f'model = "{model}" for spur gears', "", why, remedy)
+    model = given.get(key, "spur-6dof")
+    if not isinstance(model, str) or model not in list(STRUCTURES):
+        return
+    takes = STRUCTURES[model].gears
+    if takes and kind in ("spur", "hypoid") and kind not in takes:
+        others = [each for each in STRUCTURES if kind in (STRUCTURES[each].gears or (kind,))]
+        why = f"That structure takes gears of the kind {' or '.join(takes)}"
+        remedy = f"Choose in [dynamics] one of {', '.join(others)}"
+        yield key, Problem(f'model = "{model}" for {kind} gears', "", why, remedy)
 
 
 def _mesh_table(given: Given) -> Found:
