@@ -20,7 +20,7 @@ def test_every_row_is_complete(name: str) -> None:
 def test_si_units_are_si() -> None:
     for quantity in QUANTITIES.values():
         if quantity.unit and quantity.unit != "rad":
-            base = {"kg", "m", "s", "N", "Pa", "Hz", "K", "W", "rad"}
+            base = {"kg", "m", "s", "N", "Pa", "Hz", "K", "W", "J", "rad"}
             words = set(
                 quantity.unit.replace("^2", "").replace("^3", "").replace("/", "*").split("*")
             )

@@ -128,7 +128,7 @@ def compare_results(*results: Result, names: Sequence[str] | None = None) -> Res
     >>> one = td.run("time-varying-friction")
     >>> other = td.run(one.case.replace({"operation.torque": "60 N*m"}))
     >>> compare_results(one, other, names=("as printed", "60 N m")).values
-    {'operation.torque': (50.0, 60.0)}
+    {'operation.torque': (10.6, 60.0)}
     """
     wrong = [each for each in results if not isinstance(each, Result)]
     if wrong:

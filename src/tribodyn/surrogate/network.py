@@ -116,8 +116,8 @@ class Network:
         Notes
         -----
         The active stretches of the neurons of a layer cover the range of its inputs evenly: rows of
-        the length ``0.7 neurons^(1/inputs)`` in random directions. D. Nguyen and B. Widrow, Int.
-        Joint Conf. Neural Networks (1990) III-21. The output begins near zero.
+        the length ``0.7 neurons^(1/inputs)`` in random directions. The output begins near zero.
+        Source: Nguyen and Widrow (1990).
         """
         parts = []
         for layer, (after, before) in enumerate(self.shapes):

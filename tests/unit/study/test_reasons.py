@@ -137,6 +137,8 @@ def other_values(spec: Option, value: Any) -> list[Any]:
         return [not value]
     if spec.kind == "integer":
         return [value + 1, value - 1]
+    if isinstance(value, tuple):
+        return [tuple(factor * each for each in value) for factor in (1.001, 0.999)]
     return [value * 1.001, value * 0.999] if value else [spec.high * 1e-3]
 
 

@@ -86,7 +86,9 @@ _NO_BODIES = "A mesh table knows no gear bodies"
 def _kind(given: Given) -> Found:
     """What a kind of gear pair needs, and what it cannot have."""
     kind = given.get("gears.kind", "spur")
-    narrow = _NARROW.get(kind, ()) if isinstance(kind, str) else ()
+    if not isinstance(kind, str):
+        return  # which is told where its names are checked
+    narrow = _NARROW.get(kind, ())
     for key, names, why in narrow:
         if given.get(key, names[0]) not in names:
             remedy = f"Write {' or '.join(names)}"

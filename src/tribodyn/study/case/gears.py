@@ -191,6 +191,7 @@ class Gears(Section):
     wheel: Gear = inner_table(Gear, "the larger gear")
 
 
+Gears.needed = ("normal_module", "normal_pressure_angle", "driver", "pinion", "wheel")
 # Keys of a hypoid pair stand before the tables of both gears.
 _both = {name: Gears.fields.pop(name) for name in ("pinion", "wheel")}
 Gears.fields |= {**HYPOID_KEYS, **_both}

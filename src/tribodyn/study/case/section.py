@@ -53,6 +53,7 @@ class Section:
     fields: ClassVar[dict[str, Option | Table]] = {}
     _known: ClassVar[tuple[int, Known]]
     selector: ClassVar[str] = ""  #: key that names a model, which brings its options
+    needed: ClassVar[tuple[str, ...]] = ()  #: keys to begin with; empty: those that are required
     whole: ClassVar[type[Section]]  #: the table that holds all others: the case
 
     def __init_subclass__(cls, whole: bool = False) -> None:

@@ -322,7 +322,7 @@ def _missing(option: Option, name: str, path: str) -> Problem:
 
 
 def _missing_table(kind: type[Section], path: str) -> Problem:
-    needed = [
+    needed = kind.needed or [
         name
         for name, field in kind.fields.items()
         if (field.required if isinstance(field, Option) else field.default == "required")
