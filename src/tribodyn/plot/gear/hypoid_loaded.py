@@ -94,17 +94,7 @@ def _across() -> dict[str, Any]:
     made_by=_MADE_BY,
 )
 def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
-    """Draw the pressure over the flank: the contact pattern under load.
-
-    Parameters
-    ----------
-    loaded : HypoidLoadedContact
-        The contact under load.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the pressure over the flank: the contact pattern under load."""
     traces = _flank(loaded, 1e-9 * loaded.hertz_pressure, "pressure", "GPa", (0.5, 1.0))
     title = (
         f"Up to {loaded.maximum_pressure * 1e-9:.3g} GPa on the {loaded.cells.flanks.side} flank "
@@ -123,17 +113,7 @@ def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
     made_by=_MADE_BY,
 )
 def hypoid_load(loaded: HypoidLoadedContact) -> Any:
-    """Draw load shares, transmission error and stiffness over the mesh cycle.
-
-    Parameters
-    ----------
-    loaded : HypoidLoadedContact
-        The contact under load.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw load shares, transmission error and stiffness over the mesh cycle."""
     phase, count = loaded.phase, loaded.load_share.shape[1]
     shares = [
         line(phase, 100.0 * loaded.load_share[:, i], f"pair {i + 1}", PAIR_COLORS[i % 4], unit="%")
@@ -166,17 +146,7 @@ def hypoid_load(loaded: HypoidLoadedContact) -> Any:
     made_by="tribodyn.mesh.hypoid_friction makes one.",
 )
 def hypoid_friction(rubbed: HypoidFriction) -> Any:
-    """Draw friction coefficient and film ratio over the flank.
-
-    Parameters
-    ----------
-    rubbed : HypoidFriction
-        Film and friction of the cells.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw friction coefficient and film ratio over the flank."""
     loaded, ratio = rubbed.loaded, np.minimum(rubbed.film_ratio, 1e3)
     maps = [
         ("friction coefficient", "", rubbed.friction_coefficient, (0.79, 0.42)),

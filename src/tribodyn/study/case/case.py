@@ -13,7 +13,7 @@ from tribodyn.model import text
 from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.gears import Gears, is_needed
-from tribodyn.study.case.given import Given, Source, plain, unsound
+from tribodyn.study.case.given import Given, Source, plain, unsound, without_spread
 from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.provenance import (
     Stated,
@@ -37,7 +37,6 @@ from tribodyn.study.case.sections import (
     Solver,
     Stiffness,
 )
-from tribodyn.study.case.spread import without_spread
 from tribodyn.study.case.values import Plain, as_meant, as_typed, read_fields
 
 if TYPE_CHECKING:

@@ -1,4 +1,7 @@
-"""What the user gave, before any default, by dotted keys; and where each of them stands."""
+"""What the user gave, before any default, by dotted keys; where it stands, and its spread.
+
+A value that is known within bounds is written as ``"0.05 +- 0.83 %"``.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,18 @@ from itertools import islice
 from typing import Any
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.case.values import Plain, written
+from tribodyn.uncertainty import distribution
+from tribodyn.units import UnitProblemError, split
 
 #: Keys of a case, tables inside each other, and characters of one text, at most.
 _MOST, _DEEPEST, _LONGEST = 3000, 12, 10_000
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff]")
+#: What tells a spread from a value, and where none is looked for.
+_SPREAD, _RANGE = re.compile(r"\s*(?:\+-|\+/-|±)"), re.compile(r"\s\.\.\s")
+_KIND = re.compile(r"^\s*(?:normal|lognormal|uniform)\s+", re.IGNORECASE)
+_ELSEWHERE = ("title", "origin", "assumed", "based_on")
 #: Items of lists that are looked into.
 _NESTED = (Mapping, list, tuple, str, Plain)
 
@@ -166,3 +176,40 @@ class Source:
     def with_replaced(self, keys: Iterable[str], by: str) -> Source:
         """Return the same source with some keys replaced."""
         return replace(self, replaced={**self.replaced, **dict.fromkeys(keys, by)})
+
+
+def without_spread(
+    data: Mapping[str, Any], prefix: str = ""
+) -> tuple[dict[str, Any], dict[str, str], list[tuple[str, Problem]]]:
+    """Tables with the middle in place of every spread value, the spreads by key, and faults."""
+    plain: dict[str, Any] = {}
+    spreads: dict[str, str] = {}
+    faults: list[tuple[str, Problem]] = []
+    for name, value in data.items():
+        key, text = f"{prefix}{name}", value.value if isinstance(value, Plain) else value
+        plain[name] = value
+        if key in _ELSEWHERE:
+            continue
+        if isinstance(value, Mapping):
+            plain[name], inner, wrong = without_spread(value, f"{key}.")
+            spreads |= inner
+            faults += wrong
+        elif isinstance(text, str) and (_SPREAD.search(text) or _RANGE.search(text)):
+            try:
+                plain[name], spreads[key] = _middle(key, text), text
+            except InputError as error:
+                faults.append((key, error.problems[0]))
+    return plain, spreads, faults
+
+
+def _middle(key: str, text: str) -> str:
+    """The value about which a quantity is spread, as text."""
+    spread = _SPREAD.search(text)
+    first = _KIND.sub("", text[: (spread or _RANGE.search(text) or spread).start()])  # type: ignore[union-attr]
+    known = QUANTITIES.get(key.rpartition(".")[2])
+    try:  # the unit as it is written where the nomenclature has none
+        unit = known.unit if known else split(first)[1]
+    except UnitProblemError as error:
+        raise InputError(str(error)) from None
+    drawn = distribution(key, text, unit)
+    return first if spread else f"{float(drawn.ppf(0.5))!r} {unit}".strip()
