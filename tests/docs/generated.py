@@ -53,7 +53,7 @@ _PACKAGES = (
     "tribodyn", "tribodyn.gear", "tribodyn.contact", "tribodyn.lubricant", "tribodyn.ehl",
     "tribodyn.friction", "tribodyn.losses", "tribodyn.stiffness", "tribodyn.mesh",
     "tribodyn.dynamics", "tribodyn.analysis", "tribodyn.measurement", "tribodyn.uncertainty",
-    "tribodyn.surrogate",
+    "tribodyn.surrogate", "tribodyn.variants",
     "tribodyn.plot", "tribodyn.report", "tribodyn.errors", "tribodyn.units", "tribodyn.progress",
 )  # fmt: skip
 
