@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -51,7 +52,9 @@ def _gaussian_process(inputs: Array, target: Array, seed: int) -> Callable[[Arra
     kernel = kernels.ConstantKernel(1.0, (1e-4, 1e6)) * smooth + noise
     chosen = np.random.default_rng(seed).permutation(len(inputs))[:_MOST_ROWS]
     model = process.GaussianProcessRegressor(kernel, normalize_y=True, random_state=seed)
-    return model.fit(inputs[chosen], target[chosen]).predict  # type: ignore[no-any-return]
+    with warnings.catch_warnings():  # at the bounds of the search it warns; the errors tell all
+        warnings.simplefilter("ignore")
+        return model.fit(inputs[chosen], target[chosen]).predict  # type: ignore[no-any-return]
 
 
 def _boosted_trees(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
