@@ -78,6 +78,10 @@ class Guard:
             raise Refusal(403, "Open the address that tribodyn app wrote: it holds the token.")
         return found
 
+    def __contains__(self, cookie: str) -> bool:
+        """Whether a cookie names a session."""
+        return cookie in self._sessions
+
     def begin(self) -> str:
         """Begin a session; the longest unused one ends where there are too many."""
         name = secrets.token_urlsafe(32)
