@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.app.folder import Folder
 from tribodyn.app.form import CaseForm, words
 from tribodyn.app.jobs import Job, Jobs
+from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys
+from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
@@ -39,7 +41,9 @@ class Desk:
         self.studies: list[Job] = []
         self.overlay: Job | None = None
         self.picked: list[int] = []  #: runs that are laid over each other
-        self.view, self.topic = "pair", ""
+        self.view, self.topic, self.study = "pair", "", ""
+        self.values: dict[str, dict[str, str]] = {}  #: of studies, by kind
+        self._acted = 0
         self.notice, self.bad = "", False  #: what the last request came to
         self.told = 0  #: notices so far
         self.edits = 0  #: changes of the form so far
@@ -62,6 +66,10 @@ class Desk:
     def edit(self, told: Mapping[str, Any]) -> None:
         """Take down what was typed into a field, and check the case with it."""
         key, number = str(told.get("key", "")), int(told.get("number", 0))
+        if told.get("form") == "study":
+            if self.study and key in STUDIES[self.study].options and "value" in told:
+                self.values[self.study][key] = str(told["value"])[:_LONGEST].strip()
+            return
         option = self.form.options().get(key)
         if option is None or number <= self._numbers.get(key, -1):
             return  # It belongs to another model, or a later one has overtaken it.
@@ -77,6 +85,50 @@ class Desk:
         shown = self.form.options()
         self.typed = {each: text for each, text in self.typed.items() if each in shown}
         self._judge(shown)
+
+    def fresh(self, number: int) -> bool:
+        """Whether an act has not been done yet; from now on it has."""
+        newer = number > self._acted
+        self._acted = max(number, self._acted)
+        return newer
+
+    def forms(self) -> dict[str, Any]:
+        """The forms of the page as data."""
+        form = self.form
+        shown: dict[str, Any] = {"case": {"groups": form.groups(), "faults": self.faults}}
+        if self.study:
+            keys = numeric_keys(form.options())
+            shown["study"] = form_of(self.study, self.values[self.study], keys)
+        return shown
+
+    def choose_study(self, kind: str) -> None:
+        """Choose what kind of study to start."""
+        if kind in STUDIES:
+            self.study = kind
+            self.values.setdefault(kind, first_values(kind, self.case))
+
+    def start_study(self) -> None:
+        """Start the study that is chosen."""
+        self._refuse_faults()
+        if not self.study:
+            raise InputError("no study is chosen", "", "", "Choose one from the list")
+        if len(self.studies) >= RUNS:
+            what, remedy = f"{RUNS} studies are kept already", "Remove one that you no longer need"
+            raise InputError(what, "", "", remedy)
+        order = {
+            "case": self.case.to_toml(), "study": self.study, "values": self.values[self.study]
+        }  # fmt: skip
+        job = self._start("study", STUDIES[self.study].title, order)
+        self.studies.append(job)
+        self.view = f"job-{job.number}"
+
+    def case_of(self, number: int) -> None:
+        """Go on with the case of a run."""
+        job = self.job(number)
+        if job is not None:
+            self.take(job.case, self.name)
+            self.view = "pair"
+            self.tell(f"This is the case of {job.title}.")
 
     def _switch(self, key: str, option: Option, unit: str) -> None:
         """Show a value in another unit; the value stays what it is."""
@@ -130,10 +182,14 @@ class Desk:
     def open(self, name: str) -> None:
         """Take a built-in case, or one of the folder."""
         kind, _, place = name.partition(":")
-        case = load_case(place) if kind == "case" and "/" not in place else self.folder.load(place)
-        self.take(case, "" if kind == "case" else place)
+        if kind == "file":
+            self.take(self.folder.load(place), place)
+        elif place in case_files() or not place:
+            self.take(at_start(self.folder, place)[0], "")
+        else:
+            raise InputError(f'no built-in case is called "{place}"')
         self.view = "pair"
-        self.tell(f"{place} is open.")
+        self.tell(f"{place or 'A new case'} is open.")
 
     def save(self, name: str, force: bool) -> None:
         """Write the case into the folder."""
@@ -222,8 +278,7 @@ class Desk:
     @property
     def busy(self) -> bool:
         """Whether something is still to come."""
-        return any(not job.ended or (job.state == "done" and not job.saved and job.kind != "overlay")
-                   for job in self.jobs_here())  # fmt: skip
+        return any(not job.settled for job in self.jobs_here())
 
     def changes(self, job: Job) -> list[str]:
         """What the case of a run has that the first run has not."""
@@ -278,7 +333,6 @@ def _plain(option: Option, text: str) -> Any:
 
 def at_start(folder: Folder, asked: str) -> tuple[Case, str]:
     """The case that ``tribodyn app`` was given: built-in, or a file of the folder."""
-    from tribodyn.cases.catalogue import case_files
     from tribodyn.study.case.read import read_case
     from tribodyn.study.case.reference import start_toml
 

@@ -58,7 +58,9 @@ def essential() -> frozenset[str]:
     return frozenset({*walk(tomllib.loads(start_toml()), ""), "gears.center_distance"})
 
 
-def field_of(key: str, option: Option, text: str = "", default: Any = None, unit: str = "") -> Any:
+def field_of(
+    key: str, option: Option, text: str = "", default: Any = None, unit: str = ""
+) -> dict[str, Any]:
     """One value as the page shows it: ``text`` as typed, ``default`` in SI where it is empty."""
     units = usual_units(option.unit) if option.unit else []
     if option.display_unit and option.display_unit not in units:
@@ -106,7 +108,9 @@ def _names(option: Option, default: Any) -> list[list[str]]:
         shown = "not given" if default is None else str(default)
     else:
         return []
-    first = [] if option.required else [["", f"{shown} (default)" if default is not None else shown]]
+    first = (
+        [] if option.required else [["", f"{shown} (default)" if default is not None else shown]]
+    )
     return [*first, *([name, text] for name, text in known.items())]
 
 
@@ -231,4 +235,6 @@ class CaseForm:
         """What the chosen name means, and who published it."""
         name = str(self._chosen(key))
         sources = sources_of(key.partition(".")[0], name)
-        return " ".join(filter(None, (f"{name}: {choice_meanings().get(name, '')}".rstrip(": "), *sources)))
+        return " ".join(
+            filter(None, (f"{name}: {choice_meanings().get(name, '')}".rstrip(": "), *sources))
+        )

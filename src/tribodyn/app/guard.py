@@ -22,7 +22,7 @@ LARGEST = 10**6
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
-class Refusal(Exception):
+class RefusalError(Exception):
     """A request that is not answered, with its status."""
 
     def __init__(self, status: int, text: str) -> None:
@@ -53,18 +53,18 @@ class Guard:
         """Refuse what another site asks through the browser, or another name of this machine."""
         name = (urlsplit(f"//{request.headers.get('Host', '')}").hostname or "").lower()
         if name not in self._hosts and not (self._any and _is_address(name)):
-            raise Refusal(421, "This page is not served under that name.")
+            raise RefusalError(421, "This page is not served under that name.")
         # A browser says so itself where another site asks.
         site = request.headers.get("Sec-Fetch-Site", "none")
         origin = request.headers.get("Origin")
         foreign = origin is not None and origin != f"http://{request.headers['Host']}"
         opened = request.method == "GET" and self.opens(request.args.get("token", ""))
         if foreign or (site not in ("same-origin", "none") and not opened):
-            raise Refusal(403, "Other sites may not ask for this page.")
+            raise RefusalError(403, "Other sites may not ask for this page.")
         if request.method not in ("GET", "HEAD") and not request.is_json:
-            raise Refusal(415, "This page takes JSON alone.")
+            raise RefusalError(415, "This page takes JSON alone.")
         if (request.content_length or 0) > LARGEST:
-            raise Refusal(413, "That is more than a case file may hold.")
+            raise RefusalError(413, "That is more than a case file may hold.")
 
     def opens(self, token: str) -> bool:
         """Whether a token is that of this server."""
@@ -75,7 +75,7 @@ class Guard:
         with self._lock:
             found = self._sessions.get(request.cookies.get(self.cookie, ""))
         if found is None:
-            raise Refusal(403, "Open the address that tribodyn app wrote: it holds the token.")
+            raise RefusalError(403, "Open the address that tribodyn app wrote: it holds the token.")
         return found
 
     def __contains__(self, cookie: str) -> bool:
@@ -109,7 +109,7 @@ class Guard:
             if name in session.desks:
                 session.desks.move_to_end(name)
                 return session.desks[name]
-        raise Refusal(404, "There is no such desk. Open the page anew.")
+        raise RefusalError(404, "There is no such desk. Open the page anew.")
 
 
 def _is_address(name: str) -> bool:

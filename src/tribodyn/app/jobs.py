@@ -53,6 +53,11 @@ class Job:
         return self.state in ENDED
 
     @property
+    def settled(self) -> bool:
+        """Whether nothing of it changes any more."""
+        return self.ended and (self.state != "done" or self.saved or self.kind == "overlay")
+
+    @property
     def seconds(self) -> int:
         """How long it has been waiting and running."""
         return int(time.monotonic() - self.begun)
@@ -72,7 +77,7 @@ class _Process:
 
     def __init__(self) -> None:
         command = [sys.executable, "-W", "ignore", "-m", "tribodyn.app.worker"]
-        self._errors: IO[bytes] = tempfile.TemporaryFile()
+        self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 -- closed by end()
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors
         )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from dash import dcc, html
 
 from tribodyn.app.desk import RUNS, Desk
+from tribodyn.app.studies import STUDIES
 from tribodyn.errors import InputError, collected
 from tribodyn.report.blocks import drawn_block, topic_of
 
@@ -110,8 +111,7 @@ def _runs(desk: Desk) -> html.Div:
         pick = button("✓" if picked else "+", "pick", str(job.number), **more, className="pick")
         rows.append(html.Li([pick, html.Strong(job.title), " ", html.Span(told)]))
     ready = len(desk.picked) > 1
-    more = {"disabled": not ready}
-    over = button("Lay over each other", "overlay", className="plain", **more)
+    over = button("Lay over each other", "overlay", className="plain", disabled=not ready)
     text = f"{len(desk.runs)} of {RUNS} runs are kept; pick two or more with +."
     return html.Div([html.Ul(rows), html.P([over, " ", html.Span(text)])], className="runs")
 
@@ -171,34 +171,39 @@ def result(desk: Desk, job: Job) -> list[Any]:
     if job.state != "done":
         lines = job.problems or ["It was stopped."]
         return notice(f"{job.title} {job.state}", lines)
-    shown = job.shown
-    topics = _topics(shown)
-    names = list(topics)
-    topic = desk.topic if desk.topic in names else names[0]
-    tabs = [
-        button(
-            name, "topic", name, role="tab", **{"aria_selected": str(name == topic).lower()}
-        )
-        for name in names
-    ]
+    topics = _topics(job.shown)
+    topic = desk.topic if desk.topic in topics else next(iter(topics))
+    tabs = [_topic_tab(name, topic) for name in topics]
+    head = _overview(job.shown) if topic == next(iter(topics)) else []
     return [
-        cards(shown.get("cards", [])),
+        html.Div(tabs, role="tablist", className="tabs topics", **{"aria-label": "Results"}),
+        html.Div([*head, *(_part(job, each) for each in topics[topic])], role="tabpanel"),
+    ]
+
+
+def _topic_tab(name: str, chosen: str) -> html.Button:
+    return button(name, "topic", name, role="tab", aria_selected=str(name == chosen).lower())
+
+
+def _overview(shown: dict[str, Any]) -> list[Any]:
+    """What is read first."""
+    return [
+        *([cards(shown["cards"])] if shown.get("cards") else []),
         *notice("What it says", shown.get("told", [])),
         *notice("Warnings", shown.get("warnings", [])),
-        html.Div(tabs, role="tablist", className="tabs topics", **{"aria-label": "Results"}),
-        html.Div([_part(job, each) for each in topics[topic]], role="tabpanel"),
     ]
 
 
 def _topics(shown: dict[str, Any]) -> dict[str, list[Any]]:
-    """Figures by the section of the report that they belong to, then the tables."""
-    found: dict[str, list[Any]] = {}
-    for block in shown.get("blocks", []):
+    """What is read first, figures by what they are about, and the tables."""
+    drawn = [block for block in shown.get("blocks", []) if not block["missing"]]
+    first = [block for block in drawn if block["name"] == "mesh_force"]
+    found: dict[str, list[Any]] = {"Overview": first or drawn}
+    for block in shown.get("blocks", []) if first else []:
         found.setdefault(topic_of(block["name"]), []).append(block)
-    drawn = {t: b for t, b in found.items() if any(not each["missing"] for each in b)}
     for heading, head, rows in shown.get("tables", []):
-        drawn[heading] = [{"heading": heading, "head": head, "rows": rows}]
-    return drawn or {"Result": []}
+        found[heading] = [{"heading": heading, "head": head, "rows": rows}]
+    return found
 
 
 def _part(job: Job, part: dict[str, Any]) -> html.Section:
@@ -288,13 +293,30 @@ def files(desk: Desk) -> list[Any]:
     ]  # fmt: skip
 
 
+def studies(desk: Desk) -> list[Any]:
+    """Kinds of studies, and the values of the one that is chosen."""
+    kinds = [
+        html.Li(
+            [
+                button(study.title, "study", kind, aria_pressed=str(kind == desk.study).lower()),
+                html.Span(study.meaning),
+            ]
+        )
+        for kind, study in STUDIES.items()
+    ]
+    parts: list[Any] = [html.Section([html.H3("Studies"), html.Ul(kinds)], className="block kinds")]
+    if desk.study:
+        start = button(f"Start: {STUDIES[desk.study].title}", "start", id="start", className="main")
+        form = [html.Div(id="study-form"), html.P(start)]
+        parts.append(html.Section(form, className="block", **{"aria-label": "Values of the study"}))
+    return parts
+
+
 def bench(desk: Desk) -> list[Any]:
     """What is looked at."""
     if desk.view == "files":
         return files(desk)
     if desk.view == "studies":
-        from tribodyn.app.studies import panel
-
-        return panel(desk)
+        return studies(desk)
     job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
     return pair(desk) if job is None else result(desk, job)

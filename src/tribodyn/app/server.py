@@ -15,16 +15,21 @@ from werkzeug.serving import BaseWSGIServer, WSGIRequestHandler, make_server
 from tribodyn.app import results
 from tribodyn.app.desk import Desk, at_start
 from tribodyn.app.folder import Folder
-from tribodyn.app.guard import LARGEST, Guard, Refusal, Session, headers
+from tribodyn.app.guard import LARGEST, Guard, RefusalError, Session, headers
 from tribodyn.app.jobs import Jobs
 from tribodyn.errors import InputError, TribodynError
+from tribodyn.report.html import text_of
 
 _PARTS = ("form", "rail", "tools", "bench", "notice", "title")
 #: Policy of a report, which is a page by itself and asks nothing of anybody.
-_OF_REPORT = "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:; sandbox allow-scripts allow-downloads"
+_OF_REPORT = (
+    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
+    "img-src data: blob:; sandbox allow-scripts allow-downloads"
+)
 _HEAD = """<!DOCTYPE html>
 <html lang="en">
-<head>{%metas%}<title>tribodyn</title><link rel="icon" href="data:,">{%css%}</head>
+<head>{%metas%}<title>tribodyn</title><link rel="icon" href="data:,">
+<style>STYLE</style>{%css%}</head>
 <body>{%app_entry%}<footer>{%config%}{%scripts%}{%renderer%}</footer></body>
 </html>"""
 
@@ -42,7 +47,7 @@ class Page:
         self.host = host
         self._guard = Guard(host, self.port)
         self._jobs = Jobs()
-        self.server.set_app(self._flask())
+        self.server.app = self._flask()
 
     @property
     def address(self) -> str:
@@ -72,7 +77,8 @@ class Page:
         application.config["MAX_CONTENT_LENGTH"] = LARGEST
         application.before_request(self._enter)
         application.add_url_rule("/desk/<desk>/report/<int:number>", view_func=self._report)
-        application.register_error_handler(Refusal, _refused)
+        application.register_error_handler(RefusalError, _refused)
+        style = str(text_of("report.css"))  # the page looks like the reports
         page = dash.Dash(
             "tribodyn.app",
             server=application,
@@ -81,7 +87,7 @@ class Page:
             assets_folder=str(Path(__file__).parent / "assets"),
             serve_locally=True,
             include_assets_files=True,
-            index_string=_HEAD,
+            index_string=_HEAD.replace("STYLE", style),
         )
         page.layout = _layout()
         self._connect(page)
@@ -107,7 +113,7 @@ class Page:
         token = request.args.get("token", "")
         if request.path == "/" and token:
             if not self._guard.opens(token):
-                raise Refusal(403, "That token is not of this server.")
+                raise RefusalError(403, "That token is not of this server.")
             answer = flask.redirect("/", 303)
             if request.cookies.get(self._guard.cookie, "") not in self._guard:
                 name = self._guard.begin()
@@ -123,7 +129,7 @@ class Page:
     def _report(self, desk: str, number: int) -> flask.typing.ResponseReturnValue:
         job = self._guard.desk(self._session(), desk).job(number)
         if job is None or not job.saved:
-            raise Refusal(404, "There is no such report.")
+            raise RefusalError(404, "There is no such report.")
         names = ("report.html", "bifurcation.html")
         place = next(job.result / name for name in names if (job.result / name).is_file())
         answer = flask.send_file(place)
@@ -131,12 +137,8 @@ class Page:
         return answer
 
     def _connect(self, page: dash.Dash) -> None:
-        page.clientside_callback(
-            ClientsideFunction("tribodyn", "render"), Input("form", "data")
-        )
-        page.clientside_callback(
-            ClientsideFunction("tribodyn", "pulse"), Input("pulse", "data")
-        )
+        page.clientside_callback(ClientsideFunction("tribodyn", "render"), Input("form", "data"))
+        page.clientside_callback(ClientsideFunction("tribodyn", "pulse"), Input("pulse", "data"))
         page.callback(
             Output("form", "data"),
             *(Output(name, "children") for name in _PARTS[1:]),
@@ -188,14 +190,12 @@ class _Quiet(WSGIRequestHandler):
         return "tribodyn"
 
 
-def _refused(error: Refusal) -> flask.typing.ResponseReturnValue:
+def _refused(error: RefusalError) -> flask.typing.ResponseReturnValue:
     return flask.Response(f"{error.text}\n", error.status, mimetype="text/plain")
 
 
 def _layout() -> html.Div:
     """What stands on the page before a desk fills it."""
-    style = (Path(results.__file__).parents[1] / "report" / "report.css").name
-    assert style
     run = results.button("Run", "run", id="run", title="Compute the case (Ctrl+Enter)")
     return html.Div(
         [
@@ -283,8 +283,8 @@ def _versions(desk: Desk) -> dict[str, Any]:
     """By part of the page something that changes with it."""
     job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
     jobs = [[j.number, j.state] for j in desk.jobs_here()]
-    moving = job is not None and not job.ended
-    at = [job.number, job.state, job.version if moving else 0, job.seconds if moving else 0] if job else desk.edits
+    moving = [job.version, job.seconds] if job is not None and not job.ended else []
+    at = [job.number, job.state, *moving] if job is not None else desk.edits
     return {
         "form": [desk.edits, desk.study],
         "rail": [desk.view, desk.picked, jobs],

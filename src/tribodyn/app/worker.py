@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
@@ -29,11 +30,11 @@ class Teller:
 
     def __init__(self, tell: Tell) -> None:
         self._tell, self._next = tell, 0.0
-        self._done, self._total = 0, None
+        self._done = 0
 
     def start(self, task: str, total: int | None = None) -> None:
         """Begin a task."""
-        self._done, self._total = 0, total
+        self._done = 0
         self._tell(task=task, done=0, total=total)
 
     def advance(self, steps: int = 1) -> None:
@@ -83,6 +84,7 @@ def _get_ready(wanted: Callable[[], bool]) -> None:
             if wanted():
                 return
             step()
+        import_module("xarray")  # to store what is found
 
 
 def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
@@ -159,9 +161,27 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     tell(state="done", shown=shown, task="")
 
 
+def _study(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
+    """Compute a study, show it, and write the directory of its command."""
+    from tribodyn.app.studies import STUDIES
+    from tribodyn.errors import collected
+    from tribodyn.report.blocks import drawn_block
+
+    with collected() as warnings:
+        study = STUDIES[order["study"]]
+        shown = study.compute(_case(order), order["values"], Teller(tell), folder / "result")
+    blocks = [
+        drawn_block(f"figure-{number}", heading, figure, caption)
+        for number, (heading, figure, caption) in enumerate(shown.pop("figures"), 1)
+    ]
+    shown["warnings"] = list(dict.fromkeys(map(str, warnings)))
+    tell(state="done", shown={**shown, "blocks": _written(blocks, folder)}, task="", saved=True)
+
+
 _KINDS: dict[str, Callable[[Mapping[str, Any], Path, Tell], None]] = {
     "run": _run,
     "overlay": _overlay,
+    "study": _study,
 }
 
 

@@ -1,4 +1,4 @@
-"""What studies of one case answer: data, figures, sentences and a table, and where they are kept."""
+"""What studies of one case answer: data, figures, sentences and a table; how they are kept."""
 
 from __future__ import annotations
 
@@ -221,3 +221,39 @@ def _losses(found: GearboxLosses) -> tuple[list[str], list[list[str]]]:
         for j in range(speed.size)
     ]
     return head, rows
+
+
+def film_answer(
+    case: Case, torque: Any = None, speed: Any = None, progress: Progress = SILENT
+) -> Answer:
+    """Least film, and the regime of lubrication, over torque and speed."""
+    import numpy as np
+
+    from tribodyn.study.studies.losses import STEPS
+    from tribodyn.study.studies.static import film_over_operation
+    from tribodyn.units import convert
+
+    operation = case.operation
+    torque = list(STEPS * operation.torque) if torque is None else torque
+    speed = list(STEPS * operation.speed) if speed is None else speed
+    found = film_over_operation(case, torque=torque, speed=speed, progress=progress)
+    drawn = (plot.film_over_operation, plot.lubrication_map)
+    figures = [
+        (each.heading, each(found), each.caption_of(found))
+        for each in drawn
+        if not each.missing(found)
+    ]
+    known = found.central_film if found.minimum_film is None else found.minimum_film
+    least = np.nanmin(np.asarray(known), axis=2)
+    rpm = found.pinion_speed * convert(1.0, "rad/s", "rpm")
+    head = ["Least film [um]: torque of the pinion", *(f"{n:.4g} rpm" for n in rpm)]
+    rows = [
+        [f"{load:.4g} N*m", *(f"{film * 1e6:.4g}" for film in line)]
+        for load, line in zip(found.pinion_torque, least, strict=True)
+    ]
+    facts = {
+        "pinion_torque": found.pinion_torque.tolist(),
+        "pinion_speed": found.pinion_speed.tolist(),
+        "least_film": least.tolist(),
+    }
+    return Answer(found, figures, [f"{figures[0][1].layout.title.text}."], head, rows, facts)

@@ -18,6 +18,7 @@ Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
 Flag = Annotated[bool, Parameter(negative="")]
 Output = Path | None
 
+
 def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
     """The case of a study with its changes, and the directory to write."""
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
