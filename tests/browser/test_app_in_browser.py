@@ -175,7 +175,7 @@ def test_a_study_is_started(visit: Visit) -> None:
     visit.wait("#study-form .field")
     tab.click("#start")
     visit.wait("[role=tab]:has-text('Natural modes') .state", "done")
-    visit.wait("#bench h3", "Modes")
+    visit.wait("#bench h3", "Natural modes")
     tab.wait_for_selector("#bench .main-svg")
 
 
