@@ -18,7 +18,7 @@ pytestmark = pytest.mark.browser
 
 #: A case with long cycles, for a run that is still going on when it is stopped.
 LONG = {"solver.method": "transient", "solver.cycles": 100000}
-WAIT = 25_000
+WAIT = 120_000
 
 
 class Visit:
@@ -147,6 +147,7 @@ def test_another_model_brings_its_options(visit: Visit) -> None:
     tab = visit.tab
     tab.click("summary:has-text('Friction')")
     assert tab.locator("#case-friction-coefficient").count() == 0
+    tab.focus("#case-friction-law")
     tab.select_option("#case-friction-law", "constant")
     visit.wait("#case-friction-coefficient")
     assert tab.evaluate("document.activeElement.id") == "case-friction-law"

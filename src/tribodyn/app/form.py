@@ -172,13 +172,13 @@ class CaseForm:
 
     def _options(self, prefix: str, section: type[Section]) -> Iterator[tuple[str, Option]]:
         """Own options of a table, and those of the model that it names."""
-        for name, option in section.fields.items():
-            if isinstance(option, Option) and not self._idle(f"{prefix}{name}"):
-                yield f"{prefix}{name}", option
+        known = {name: o for name, o in section.fields.items() if isinstance(o, Option)}
         if section.selector:
-            table = prefix.removesuffix(".")
-            options = case_options(table, self._chosen(f"{prefix}{section.selector}"))
-            yield from ((f"{prefix}{name}", o) for name, o in options.items())
+            named = self._chosen(f"{prefix}{section.selector}")
+            known |= case_options(prefix.removesuffix("."), named)
+        for name, option in known.items():
+            if not self._idle(f"{prefix}{name}"):
+                yield f"{prefix}{name}", option
 
     def _group(self, key: str, section: type[Section], title: str, meaning: str) -> dict[str, Any]:
         prefix = f"{key}." if key else ""

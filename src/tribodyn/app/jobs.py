@@ -203,8 +203,10 @@ class Jobs:
         """Stop everything and clear up."""
         with self._lock:
             self._closed = True
-            processes = [*self._running.values(), *([self._spare] if self._spare else [])]
+            running, spare = list(self._running.values()), self._spare
             self._waiting.clear()
-        for process in processes:
-            process.end()
+        for process in running:
+            process.stop()  # who follows it lets go of it
+        if spare is not None:
+            spare.end()
         shutil.rmtree(self._home, ignore_errors=True)

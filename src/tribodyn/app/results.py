@@ -8,7 +8,7 @@ from dash import dcc, html
 
 from tribodyn.app.desk import RUNS, Desk
 from tribodyn.app.studies import STUDIES
-from tribodyn.errors import InputError, collected
+from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.blocks import drawn_block, topic_of
 
 if TYPE_CHECKING:
@@ -313,10 +313,11 @@ def studies(desk: Desk) -> list[Any]:
 
 
 def bench(desk: Desk) -> list[Any]:
-    """What is looked at."""
-    if desk.view == "files":
-        return files(desk)
-    if desk.view == "studies":
-        return studies(desk)
+    """What is looked at; a case that cannot be drawn says why."""
+    if desk.view in ("files", "studies"):
+        return files(desk) if desk.view == "files" else studies(desk)
     job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
-    return pair(desk) if job is None else result(desk, job)
+    try:
+        return pair(desk) if job is None else result(desk, job)
+    except TribodynError as error:
+        return notice("This cannot be shown", [str(problem) for problem in error.problems])

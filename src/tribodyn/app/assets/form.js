@@ -126,7 +126,7 @@ class Form {
     this.fields.clear();
     this.faults = make("div", { class: "faults", role: "alert" });
     place.replaceChildren(this.faults, ...data.groups.map((group) => this.group(group)));
-    if (focused && place.querySelector(`#${CSS.escape(focused)}`)) document.getElementById(focused).focus();
+    if (focused && !document.activeElement?.id) document.getElementById(focused)?.focus();
   }
 
   group(data) {
@@ -143,7 +143,7 @@ class Form {
     const fields = make("div", { class: "fields" }, ...rows(data.fields));
     const within = make("div", { class: twins ? "twins" : "inner" }, ...inner);
     const note = make("span", { class: "note", id: `${this.name}-note-${data.key}` }, data.note);
-    const head = make("summary", {}, make("span", { class: "title" }, data.title),
+    const head = make("summary", { id: `${this.name}-table-${data.key}` }, make("span", { class: "title" }, data.title),
       make("span", { class: "meaning" }, data.meaning), note);
     return this.details(data.key, data.open, { class: "group" }, head, fields, within, folded);
   }
