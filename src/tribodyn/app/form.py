@@ -148,7 +148,7 @@ class CaseForm:
         """All tables with their fields: those that are needed first, the others folded."""
         found = [self._group("", Case, "Case", "")]
         for name, table in Case.fields.items():
-            if isinstance(table, Table) and not self._idle(name):
+            if isinstance(table, Table) and self._is_used(name):
                 found.append(self._group(name, table.kind, words(name), table.meaning))
         return found
 
@@ -160,12 +160,16 @@ class CaseForm:
             for name, option in self._options(prefix, section):
                 found[name] = option
             for name, table in section.fields.items():
-                if isinstance(table, Table) and not self._idle(f"{prefix}{name}"):
+                if isinstance(table, Table) and self._is_used(f"{prefix}{name}"):
                     pending.append((f"{prefix}{name}.", table.kind))
         return found
 
     def _idle(self, key: str) -> bool:
         return is_idle(key, self._chosen("gears.kind"))
+
+    def _is_used(self, table: str) -> bool:
+        """Whether a table says something; of those of gears their keys tell."""
+        return table.startswith("gears") or not self._idle(table)
 
     def _chosen(self, key: str) -> Any:
         return self.typed.get(key) or self._effective.get(key)
@@ -199,7 +203,9 @@ class CaseForm:
             "open": key.partition(".")[0] in _OPEN and not key.endswith("modification"),
             "fields": [field for name, field in fields if name in first],
             "more": [field for name, field in fields if name not in first],
-            "groups": [group for group in inner if group["fields"] or group["more"]],
+            "groups": [
+                group for group in inner if group["fields"] or group["more"] or group["groups"]
+            ],
         }
 
     def _field(self, key: str, option: Option) -> dict[str, Any]:

@@ -53,10 +53,14 @@ def test_every_given_value_has_its_field_and_the_pair_is_drawn(desk: Desk, name:
 
 def test_a_value_becomes_the_case_that_its_text_would(desk: Desk) -> None:
     assert typed(desk, "operation.torque", value="0.12", unit="kN*m") == []
-    assert typed(desk, "gears.pinion.teeth", value="17") == []
+    assert typed(desk, "gears.addendum_coefficient", value="0.95") == []
     assert typed(desk, "operation.speed", value="1000 rpm", unit="rad/s") == []
     expected = load_case("fzg-roughness").replace(
-        {"operation.torque": "0.12 kN*m", "gears.pinion.teeth": 17, "operation.speed": "1000 rpm"},
+        {
+            "operation.torque": "0.12 kN*m",
+            "gears.addendum_coefficient": 0.95,
+            "operation.speed": "1000 rpm",
+        },
         by="form",
     )
     assert desk.case == expected

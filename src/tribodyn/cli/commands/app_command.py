@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -50,7 +51,6 @@ def app(
     tell("It belongs to whoever has this address. Ctrl-C ends it.")
     if not no_browser and not webbrowser.open(page.address):
         tell("No browser could be opened: open the address in one yourself.")
-    try:
+    with suppress(KeyboardInterrupt):
         page.serve()
-    except KeyboardInterrupt:
-        tell("The page has ended.")
+    tell("The page has ended.")
