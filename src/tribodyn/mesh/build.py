@@ -263,7 +263,11 @@ def _teeth(
     return cycle, teeth
 
 
-@lru_cache(maxsize=4)
+#: Loads at which the teeth of a case are remembered: those of one axis of an operating map.
+_LOADS = 128
+
+
+@lru_cache(maxsize=_LOADS)
 def _known_teeth(*given: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]]:
     with collected() as told:
         return (*_loaded_teeth(*given[:-1]), told)
