@@ -66,24 +66,24 @@ class PhaseGrid:
         starts, counts = np.array(self.event_phases), np.array(self.intervals)
         return starts, counts, np.diff(starts, append=1.0), np.cumsum(counts + 1) - counts - 1
 
-    def between(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
+    def _between(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
         """First of the four knots about each phase, and the weights of their cubic."""
         if not _FEWEST_KEPT <= phase.size <= _MOST_KEPT:
-            return self._between(phase)
+            return self._located(phase)
         # The tables of one case, and of all its operating points, are asked at the same phases.
         key = phase.shape, phase.tobytes()
         found = self._known.get(key)
         if found is None:
             if len(self._known) >= _KEPT:
                 self._known.clear()
-            found = self._known[key] = self._between(phase)
+            found = self._known[key] = self._located(phase)
         return found
 
     @cached_property
     def _known(self) -> dict[Any, tuple[Index, tuple[Array, ...]]]:
         return {}
 
-    def _between(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
+    def _located(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
         folded = np.mod(phase, 1.0)
         starts, counts, widths, knots = self._layout
         segment = np.searchsorted(starts, folded, side="right") - 1
@@ -142,7 +142,7 @@ class PhaseFunction:
 
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
-        first, weights = self.grid.between(np.asarray(phase, dtype=float))
+        first, weights = self.grid._between(np.asarray(phase, dtype=float))
         further = (1,) * (self.values.ndim - 1)
         total = np.zeros(first.shape + self.values.shape[1:])
         for knot, weight in enumerate(weights):
