@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -150,12 +151,16 @@ class OrbitPoint:
     @property
     def correction(self) -> Array:
         """Newton step to the fixed point, (k,)."""
-        return newton_step(self.matrix, self.residual)[0]
+        return self._newton[0]
 
     @property
     def error(self) -> float:
         """Distance to the orbit over its size; at least the rounding of the map."""
-        return newton_step(self.matrix, self.residual)[1] / self.scale
+        return self._newton[1] / self.scale
+
+    @cached_property
+    def _newton(self) -> tuple[Array, float]:
+        return newton_step(self.matrix, self.residual)
 
     @property
     def attracts(self) -> bool:
