@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -23,6 +23,7 @@ def compare(
     channel: Words = None,
     gain: str = "1",
     harmonics: int = 5,
+    base: Literal["measured", "computed", "mean"] = "measured",
     out: Path | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
@@ -42,6 +43,8 @@ def compare(
         Measured over computed signal of the transfer path, or "fit".
     harmonics : int
         Mesh harmonics that are compared with a recording.
+    base : str
+        What errors are divided by: "measured", "computed" or "mean", half the sum of both.
     out : Path
         Directory for the report of the comparison with a recording.
     force : bool
@@ -50,7 +53,7 @@ def compare(
         Write values and figures in SI as one JSON object to stdout.
     """
     if not second.is_dir() and second.exists():
-        _with_recording(first, second, _pairs(channel), (gain, harmonics), (out, force, json))
+        _with_recording(first, second, _pairs(channel), (gain, harmonics, base), (out, force, json))
         return
     from tribodyn.cases.load import load_case
     from tribodyn.cases.stored_result import read_summary
@@ -92,8 +95,11 @@ def _with_recording(
     from tribodyn.measurement import read
 
     channels, sensitivity = pairs
-    gain, harmonics = options
+    gain, harmonics, base = options
     out, force, json = output
+    if not channels:
+        remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g", one for each channel'
+        raise InputError(Problem("no channel of the recording is named", "--channel", "", remedy))
     number = plain_number(gain)
     if number is None and gain != "fit":
         raise InputError(Problem(f'gain = "{gain}"', "--gain", "", 'Give a number, or "fit"'))
@@ -105,6 +111,7 @@ def _with_recording(
         read(second, sensitivity=sensitivity),
         channels,
         harmonics=harmonics,
+        base=base,
         gain="fit" if number is None else number,
     )
     names = ("channel", "measure", "unit", "computed", "measured", "error")
@@ -113,12 +120,13 @@ def _with_recording(
         [str(c), str(m), f"{made:.6g} {u}", f"{told:.6g} {u}", f"{100.0 * error:+.3g} %"]
         for c, m, u, made, told, error in zip(*columns, strict=True)
     ]
-    head = ("channel", "figure", "computed", "measured", "error, of the measured value")
+    head = ("channel", "figure", "computed", "measured", f"error, of the {base} value")
     how = "fitted" if found.fitted else "given"
     told = [f"Gain of {name}, {how}: {value:.6g}" for name, value in found.gains.items()]
     facts = {
         "gains": dict(found.gains),
         "fitted": found.fitted,
+        "base": found.base,
         "rows": [
             dict(zip(names, (str(c), str(m), str(u), float(a), float(b), float(e)), strict=True))
             for c, m, u, a, b, e in zip(*columns, strict=True)

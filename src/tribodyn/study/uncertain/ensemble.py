@@ -68,7 +68,13 @@ class CaseEnsemble(Record):
 
     @cached_property
     def results(self) -> tuple[Result, ...]:
-        """Whole results: of the middle of all inputs, and of up to 32 variants evenly among all."""
+        """Whole results: of the middle of all inputs, and of up to 32 variants evenly among all.
+
+        Raises
+        ------
+        InputError
+            If an input is a factor and no key of a case, so that its variants are no cases.
+        """
         from tribodyn.study.pipeline.run import computed
         from tribodyn.study.studies.grid import over_cases
 
