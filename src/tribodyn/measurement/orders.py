@@ -268,7 +268,8 @@ def _lines(
         np.cos(2.0 * np.pi * inside), 0.5 * np.array(WINDOWS[window])
     )
     count = int(np.floor(2.0 * max_order * revolutions + 1e-9)) + 1
-    mean = float(values @ weights / weights.sum())  # a large offset would leak into orders
+    # A large offset would leak into orders. A product by BLAS would wait for its threads.
+    mean = float(np.sum(values * weights) / np.sum(weights))
     sums = _uneven_transform((values - mean) * weights, 0.5 * inside, count)
     lines = 2.0 * sums * np.exp(-1j * np.arange(count) * start / (2.0 * revolutions))
     lines[0] = 0.5 * lines[0] + mean

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -23,7 +23,6 @@ def compare(
     channel: Words = None,
     gain: str = "1",
     harmonics: int = 5,
-    base: Literal["measured", "computed", "mean"] = "measured",
     out: Path | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
@@ -43,8 +42,6 @@ def compare(
         Measured over computed signal of the transfer path, or "fit".
     harmonics : int
         Mesh harmonics that are compared with a recording.
-    base : str
-        What errors are divided by: "measured", "computed" or "mean", half the sum of both.
     out : Path
         Directory for the report of the comparison with a recording.
     force : bool
@@ -53,7 +50,7 @@ def compare(
         Write values and figures in SI as one JSON object to stdout.
     """
     if not second.is_dir() and second.exists():
-        _with_recording(first, second, _pairs(channel), (gain, harmonics, base), (out, force, json))
+        _with_recording(first, second, _pairs(channel), (gain, harmonics), (out, force, json))
         return
     from tribodyn.cases.load import load_case
     from tribodyn.cases.stored_result import read_summary
@@ -95,7 +92,7 @@ def _with_recording(
     from tribodyn.measurement import read
 
     channels, sensitivity = pairs
-    gain, harmonics, base = options
+    gain, harmonics = options
     out, force, json = output
     if not channels:
         remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g", one for each channel'
@@ -111,7 +108,6 @@ def _with_recording(
         read(second, sensitivity=sensitivity),
         channels,
         harmonics=harmonics,
-        base=base,
         gain="fit" if number is None else number,
     )
     names = ("channel", "measure", "unit", "computed", "measured", "error")
@@ -120,7 +116,7 @@ def _with_recording(
         [str(c), str(m), f"{made:.6g} {u}", f"{told:.6g} {u}", f"{100.0 * error:+.3g} %"]
         for c, m, u, made, told, error in zip(*columns, strict=True)
     ]
-    head = ("channel", "figure", "computed", "measured", f"error, of the {base} value")
+    head = ("channel", "figure", "computed", "measured", f"error, of the {found.base} value")
     how = "fitted" if found.fitted else "given"
     told = [f"Gain of {name}, {how}: {value:.6g}" for name, value in found.gains.items()]
     facts = {
