@@ -73,4 +73,6 @@ def ensemble(
     figures += banded(found, sections_of(ready))
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
+    from tribodyn.report.answers import Answer
+
     finish("ensemble", ready, target, Answer(found, figures, told, head, rows, facts), force, json)
