@@ -27,6 +27,11 @@ COMMANDS = (
         "Compute a case at many values of its keys.",
     ),
     (
+        "ensemble",
+        "ensemble_command:ensemble",
+        "Compute many variants of a case with spread inputs, and draw bands.",
+    ),
+    (
         "bifurcation",
         "bifurcation_command:bifurcation",
         "Follow the motion of a case over one value.",

@@ -113,9 +113,13 @@ def _joined(blocks: Iterable[Block]) -> list[Block]:
     return kept
 
 
+def sections_of(case: Any) -> tuple[str, ...]:
+    """Names of the figures of a report, in their order."""
+    return HYPOID_SECTIONS if case.gears.kind == "hypoid" else SECTIONS
+
+
 def figure_blocks(result: Any) -> list[Block]:
     """Draw every figure of the report; what lacks for one reason is told once."""
-    usual = HYPOID_SECTIONS if result.case.gears.kind == "hypoid" else SECTIONS
-    names = [*usual, *(["coupling"] if result.coupling is not None else [])]
+    names = [*sections_of(result.case), *(["coupling"] if result.coupling is not None else [])]
     figures = (FIGURES[name] for name in names)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))
