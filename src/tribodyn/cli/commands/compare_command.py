@@ -87,9 +87,10 @@ def _with_recording(
     first: Path, second: Path, pairs: tuple[dict[str, str], ...], options: Any, output: Any
 ) -> None:
     from tribodyn.cases.stored_result import load_result
-    from tribodyn.cli.commands.study_commands import Found, finish
+    from tribodyn.cli.commands.study_commands import finish
     from tribodyn.measurement import compare as compared
     from tribodyn.measurement import read
+    from tribodyn.report.answers import Answer
 
     channels, sensitivity = pairs
     gain, harmonics = options
@@ -134,5 +135,5 @@ def _with_recording(
     caption = "Spectra of the measured channels with the computed mesh harmonics on them."
     figures = [("Computed and measured", found.plot(), caption)]
     finish(
-        "comparison", result.case, out, Found(found, figures, told, head, rows, facts), force, json
+        "comparison", result.case, out, Answer(found, figures, told, head, rows, facts), force, json
     )

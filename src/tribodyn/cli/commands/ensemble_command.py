@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import numpy as np
 from cyclopts import Parameter
 
-from tribodyn.cli.commands.study_commands import Flag, Found, Output, Words, begun, finish
+from tribodyn.cli.commands.study_commands import Flag, Output, Words, begun, finish
 
 #: Part of the variants between the ends that are told.
 _SHARE = 0.95
@@ -73,4 +73,6 @@ def ensemble(
     figures += banded(found, sections_of(ready))
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
-    finish("ensemble", ready, target, Found(found, figures, told, head, rows, facts), force, json)
+    from tribodyn.report.answers import Answer
+
+    finish("ensemble", ready, target, Answer(found, figures, told, head, rows, facts), force, json)
