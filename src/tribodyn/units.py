@@ -358,6 +358,11 @@ def shown_in(value: float, unit: str) -> float:
     return convert(value, si, plain)
 
 
+def usual_units(unit: str) -> list[str]:
+    """Units in which a quantity of this SI unit is usually written, that itself first."""
+    return [unit, *_USUAL.get(unit, {}), *(["degC"] if unit == "K" else [])]
+
+
 def format_quantity(value: float, unit: str, display_unit: str | None = None) -> str:
     """Write an SI float as text with a unit that :func:`parse` reads back.
 

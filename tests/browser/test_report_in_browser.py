@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,23 +16,6 @@ from tribodyn.report import write_report
 from tribodyn.report.blocks import SECTIONS
 
 pytestmark = pytest.mark.browser
-
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-NAMES = ("chromium", "chromium-browser", "google-chrome")
-
-
-def chromium() -> str | None:
-    """Path of a Chromium on this machine."""
-    asked = os.environ.get("TRIBODYN_CHROMIUM")
-    return asked or next((path for path in map(shutil.which, NAMES) if path), None)
 
 
 @dataclass
@@ -52,18 +33,6 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
         warnings.simplefilter("ignore", ModelWarning)
         result = tribodyn.run(tribodyn.load_case("fzg-roughness"))
     return write_report(result, tmp_path_factory.mktemp("report") / "report.html")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    program = chromium()
-    if program is None:
-        pytest.skip("no Chromium found; install it or set TRIBODYN_CHROMIUM to its path")
-    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-    with playwright.sync_playwright() as driver:
-        opened = driver.chromium.launch(executable_path=program, args=FLAGS)
-        yield opened
-        opened.close()
 
 
 @pytest.fixture(scope="module", params=[1280, 800, 420])

@@ -71,7 +71,7 @@ def test_every_extra_is_used() -> None:
     extras = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"][
         "optional-dependencies"
     ]
-    assert set(extras) == {"images", "io", "learn", "test", "dev"}
+    assert set(extras) == {"app", "cluster", "docs", "images", "io", "learn", "test", "dev"}
     page = (root / "docs" / "install.md").read_text("utf-8")
     assert set(re.findall(r"^\| `(\w+)` \|", page, re.M)) == set(extras)
 

@@ -32,6 +32,9 @@ TOP_IMPORTS = {
     "pydantic_core": {"study"},
     "cyclopts": {"cli"},
     "rich": {"cli"},
+    "dash": {"app"},
+    "flask": {"app"},
+    "werkzeug": {"app"},
 }
 
 

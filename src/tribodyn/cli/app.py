@@ -20,11 +20,17 @@ tribodyn --help shows all commands."""
 #: Command, its function within ``commands``, and one line of help.
 COMMANDS = (
     ("cases", "case_commands:cases", "List the built-in cases."),
+    ("app", "app_command:app", "Serve a page in the browser for the whole job."),
     ("run", "run_command:run", "Compute a case and write its report."),
     (
         "sweep",
         "sweep_command:sweep",
         "Compute a case at many values of its keys.",
+    ),
+    (
+        "ensemble",
+        "ensemble_command:ensemble",
+        "Compute many variants of a case with spread inputs, and draw bands.",
     ),
     (
         "bifurcation",

@@ -99,6 +99,7 @@ INTERRUPTED = 130
 
 #: What to write after a command, for those that need something.
 _EXAMPLES = {
+    "app": "fzg-roughness",
     "run": "fzg-roughness",
     "check": "fzg-roughness",
     "sweep": 'fzg-roughness "operation.speed=400..3500 rpm:60"',

@@ -11,6 +11,7 @@ from tribodyn.errors import InputError
 from tribodyn.exchange.flank_forms import forms_of
 from tribodyn.exchange.rexs_file import Component, RexsFile, kinds, read_file
 from tribodyn.gear.curves import involute
+from tribodyn.record import html_table
 
 _GEARS = ("cylindrical_gear", "ring_gear")
 #: Stages that are no pair of cylindrical gears.
@@ -183,6 +184,22 @@ class GearboxModel:
             f"GearboxModel(REXS {self.version} of {self.application or 'an unnamed program'}: "
             f"{count} components, {len(self.stages)} stages, {len(self.loads)} load cases)"
         )
+
+    def _repr_html_(self) -> str:
+        """Stages as a table, for notebooks."""
+        rows = [
+            (
+                s.id,
+                f"{s.gear_1.teeth} / {s.gear_2.teeth}",
+                f"{1e3 * s.gear_1.normal_module:g} mm",
+                f"{math.degrees(s.gear_1.helix_angle):g} deg",
+                f"{1e3 * s.center_distance:g} mm",
+                f"{math.degrees(s.operating_pressure_angle):.4f} deg",
+            )
+            for s in self.stages
+        ]
+        head = ("stage", "teeth", "module", "helix", "centre distance", "alpha_wt")
+        return html_table(repr(self), head, rows)
 
     def stage(self, number: int | None = None) -> Stage:
         """The stage with a number, or the only one.

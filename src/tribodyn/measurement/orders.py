@@ -258,17 +258,18 @@ def _lines(
 ) -> ComplexArray:
     """Complex amplitudes at multiples of half an order over the revolutions."""
     length = 2.0 * np.pi * revolutions
-    place = (turned - start) / length  # of the block, 0 to 1
-    inside = np.clip(place, 0.0, 1.0)
-    middles = 0.5 * (inside[1:] + inside[:-1])
+    inside = np.clip((turned - start) * (1.0 / length), 0.0, 1.0)  # of the block
     # Each sample stands for the angle from the middle before it to the middle after it.
-    widths = np.diff(np.concatenate((inside[:1], middles, inside[-1:])))
-    weights = np.zeros_like(inside)
-    for term, share in enumerate(WINDOWS[window]):
-        weights += share * np.cos(2.0 * np.pi * term * inside)
+    widths = np.empty_like(inside)
+    np.subtract(inside[2:], inside[:-2], out=widths[1:-1])
+    widths[0], widths[-1] = inside[1] - inside[0], inside[-1] - inside[-2]
+    # The cosine of a multiple of an angle is a polynomial of its cosine.
+    weights = widths * np.polynomial.chebyshev.chebval(
+        np.cos(2.0 * np.pi * inside), 0.5 * np.array(WINDOWS[window])
+    )
     count = int(np.floor(2.0 * max_order * revolutions + 1e-9)) + 1
-    weights *= widths
-    mean = float(values @ weights / weights.sum())  # a large offset would leak into orders
+    # A large offset would leak into orders. A product by BLAS would wait for its threads.
+    mean = float(np.sum(values * weights) / np.sum(weights))
     sums = _uneven_transform((values - mean) * weights, 0.5 * inside, count)
     lines = 2.0 * sums * np.exp(-1j * np.arange(count) * start / (2.0 * revolutions))
     lines[0] = 0.5 * lines[0] + mean

@@ -46,6 +46,7 @@ from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
+from tribodyn.plot.signals.bands import bands
 from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
 from tribodyn.plot.signals.recorded import (
@@ -60,6 +61,7 @@ __all__ = [
     "FIGURES",
     "Drawing",
     "acceleration",
+    "bands",
     "basins",
     "bearing_force",
     "bearing_spectrum",

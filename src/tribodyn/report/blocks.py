@@ -10,29 +10,17 @@ from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.look.style import TOP
 
+#: Figures of the report in their order, by what they are about.
+TOPICS = {
+    "Gears": ("gear_pair", "path_of_contact", "flank_modification"),
+    "Stiffness": ("mesh_stiffness", "load_sharing", "static_transmission_error"),
+    "Friction and film": ("friction", "film", "lubrication", "film_pressure", "film_stiffness"),
+    "Motion": ("mesh_force", "friction_force", "transmission_error", "acceleration", "spectrum"),
+    "Bearings": ("bearing_force", "bearing_spectrum"),
+    "Natural modes": ("mode_shapes", "campbell"),
+}
 #: Order of the figures in the report.
-SECTIONS = (
-    "gear_pair",
-    "path_of_contact",
-    "flank_modification",
-    "mesh_stiffness",
-    "load_sharing",
-    "static_transmission_error",
-    "friction",
-    "film",
-    "lubrication",
-    "film_pressure",
-    "film_stiffness",
-    "mesh_force",
-    "friction_force",
-    "transmission_error",
-    "acceleration",
-    "spectrum",
-    "bearing_force",
-    "bearing_spectrum",
-    "mode_shapes",
-    "campbell",
-)
+SECTIONS = tuple(name for names in TOPICS.values() for name in names)
 
 #: The same of a hypoid pair.
 HYPOID_SECTIONS = (
@@ -53,8 +41,26 @@ HYPOID_SECTIONS = (
     "campbell",
 )
 
+#: The figures that spur gears do not have, by the same topics.
+_ELSEWHERE = {
+    "hypoid_pair": "Gears",
+    "ease_off": "Gears",
+    "hypoid_contact": "Gears",
+    "hypoid_load": "Stiffness",
+    "hypoid_pressure": "Friction and film",
+    "hypoid_friction": "Friction and film",
+    "tooth_force": "Motion",
+    "coupling": "Friction and film",
+}
+
 #: Room above the panels for marks and buttons [px].
 _MARGIN = 44
+
+
+def topic_of(name: str) -> str:
+    """What a figure of the report is about."""
+    found = (topic for topic, names in TOPICS.items() if name in names)
+    return next(found, _ELSEWHERE.get(name, "Figures"))
 
 
 @dataclass(frozen=True)
@@ -113,9 +119,13 @@ def _joined(blocks: Iterable[Block]) -> list[Block]:
     return kept
 
 
+def sections_of(case: Any) -> tuple[str, ...]:
+    """Names of the figures of a report, in their order."""
+    return HYPOID_SECTIONS if case.gears.kind == "hypoid" else SECTIONS
+
+
 def figure_blocks(result: Any) -> list[Block]:
     """Draw every figure of the report; what lacks for one reason is told once."""
-    usual = HYPOID_SECTIONS if result.case.gears.kind == "hypoid" else SECTIONS
-    names = [*usual, *(["coupling"] if result.coupling is not None else [])]
+    names = [*sections_of(result.case), *(["coupling"] if result.coupling is not None else [])]
     figures = (FIGURES[name] for name in names)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

@@ -93,7 +93,9 @@ def _from_text(name: str, text: str, unit: str | None) -> Any:
             return stats.uniform(low, high - low)
         return _Data(np.array([parse(text, unit)]))
     except UnitProblemError as error:
-        raise _wrong(name, text, str(error)) from None
+        bare = re.fullmatch(r"([\d.]+)\s*(?:\+-|±)\s*([\d.]+)\s*([^\s\d%].*)", text)
+        both = f'"{bare[1]} {bare[3]} +- {bare[2]} {bare[3]}", or ' if bare else ""
+        raise _wrong(name, text, str(error), both) from None
 
 
 def _spread(text: str, mean: float, unit: str) -> float:
@@ -111,9 +113,11 @@ def _spread(text: str, mean: float, unit: str) -> float:
     return float(spread)
 
 
-def _wrong(name: str, given: Any, why: str = "") -> InputError:
+def _wrong(name: str, given: Any, why: str = "", meant: str = "") -> InputError:
     what = f"{shortened(repr(given))} is no distribution"
-    remedy = 'Write "0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
+    remedy = (
+        f'Write {meant}"0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
+    )
     return InputError(Problem(what, name, why, remedy + "or give data or a SciPy distribution"))
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
-from tribodyn.ehl import FILM_MODELS, moes_central
+from tribodyn.ehl import FILM_MODELS, moes_central, solve_line_contact_moes
 from tribodyn.ehl.formulas.moes import moes_load_exponent
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
@@ -89,3 +91,14 @@ def test_options_are_completed():
         "domain": None,
     }
     assert FILM_MODELS["moes"].complete({"stiffness": None}) == {"stiffness": "none"}
+
+
+def test_an_approach_that_rises_with_the_load_is_told():
+    # Beside it, at M 0.6 and 0.8, the distance falls with the load.
+    for load, told in ((0.6, False), (0.7, True), (0.8, False)):
+        contact = solve_line_contact_moes(load, 25.0, domain="auto", inlet="flooded", nodes=513)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            stiffness = contact.film_stiffness(kind="approach")
+        assert (stiffness < 0.0) == told
+        assert any("film keeps rises with the load" in str(each.message) for each in said) == told

@@ -68,6 +68,8 @@ def test_xml_and_json_say_the_same() -> None:
     assert one.stages == other.stages
     assert one.loads == other.loads
     assert one.remarks == other.remarks
+    assert "27 / 51" in one._repr_html_()
+    assert "22.8062 deg" in one._repr_html_()
 
 
 def test_a_planetary_gearbox_is_listed_and_not_computed() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import InputError, ModelWarning
+from tribodyn.plot.signals.bands import banded
 from tribodyn.study import load_data
 from tribodyn.study.uncertain.cycles import steady_cycles
 from tribodyn.study.uncertain.lanes import lanes_of
@@ -174,3 +175,28 @@ def test_a_case_may_hold_spread_values():
         case.replace({"operation.torque": "150 N*m +- 2 mm"})
     with pytest.raises(InputError, match="whole number"):
         case.replace({"gears.pinion.teeth": "16 +- 1"})
+
+
+def test_every_figure_of_a_run_takes_bands() -> None:
+    """The band is that of the runs themselves; what does not vary has none."""
+    spread = {"operation.torque": "80 N*m +- 3 %", "operation.speed": "1400 rpm +- 0.5 %"}
+    found = td.ensemble(LINEAR, spread, 5, seed=1)
+    middle, *variants = found.results
+    torques = found.value[:, 0]
+    assert middle.case.operation.torque == np.median(torques)
+    assert [each.case.operation.torque for each in variants] == torques.tolist()
+    peaks = found.figures()["peak_mesh_force"]
+    np.testing.assert_allclose(peaks[1:], found.mesh_force.max(axis=1), rtol=2e-3)
+    curve, _, high, low, *_ = found.plot("mesh_force").data
+    assert low.fill == "tonexty"
+    assert np.all(low.y <= high.y)
+    assert np.mean((low.y <= curve.y) & (curve.y <= high.y)) > 0.9
+    bars = found.plot("spectrum").data[0]
+    harmonics = found.spectrum("dynamic_transmission_error", 3)
+    ends = np.quantile(harmonics, (0.025, 0.975), axis=0) * 1e6
+    np.testing.assert_allclose((bars.y + bars.error_y.array)[:3], ends[1], rtol=0.02)
+    np.testing.assert_allclose((bars.y - bars.error_y.arrayminus)[:3], ends[0], rtol=0.02)
+    names = [heading for heading, *_ in banded(found, ("gear_pair", "mesh_force", "spectrum"))]
+    assert names == ["Mesh force", "Spectra"]
+    with pytest.raises(InputError, match="stiffness_scale: of no case"):
+        td.ensemble(LINEAR, {"stiffness_scale": "1 +- 2 %"}, 3, seed=1).plot("mesh_force")

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, show_resumed, tell
 from tribodyn.cli.settings import RANGE, changed_case, check_place, read_ranges
-
-if TYPE_CHECKING:
-    from tribodyn.nonlinear.bifurcation import Bifurcation
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.studies.bifurcation import Findings
-
 
 #: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.
 _INTERRUPTED = 130
@@ -98,7 +92,9 @@ def bifurcation(
         findings = Findings(ready, found)
         with progress_bar() as progress:
             progress.start("Report")
-            _save(found, ready, findings, target, force=force)
+            from tribodyn.report.answers import save_bifurcation
+
+            save_bifurcation(found, ready, findings, target, force)
             progress.finish()
         members.close_after(complete)
     if json:
@@ -128,23 +124,3 @@ def _check_lengths(cycles: int, transient: int) -> None:
         if value < least:
             why = f"At least {least} are needed" if least else "It is a count"
             raise InputError(Problem(f"{value} mesh cycles", f"--{name}", why, "Give more of them"))
-
-
-def _save(found: Bifurcation, case: Case, findings: Findings, target: Path, *, force: bool) -> None:
-    from tribodyn.report import write_bifurcation_report
-    from tribodyn.stored import write_dataset
-    from tribodyn.study.pipeline.save import new_directory
-
-    head, rows = findings.rows()
-    with new_directory(target, force=force) as place:
-        (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
-        write_dataset(found.to_xarray(), place / "bifurcation.nc")
-        write_bifurcation_report(
-            found,
-            case,
-            place / "bifurcation.html",
-            lead=findings.lead(),
-            told=findings.sentences(),
-            head=head,
-            rows=rows,
-        )

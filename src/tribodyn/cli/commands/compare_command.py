@@ -87,13 +87,17 @@ def _with_recording(
     first: Path, second: Path, pairs: tuple[dict[str, str], ...], options: Any, output: Any
 ) -> None:
     from tribodyn.cases.stored_result import load_result
-    from tribodyn.cli.commands.study_commands import Found, finish
+    from tribodyn.cli.commands.study_commands import finish
     from tribodyn.measurement import compare as compared
     from tribodyn.measurement import read
+    from tribodyn.report.answers import Answer
 
     channels, sensitivity = pairs
     gain, harmonics = options
     out, force, json = output
+    if not channels:
+        remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g", one for each channel'
+        raise InputError(Problem("no channel of the recording is named", "--channel", "", remedy))
     number = plain_number(gain)
     if number is None and gain != "fit":
         raise InputError(Problem(f'gain = "{gain}"', "--gain", "", 'Give a number, or "fit"'))
@@ -113,12 +117,13 @@ def _with_recording(
         [str(c), str(m), f"{made:.6g} {u}", f"{told:.6g} {u}", f"{100.0 * error:+.3g} %"]
         for c, m, u, made, told, error in zip(*columns, strict=True)
     ]
-    head = ("channel", "figure", "computed", "measured", "error, of the measured value")
+    head = ("channel", "figure", "computed", "measured", f"error, of the {found.base} value")
     how = "fitted" if found.fitted else "given"
     told = [f"Gain of {name}, {how}: {value:.6g}" for name, value in found.gains.items()]
     facts = {
         "gains": dict(found.gains),
         "fitted": found.fitted,
+        "base": found.base,
         "rows": [
             dict(zip(names, (str(c), str(m), str(u), float(a), float(b), float(e)), strict=True))
             for c, m, u, a, b, e in zip(*columns, strict=True)
@@ -130,5 +135,5 @@ def _with_recording(
     caption = "Spectra of the measured channels with the computed mesh harmonics on them."
     figures = [("Computed and measured", found.plot(), caption)]
     finish(
-        "comparison", result.case, out, Found(found, figures, told, head, rows, facts), force, json
+        "comparison", result.case, out, Answer(found, figures, told, head, rows, facts), force, json
     )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.cli.commands.study_commands import Flag, Found, Output, Words, begun, finish
+from tribodyn.cli.commands.study_commands import Flag, Output, Words, begun, finish
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import check_place, read_changes, read_ranges
 from tribodyn.errors import InputError, Problem, collected
@@ -17,12 +17,11 @@ from tribodyn.model import Option, number
 from tribodyn.study.case.values import FaultError, read_value
 
 if TYPE_CHECKING:
-    from tribodyn.losses import FrictionFromLoss, GearboxLosses, PowerLossTable
+    from tribodyn.losses import FrictionFromLoss, PowerLossTable
     from tribodyn.study.case.case import Case
 
 Text = str | None
 _EXAMPLES = {"torque": "50,150,300 N*m", "speed": "400..3500 rpm:8"}
-_ALONE = "Counted are the teeth alone; bearings, seals and oil are where the case has [losses]."
 
 
 def losses(
@@ -61,8 +60,7 @@ def losses(
     """
     from tribodyn import plot
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.losses.gearbox import PARTS
-    from tribodyn.study.studies.losses import loss_map
+    from tribodyn.report.answers import losses_answer
 
     ready, target = begun("losses", case, out, set_, force)
     slave = _slave(ready, rig)
@@ -71,15 +69,13 @@ def losses(
     }
     with collected() as warnings:
         with progress_bar() as progress:
-            found = loss_map(ready, **points, progress=progress)
-        figure = found.plot()
-        figures = [(plot.losses.heading, figure, plot.losses.caption_of(found))]
-        told, facts = [f"{figure.layout.title.text}.", _counted(found)], _facts(found, PARTS)
+            answer = losses_answer(ready, **points, progress=progress)
         if slave is not None:
-            flow, drawn = _rig(ready, slave, facts)
-            figures.append((plot.power_flow.heading, drawn, plot.power_flow.caption_of(flow)))
-            told.append(f"{drawn.layout.title.text}.")
-    finish("losses", ready, target, Found(found, figures, told, *_rows(found), facts), force, json)
+            flow, drawn = _rig(ready, slave, answer.facts)
+            shown = (plot.power_flow.heading, drawn, plot.power_flow.caption_of(flow))
+            told = [*answer.told, f"{drawn.layout.title.text}."]
+            answer = answer._replace(figures=[*answer.figures, shown], told=told)
+    finish("losses", ready, target, answer, force, json)
     show_warnings((warning.code, warning.message) for warning in warnings)
 
 
@@ -108,18 +104,6 @@ def _slave(case: Case, rig: Text) -> Case | None:
     return case.replace(bearings, by="--rig")
 
 
-def _facts(found: GearboxLosses, parts: Iterable[str]) -> dict[str, Any]:
-    names = ("pinion_torque", "pinion_speed", *parts, "total", "gear_efficiency", "efficiency")
-    return {name: getattr(found, name).tolist() for name in names}
-
-
-def _counted(found: GearboxLosses) -> str:
-    from tribodyn.losses.gearbox import PARTS
-
-    counted = [words for part, words in PARTS.items() if getattr(found, part).any()]
-    return _ALONE if counted == ["teeth"] else f"Counted are {', '.join(counted)}."
-
-
 def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> tuple[Any, Any]:
     """Power flow of the rig and its figure; its figures are added to the facts."""
     from tribodyn.study.studies.losses import rig_power_flow
@@ -132,36 +116,6 @@ def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> tuple[Any, Any]:
         **{box: dict(zip(flow.part, lost, strict=True)) for box, lost in boxes},
     }
     return flow, flow.plot()
-
-
-def _rows(found: GearboxLosses) -> tuple[list[str], list[list[str]]]:
-    """Efficiency over torque and speed, or all parts where one of them has one value."""
-    from tribodyn.losses.gearbox import PARTS
-    from tribodyn.units import convert
-
-    torque, speed = found.pinion_torque, found.pinion_speed * convert(1.0, "rad/s", "rpm")
-    percent = 100.0 * found.efficiency
-    if torque.size > 1 and speed.size > 1:
-        head = ["Efficiency [%]: torque of the pinion", *(f"{n:.4g} rpm" for n in speed)]
-        rows = [
-            [f"{load:.4g} N*m", *(f"{value:.5g}" for value in line)]
-            for load, line in zip(torque, percent, strict=True)
-        ]
-        return head, rows
-    parts = {words: getattr(found, part) for part, words in PARTS.items()}
-    parts = {words: lost for words, lost in parts.items() if lost.any()} | {"all": found.total}
-    head = ["Torque [N*m]", "Speed [rpm]", *(f"{words} [W]" for words in parts), "Efficiency [%]"]
-    rows = [
-        [
-            f"{torque[i]:.4g}",
-            f"{speed[j]:.4g}",
-            *(f"{lost[i, j]:.4g}" for lost in parts.values()),
-            f"{percent[i, j]:.5g}",
-        ]
-        for i in range(torque.size)
-        for j in range(speed.size)
-    ]
-    return head, rows
 
 
 _GUARD = "guards against a wrong unit"

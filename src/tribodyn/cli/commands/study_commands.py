@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -12,26 +11,12 @@ from tribodyn.cli.screen import say, say_json, table, tell
 from tribodyn.cli.settings import changed_case, check_place, read_ends
 
 if TYPE_CHECKING:
+    from tribodyn.report.answers import Answer
     from tribodyn.study.case.case import Case
 
 Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
 Flag = Annotated[bool, Parameter(negative="")]
 Output = Path | None
-
-#: Rows of the table of a run-up.
-_ROWS = 40
-
-
-class Found(NamedTuple):
-    """What a study tells: its data, figures, sentences and a table."""
-
-    data: Any  #: result whose data set is stored
-    figures: Sequence[tuple[str, Any, str]]  #: heading, figure and caption
-    told: Sequence[str]
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    facts: dict[str, Any]  #: in SI, for ``--json``
-    best: Case | None = None  #: a case that the study made
 
 
 def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
@@ -42,26 +27,11 @@ def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tu
     return ready, target
 
 
-def finish(kind: str, case: Case, target: Path, found: Found, force: bool, json: bool) -> None:
+def finish(kind: str, case: Case, target: Path, found: Answer, force: bool, json: bool) -> None:
     """Write the directory of a study and tell what was found."""
-    from tribodyn.report import write_study_report
-    from tribodyn.stored import write_dataset
-    from tribodyn.study.pipeline.save import new_directory
+    from tribodyn.report.answers import save_answer
 
-    with new_directory(target, force=force) as place:
-        (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
-        if found.best is not None:
-            (place / "best.toml").write_text(found.best.to_toml(), encoding="utf-8")
-        write_dataset(found.data.to_xarray(), place / "study.nc")
-        write_study_report(
-            case,
-            place / "report.html",
-            kind=kind,
-            told=found.told,
-            figures=found.figures,
-            head=found.head,
-            rows=found.rows,
-        )
+    save_answer(kind, case, target, found, force)
     if json:
         say_json(found.facts)
     else:
@@ -96,34 +66,12 @@ def modes(
     json : bool
         Write the modes in SI as one JSON object to stdout.
     """
-    from tribodyn import plot
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.report.numbers import HEAD, cells
-    from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows, system_of_case
+    from tribodyn.report.answers import modes_answer
 
     ready, target = begun("modes", case, out, set_, force)
     with progress_bar() as progress:
-        from tribodyn.dynamics import natural_modes
-        from tribodyn.study.studies.axes import operation_values
-
-        ends = None if between is None else operation_values("speed", read_ends(between), ready)
-        system, mesh_frequency = system_of_case(ready, progress)
-    found = natural_modes(system)
-    diagram = diagram_of(system, ready, mesh_frequency, ends)
-    rows = mode_rows(found, ready, mesh_frequency)
-    figures = [
-        (each.heading, each(thing), each.caption_of(thing))
-        for each, thing in ((plot.mode_shapes, found), (plot.campbell, diagram))
-    ]
-    told = [
-        f"{diagram.plot().layout.title.text}; speeds are those of the {ready.operation.speed_of}."
-    ]
-    facts = {
-        "mesh_frequency": mesh_frequency,
-        "orders": list(ORDERS),
-        "modes": [vars(row) for row in rows],
-    }
-    answer = Found(found, figures, told, HEAD, [cells(row) for row in rows], facts)
+        answer = modes_answer(ready, None if between is None else read_ends(between), progress)
     finish("modes", ready, target, answer, force, json)
 
 
@@ -153,27 +101,10 @@ def harris(
     json : bool
         Write transmission errors and stiffness over the torque in SI to stdout.
     """
-    from tribodyn import plot
-    from tribodyn.study.studies.static import harris_map
+    from tribodyn.report.answers import harris_answer
 
     ready, target = begun("harris", case, out, set_, force)
-    found = harris_map(ready, list(torque) or None)
-    columns = {
-        "torque": found.torque,
-        "mean_transmission_error": found.mean_transmission_error,
-        "peak_to_peak_transmission_error": found.peak_to_peak_transmission_error,
-        "mean_mesh_stiffness_secant": found.mean_mesh_stiffness_secant,
-    }
-    rows = [
-        [f"{t:.4g}", f"{m * 1e6:.4g}", f"{p * 1e6:.4g}", f"{k * 1e-6:.4g}"]
-        for t, m, p, k in zip(*columns.values(), strict=True)
-    ]
-    head = ["Pinion torque [N*m]", "Mean error [um]", "Peak to peak [um]", "Stiffness [N/um]"]
-    figure = found.plot()
-    figures = [(plot.harris_map.heading, figure, plot.harris_map.caption_of(found))]
-    facts = {name: values.tolist() for name, values in columns.items()}
-    answer = Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
-    finish("harris", ready, target, answer, force, json)
+    finish("harris", ready, target, harris_answer(ready, list(torque) or None), force, json)
 
 
 def relief(
@@ -205,33 +136,10 @@ def relief(
     json : bool
         Write amount, length and transmission errors in SI to stdout.
     """
-    from tribodyn import plot
-    from tribodyn.study.studies.static import optimize_tip_relief
+    from tribodyn.report.answers import relief_answer
 
     ready, target = begun("relief", case, out, set_, force)
-    found = optimize_tip_relief(ready, list(torque) or None, gears=gears)
-    before, after = found.peak_to_peak_before, found.peak_to_peak_after
-    rows = [
-        [f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
-        for t, b, a in zip(found.torque, before, after, strict=True)
-    ]
-    head = ["Pinion torque [N*m]", "Peak to peak before [um]", "Peak to peak after [um]"]
-    told = [
-        f"A relief of {found.amount * 1e6:.3g} um over {found.length * 1e3:.4g} mm of roll "
-        f"length; best.toml is the case with it."
-    ]
-    if found.on_edge:
-        told.append("It lies at the edge of what was searched: a wider range may hold a better.")
-    figures = [(plot.tip_relief_map.heading, found.plot(), plot.tip_relief_map.caption_of(found))]
-    facts = {
-        "amount": found.amount,
-        "length": found.length,
-        "torque": found.torque.tolist(),
-        "peak_to_peak_before": before.tolist(),
-        "peak_to_peak_after": after.tolist(),
-        "on_edge": bool(found.on_edge),
-    }
-    answer = Found(found, figures, told, head, rows, facts, found.case)
+    answer = relief_answer(ready, list(torque) or None, gears)
     finish("relief", ready, target, answer, force, json)
 
 
@@ -268,25 +176,10 @@ def run_up(
     json : bool
         Write levels over the speed in SI to stdout.
     """
-    from tribodyn import plot
-    from tribodyn.analysis import overall_level
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.study.studies.run_up import run_up as compute
-    from tribodyn.units import convert
+    from tribodyn.report.answers import run_up_answer
 
     ready, target = begun("run-up", case, out, set_, force)
     with progress_bar() as progress:
-        found = compute(ready, read_ends(between), duration, down=down, progress=progress)
-    level = overall_level(found, "contact_force")
-    picked = range(0, level.rms.size, max(1, level.rms.size // _ROWS))
-    rpm = convert(1.0, "rad/s", "rpm") * level.speed
-    rows = [[f"{rpm[k]:.5g}", f"{level.rms[k]:.4g}"] for k in picked]
-    figure = found.plot()
-    figures = [
-        (each.heading, drawn, each.caption_of(found))
-        for each, drawn in ((plot.run_up, figure), (plot.run_up_map, plot.run_up_map(found)))
-    ]
-    facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
-    head = ["Speed [rpm]", "Mesh force, rms [N]"]
-    answer = Found(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
+        answer = run_up_answer(ready, read_ends(between), duration, down, progress)
     finish("run-up", ready, target, answer, force, json)

@@ -108,7 +108,14 @@ def _by_inlet(solution: SolvedContact, load: float) -> float:
 
 def approach_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Slope of the load over the approach of the bodies less Hertz's."""
-    return _stiffness(solution, film_slopes(solution).distance, length)
+    slope = film_slopes(solution).distance
+    if slope >= 0.0:
+        warn(
+            "film-stiffness",
+            f"The distance that the film keeps rises with the load by {slope:.3g} m per unit of "
+            f"ln(w), so that its stiffness is negative. {_reason(solution, 'secant')}",
+        )
+    return _stiffness(solution, slope, length)
 
 
 def tangent_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
@@ -118,7 +125,7 @@ def tangent_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
         warn(
             "film-stiffness",
             f"The central film rises with the load by {slope:.3g} m per unit of ln(w), so that "
-            f"its tangent stiffness is negative. {_reason(solution)}",
+            f"its tangent stiffness is negative. {_reason(solution, 'approach')}",
         )
     return _stiffness(solution, slope, length)
 
@@ -128,12 +135,13 @@ def _stiffness(solution: SolvedContact, slope: float, length: float) -> float:
     return -0.5 * np.pi * solution.hertz_pressure * solution.half_width * length / slope
 
 
-def _reason(solution: SolvedContact) -> str:
-    """Why a film rises with the load."""
+def _reason(solution: SolvedContact, other: str) -> str:
+    """Why a film rises with the load, and another kind of stiffness."""
     if solution.inlet == "flooded":
         return (
-            f"With M = {solution.moes_load:.3g} the contact turns from rigid to elastic: there the "
-            'film hardly depends on the load. Take kind = "approach", which has no pole there'
+            f"With M = {solution.moes_load:.3g} and L = {solution.moes_viscosity:.3g} the contact "
+            "turns from rigid to elastic: there the film hardly depends on the load, and counts "
+            f'as rigid among springs. Take kind = "{other}" there'
         )
     return (
         f"The inlet at X = {solution._grid.X[0]:.3g} starves it: take the flooded inlet or an "

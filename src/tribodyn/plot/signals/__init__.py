@@ -3,6 +3,7 @@
 ============  ===============================================================
 module        what it draws
 ============  ===============================================================
+``bands``     any figure of a run with the spread of variants on it
 ``learned``   spread motions with bands, learned over computed values
 ``maps``      spectrogram, order map, spectra one behind the other
 ``recorded``  channels of a recording, its orders, orders through time

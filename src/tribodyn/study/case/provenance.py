@@ -158,8 +158,7 @@ def settled(
     said = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
     kept = {key: value for key, value in marks.items() if key not in stale}
     if stated.base and case.origin in (None, stated.base.get("origin")):
-        recorded = {key: value for key, value in said.items() if key in stated.marks}
-        return Stated(kept, stated.base | recorded | stated.base), stale
+        return Stated(kept, stated.base | said | stated.base), stale
     base = {
         key: values[key]
         for key in given.typed
@@ -352,6 +351,11 @@ def default_of(case: Case, key: str) -> Any:
 
 def changed_keys(case: Case) -> tuple[str, ...]:
     """Keys whose values differ from those that the case began with."""
+    return case._changed
+
+
+def keys_that_changed(case: Case) -> tuple[str, ...]:
+    """The same, found anew."""
     values, base, given = effective(case), case.stated.base, case.given
     if any(values.get(key) is None for key in base):
         derived = derived_values(case)

@@ -195,8 +195,8 @@ normal_pressure_angle, driver, pinion, wheel.
     return Case(Source(name or "case", partial(key_lines, text)), **data)
 
 
-def _place_files(data: dict[str, Any], folder: Path) -> None:
-    """Let the paths of a case begin at its own folder."""
+def file_keys() -> list[str]:
+    """Dotted keys of a case that name files."""
     files = [key for key, option in options_of(Case, "") if option.kind == "file"]
     for table, field in Case.fields.items():
         known = field.kind.known().keys if isinstance(field, Table) else {}
@@ -205,6 +205,21 @@ def _place_files(data: dict[str, Any], folder: Path) -> None:
             for name, option in known.items()
             if isinstance(option, Option) and option.kind == "file"
         ]
+    return files
+
+
+def named_files(text: str, name: str = "") -> list[tuple[str, str]]:
+    """Files that the text of a case names, by dotted key, before any of them is opened."""
+    data = parse_toml(text, name)
+    places = [key.split(".") for key in file_keys()]
+    places += [["assumed", ".".join(place), "value"] for place in places]
+    found = [(".".join(place), _at(data, *place)) for place in places]
+    return [(key, value) for key, value in found if isinstance(value, str)]
+
+
+def _place_files(data: dict[str, Any], folder: Path) -> None:
+    """Let the paths of a case begin at its own folder."""
+    files = file_keys()
     marks = [("assumed", key, "value") for key in files]
     for *tables, name in [key.split(".") for key in files] + marks:
         table = _at(data, *tables)

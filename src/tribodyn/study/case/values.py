@@ -108,12 +108,21 @@ def _grouped(spec: Option, name: str, value: str) -> FaultError | None:
     return FaultError(f"{name} = {written(value)}", why, f"Write {' or '.join(shown)}")
 
 
+#: A plain decimal number.
+_PLAIN = r"\d{1,9}(?:\.\d{0,9})?"
+
+
 def _misread(spec: Option, name: str, value: str, told: str) -> FaultError:
     """Say why text is no quantity of the field, and what to write."""
     reason, lacks_unit, _ = told.partition("; write for example")
     remedy = f"Write for example {spec.example}"
     if lacks_unit:
         remedy = f'Write for example {name} = "{value.strip()} {spec.display_unit}"'
+    elif spec.unit == "K" and (degrees := re.fullmatch(rf"\s*(-?{_PLAIN})\s*([CF])\s*", value)):
+        remedy = f'Write {name} = "{degrees[1]} deg{degrees[2]}"'
+    elif spec.unit == "m" and (pitch := re.fullmatch(rf"\s*({_PLAIN})\s*1/in(ch)?\s*", value)):
+        module = 25.4 / max(float(pitch[1]), 1e-9)
+        remedy = f'If that is a diametral pitch, write the module, "{module:.6g} mm"'
     elif spec.unit == "rad/s":
         turns = re.fullmatch(r"\s*([\d.]+)\s*Hz\s*", value)
         remedy = 'Write a rotational speed in rpm, for example "900 rpm"'
@@ -137,7 +146,11 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
         if grouped := _grouped(spec, name, value):
             raise grouped
         if not spec.unit:
-            raise FaultError(shown, f"{name} is a pure number, not text", "Write it without quotes")
+            share = re.fullmatch(rf"\s*({_PLAIN})\s*%\s*", value)
+            remedy = "Write it without quotes"
+            if share:
+                remedy = f"Write {name} = {float(share[1]) / 100.0:g}"
+            raise FaultError(shown, f"{name} is a pure number, not text", remedy)
         try:
             return units.parse(value, spec.unit)
         except units.UnitProblemError as error:
@@ -175,7 +188,9 @@ def _whole(spec: Option, name: str, value: Any) -> int:
             raise TypeError
         whole = operator.index(value)
     except TypeError:
-        remedy = f"Write for example {name} = {spec.example}"
+        meant = re.fullmatch(r"(\d{1,9})(\.0*)?", str(value).strip())
+        remedy = f"Write {name} = {int(meant[1])}" if meant else ""
+        remedy = remedy or f"Write for example {name} = {spec.example}"
         raise FaultError(
             f"{name} = {written(value)}", f"{name} must be a whole number", remedy
         ) from None
@@ -410,7 +425,8 @@ def unknown(path: tuple[str, ...], value: Any) -> Problem:
     if remedy := _of_one_gear(name, section):
         return Problem(told, "", why, remedy)
     if homes := _homes(name):
-        return Problem(told, "", why, f"It belongs to {' or '.join(homes)}")
+        inside = [home for home in homes if home.startswith(f"{place[:-1]}.")]
+        return Problem(told, "", why, f"It belongs to {' or '.join(inside or homes)}")
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
     return Problem(told, "", why, f'Did you mean "{near[0]}"?' if near else "Remove it")
 

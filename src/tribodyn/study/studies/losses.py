@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 #: Torques and speeds of a map over those of the case, which is one of them.
-_STEPS = np.linspace(0.25, 2.0, 8)
+STEPS = np.linspace(0.25, 2.0, 8)
 
 
 def loss_map(
@@ -64,8 +64,8 @@ def loss_map(
     [[0.9889], [0.9841]]
     """
     torques, speeds = pinion_torques(case, torque), pinion_speeds(case, speed)
-    torques = torques if torque is not None else list(_STEPS * torques[0])
-    speeds = speeds if speed is not None else list(_STEPS * speeds[0])
+    torques = torques if torque is not None else list(STEPS * torques[0])
+    speeds = speeds if speed is not None else list(STEPS * speeds[0])
     turns = case.gear_ratio if case.operation.speed_of == "wheel" else 1.0
     heard: list[ModelWarning] = []
     progress.start("Tooth contact", len(torques) * len(speeds))

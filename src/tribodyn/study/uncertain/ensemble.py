@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, InputError, Problem, require_one_of
+from tribodyn.drawing import draw as drawn
+from tribodyn.drawing import figures_of
+from tribodyn.errors import Argument, InputError, Problem, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
@@ -18,9 +21,10 @@ from tribodyn.uncertainty import Band, bootstrap_band
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.pipeline.result import Result
 
-#: Places of a mesh cycle.
-_PLACES = 256
+#: Places of a mesh cycle, and most variants whose whole results are computed.
+_PLACES, _WHOLE = 256, 32
 
 
 @record
@@ -47,6 +51,8 @@ class CaseEnsemble(Record):
         Of the sample, and of the bands.
     title : str
         Title of the case.
+    case : Case, optional
+        The case whose inputs are spread.
     """
 
     input: Any = quantity("input", axis=True, unit="", name="input")
@@ -58,6 +64,65 @@ class CaseEnsemble(Record):
     acceleration: Array = quantity("variant", "phase", unit="m/s^2")
     seed: int = fact()
     title: str = fact()
+    case: Case | None = None
+
+    @cached_property
+    def results(self) -> tuple[Result, ...]:
+        """Whole results: of the middle of all inputs, and of up to 32 variants evenly among all.
+
+        Raises
+        ------
+        InputError
+            If an input is a factor and no key of a case, so that its variants are no cases.
+        """
+        from tribodyn.study.pipeline.run import computed
+        from tribodyn.study.studies.grid import over_cases
+
+        keys = [str(key) for key in self.input]
+        factors = [key for key in keys if "." not in key]
+        if self.case is None or factors:
+            why = f"{', '.join(factors) or 'It'}: of no case"
+            raise InputError(Problem("no whole results of this ensemble", "", why, "Spread keys"))
+        count = len(self.value)
+        chosen = np.unique(np.linspace(0, count - 1, min(count, _WHOLE)).round().astype(int))
+        rows = [np.median(self.value, axis=0), *self.value[chosen]]
+        cases = [self.case.replace(dict(zip(keys, map(float, row), strict=True))) for row in rows]
+        found: dict[int, Result] = {}
+        with quiet():
+            over_cases(computed, cases, found)
+        return tuple(found[number] for number in range(len(cases)))
+
+    def plot(self, name: str = "", *arguments: Any, **options: Any) -> Any:
+        """Draw the spread of the motion, or any figure of a run with bands of the variants.
+
+        Parameters
+        ----------
+        name : str
+            Figure of a run, such as ``"mesh_stiffness"``; empty: force, transmission error and
+            spectrum of all variants.
+        *arguments, **options
+            Of that figure.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        own = not name or name in figures_of(self)
+        if not own:
+            return drawn(self, "bands", name)
+        return drawn(self, name or "ensemble", *arguments, **options)
+
+    def figures(self) -> dict[str, Array]:
+        """Figures of the summary of every whole result, in SI.
+
+        Returns
+        -------
+        dict of str to (n,) array
+            First that of the middle of all inputs, then those of the variants.
+        """
+        each = [result.summary() for result in self.results]
+        shared = [name for name in each[0] if all(name in other for other in each)]
+        return {name: np.array([figures[name] for figures in each]) for name in shared}
 
     def spectrum(self, signal: str = "mesh_force", harmonics: int = 10) -> Array:
         """Amplitudes of the mesh harmonics of every variant.
@@ -233,4 +298,5 @@ def ensemble(
         acceleration=signals.signals["acceleration"],
         seed=int(seed),
         title=case.title,
+        case=case,
     )

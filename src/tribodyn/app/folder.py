@@ -1,0 +1,111 @@
+"""The folder that the page was started in: it reads and writes there, and nowhere else."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribodyn.errors import InputError, OutputExistsError
+from tribodyn.study.case.read import named_files, read_case, read_text
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+#: Characters of a name, case files that are listed, and how deep they are looked for.
+_LONGEST, _LISTED, _DEEP = 120, 200, 3
+#: One part of a name: nothing hidden, no drive, no stream, nothing that shells or browsers read.
+_PART = re.compile(r"[^\W_][\w .+,()=@-]*", re.UNICODE)
+
+
+class Folder:
+    """A folder and all that lies in it."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root.resolve()
+
+    def inside(self, name: str, suffix: str = "") -> Path:
+        """The place of a name such as ``gears/my.toml``; one beyond the folder is refused."""
+        text = name.strip()
+        if suffix and text and not text.endswith(suffix):
+            text += suffix
+        parts = text.split("/")
+        plain = all(_PART.fullmatch(p) and not p.endswith((".", " ")) for p in parts)
+        if not plain or len(text) > _LONGEST:
+            why = "It is letters, digits, spaces, points and dashes, folders parted by /"
+            raise InputError(f'"{name}" is no name of a file here', "", why, "Write my-gears")
+        place = (self.root / text).resolve()
+        if not place.is_relative_to(self.root) or place == self.root:
+            raise self._beyond(name)
+        return place
+
+    def _beyond(self, name: str) -> InputError:
+        why = f"The page was started in {self.root.name} and stays there"
+        return InputError(f'"{name}" lies outside of the folder', "", why, "Copy it there")
+
+    def shown(self, place: Path | str) -> str:
+        """A place as it is called within the folder."""
+        return str(place).replace(f"{self.root}/", "")
+
+    def cases(self) -> list[str]:
+        """Case files in the folder, the nearest first."""
+        found: list[str] = []
+        levels = [self.root]
+        for _ in range(_DEEP):
+            inner: list[Path] = []
+            for folder in levels:
+                entries = sorted(folder.iterdir()) if folder.is_dir() else []
+                inner += [e for e in entries if e.is_dir() and not e.is_symlink()]
+                found += [self.shown(e) for e in entries if e.suffix == ".toml" and self._ours(e)]
+            levels = [folder for folder in inner if _PART.fullmatch(folder.name)]
+            if len(found) >= _LISTED:
+                break
+        return found[:_LISTED]
+
+    def _ours(self, place: Path) -> bool:
+        try:
+            return self.inside(self.shown(place)).is_file()
+        except InputError:
+            return False
+
+    def load(self, name: str) -> Case:
+        """Read a case file; what it names besides has to lie in the folder too."""
+        place = self.inside(name, ".toml")
+        if not place.is_file():
+            raise InputError(f'there is no file "{name}"', "", "", "Choose one from the list")
+        return self.read(read_text(place), place)
+
+    def read(self, text: str, place: Path) -> Case:
+        """Check the text of a case that belongs into a place of the folder."""
+        for _, named in named_files(text, self.shown(place)):
+            if not (place.parent / named).resolve().is_relative_to(self.root):
+                raise self._beyond(named)
+        return read_case(text, str(place))
+
+    def save_case(self, case: Case, name: str, force: bool = False) -> Path:
+        """Write a case file; an existing one is replaced only where that is asked for."""
+        from tribodyn.study.pipeline.save import write_file
+
+        place = self.inside(name, ".toml")
+        if place.exists() and (place.is_dir() or not force):
+            remedy = "Choose another name, or save once more to replace it"
+            raise OutputExistsError(f'"{self.shown(place)}" exists already', "", "", remedy)
+        self._parent(place)
+        write_file(place, case.to_toml())
+        return place
+
+    def save_result(self, made: Path, name: str) -> Path:
+        """Copy a directory of results to a new place."""
+        from tribodyn.study.pipeline.save import new_directory
+
+        place = self.inside(name)
+        self._parent(place)
+        with new_directory(place) as new:
+            shutil.copytree(made, new, dirs_exist_ok=True)
+        return place
+
+    def _parent(self, place: Path) -> None:
+        if not place.parent.is_dir():
+            shown = self.shown(place.parent)
+            raise InputError(f'there is no folder "{shown}"', "", "", "Create it, or leave it out")

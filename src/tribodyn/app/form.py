@@ -1,0 +1,246 @@
+"""Fields of a case file as data: made of the options of the models, as ``explain`` is."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+from tribodyn.model import Option
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.checks import DEFAULT_MARK, case_options
+from tribodyn.study.case.gears import is_idle
+from tribodyn.study.case.provenance import derived_values, effective, provenance
+from tribodyn.study.case.reference import choice_meanings, explanations, start_toml
+from tribodyn.study.case.section import Section, Table
+from tribodyn.study.pipeline.citations import sources_of
+from tribodyn.units import UnitProblemError, convert, split, usual_units
+
+#: What a user has typed and no case holds yet: text by key.
+Typed = Mapping[str, str]
+
+#: Greek letters of symbols.
+_GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ",
+    "eta": "η", "theta": "θ", "lambda": "λ", "Lambda": "Λ", "mu": "µ", "nu": "ν", "rho": "ρ",
+    "sigma": "σ", "tau": "τ", "phi": "φ", "omega": "ω", "Delta": "Δ",
+}  # fmt: skip
+_TITLES = {"dynamics": "Structure", "operation": "Speed and load"}
+#: Tables that stand open at first.
+_OPEN = ("gears", "lubricant", "operation")
+
+
+def words(key: str) -> str:
+    """The last part of a key as words."""
+    text = key.rpartition(".")[2].replace("_", " ")
+    return text[:1].upper() + text[1:]
+
+
+def symbol(text: str) -> list[str]:
+    """A symbol as it is printed: its letter, and its index."""
+    head, _, index = text.partition("_")
+    return [_GREEK.get(head, head), " ".join(_GREEK.get(p, p) for p in index.split("_"))]
+
+
+@lru_cache(maxsize=1)
+def essential() -> frozenset[str]:
+    """Keys of the short case file to start from."""
+
+    def walk(table: Mapping[str, Any], prefix: str) -> Iterator[str]:
+        for name, value in table.items():
+            if isinstance(value, Mapping):
+                yield from walk(value, f"{prefix}{name}.")
+            else:
+                yield f"{prefix}{name}"
+
+    # What has an inner table is a table, and the two ways to give a roughness are one.
+    return frozenset({*walk(tomllib.loads(start_toml()), ""), "gears.center_distance"})
+
+
+def field_of(
+    key: str, option: Option, text: str = "", default: Any = None, unit: str = ""
+) -> dict[str, Any]:
+    """One value as the page shows it: ``text`` as typed, ``default`` in SI where it is empty."""
+    units = usual_units(option.unit) if option.unit else []
+    if option.display_unit and option.display_unit not in units:
+        units.append(option.display_unit)
+    chosen = unit or option.display_unit
+    if option.kind == "number" and text:
+        text, chosen = _parted(text, option, unit)
+        units += [] if chosen in units or not option.unit else [chosen]
+    return {
+        "key": key,
+        "label": words(key),
+        "symbol": symbol(option.symbol) if option.symbol else [],
+        "kind": "choice" if option.names or option.kind == "flag" else option.kind,
+        "value": text,
+        "unit": chosen if option.kind == "number" else "",
+        "units": units if option.kind == "number" else [],
+        "names": _names(option, default),
+        "placeholder": _placeholder(option, default, chosen),
+        "required": option.required,
+        "help": _help(key, option),
+    }
+
+
+def _parted(text: str, option: Option, unit: str) -> tuple[str, str]:
+    """Number and unit of a text; the whole text where it is no plain quantity."""
+    try:
+        number, written = split(text)
+        if not written or not option.unit:
+            return text, unit or option.display_unit
+        if unit and unit != written:
+            value = convert(number, written, unit)
+            return f"{value:.10g}", unit
+    except UnitProblemError:
+        return text, unit or option.display_unit
+    return text[: len(text) - len(written)].strip(), written
+
+
+def _names(option: Option, default: Any) -> list[list[str]]:
+    """Values of a choice with what they mean; the empty one is the default."""
+    if option.kind == "flag":
+        known = {"true": "yes", "false": "no"}
+        shown = {None: "not given", True: "yes", False: "no"}[default]
+    elif option.names is not None:
+        known = {name: name for name in option.names()}
+        shown = "not given" if default is None else str(default)
+    else:
+        return []
+    first = (
+        [] if option.required else [["", f"{shown} (default)" if default is not None else shown]]
+    )
+    return [*first, *([name, text] for name, text in known.items())]
+
+
+def _placeholder(option: Option, default: Any, unit: str) -> str:
+    if option.required:
+        return "needed"
+    if isinstance(default, int | float) and not isinstance(default, bool) and option.unit:
+        return f"{convert(float(default), option.unit, unit):.6g}"
+    if default is not None:
+        return option.show(default)
+    return f"from {option.basis}" if option.basis else "not given"
+
+
+def _help(key: str, option: Option) -> str:
+    """Meaning, range with its origin, and equation."""
+    equations = explanations()["equations"]
+    limits = ""
+    if option.names is None and option.kind in ("number", "numbers", "integer"):
+        limits = f"Allowed: {option.allowed()}" + (f" ({option.origin})" if option.origin else "")
+    basis = f"Where it is left empty: from {option.basis}" if option.basis else ""
+    found = equations.get(key, equations.get(key.rpartition(".")[2], ""))
+    parts = (option.meaning[:1].upper() + option.meaning[1:], limits, basis, found)
+    return ". ".join(part for part in parts if part)
+
+
+class CaseForm:
+    """The form of a case, with what was typed since and is not in it yet."""
+
+    def __init__(self, case: Case, typed: Typed, units: Mapping[str, str]) -> None:
+        self.case, self.typed, self.units = case, typed, units
+        self._effective, self._derived = effective(case), derived_values(case)
+        self._origins = provenance(case)
+
+    def groups(self) -> list[dict[str, Any]]:
+        """All tables with their fields: those that are needed first, the others folded."""
+        found = [self._group("", Case, "Case", "")]
+        for name, table in Case.fields.items():
+            if isinstance(table, Table) and self._is_used(name):
+                found.append(self._group(name, table.kind, words(name), table.meaning))
+        return found
+
+    def options(self) -> dict[str, Option]:
+        """All options that the case may give, by key."""
+        found: dict[str, Option] = {}
+        pending: list[tuple[str, type[Section]]] = [("", Case)]
+        for prefix, section in pending:
+            for name, option in self._options(prefix, section):
+                found[name] = option
+            for name, table in section.fields.items():
+                if isinstance(table, Table) and self._is_used(f"{prefix}{name}"):
+                    pending.append((f"{prefix}{name}.", table.kind))
+        return found
+
+    def _idle(self, key: str) -> bool:
+        return is_idle(key, self._chosen("gears.kind"))
+
+    def _is_used(self, table: str) -> bool:
+        """Whether a table says something; of those of gears their keys tell."""
+        return table.startswith("gears") or not self._idle(table)
+
+    def _chosen(self, key: str) -> Any:
+        return self.typed.get(key) or self._effective.get(key)
+
+    def _options(self, prefix: str, section: type[Section]) -> Iterator[tuple[str, Option]]:
+        """Own options of a table, and those of the model that it names."""
+        known = {name: o for name, o in section.fields.items() if isinstance(o, Option)}
+        if section.selector:
+            named = self._chosen(f"{prefix}{section.selector}")
+            known |= case_options(prefix.removesuffix("."), named)
+        for name, option in known.items():
+            if not self._idle(f"{prefix}{name}"):
+                yield f"{prefix}{name}", option
+
+    def _group(self, key: str, section: type[Section], title: str, meaning: str) -> dict[str, Any]:
+        prefix = f"{key}." if key else ""
+        fields = [(name, self._field(name, o)) for name, o in self._options(prefix, section)]
+        chosen = f"{prefix}{section.selector}" if section.selector else ""
+        given = [name for name, field in fields if field["value"]]
+        first = {*essential(), *given, chosen, *(n for n, f in fields if f["required"])}
+        inner = [
+            self._group(f"{key}.{name}", table.kind, words(name), table.meaning)
+            for name, table in section.fields.items()
+            if isinstance(table, Table) and key
+        ]
+        return {
+            "key": key or "case",
+            "title": _TITLES.get(key, title),
+            "meaning": meaning,
+            "note": str(self._chosen(chosen)) if chosen else "",
+            "open": key.partition(".")[0] in _OPEN and not key.endswith("modification"),
+            "fields": [field for name, field in fields if name in first],
+            "more": [field for name, field in fields if name not in first],
+            "groups": [
+                group for group in inner if group["fields"] or group["more"] or group["groups"]
+            ],
+        }
+
+    def _field(self, key: str, option: Option) -> dict[str, Any]:
+        default = self._effective.get(key)
+        default = self._derived.get(key) if default is None else default
+        unit = self.units.get(key, "")
+        field = field_of(key, option, self._text(key), default, unit)
+        if key in self.typed and option.kind == "number":
+            field["value"], field["unit"] = self._as_typed(key, unit or field["unit"])
+        if field["kind"] == "choice":
+            field["help"] = ". ".join(filter(None, (field["help"], self._choice_help(key))))
+        return field
+
+    def _as_typed(self, key: str, unit: str) -> tuple[str, str]:
+        """What was typed, as it was typed, beside the unit that was chosen."""
+        text = self.typed[key]
+        return (text.removesuffix(unit).strip() if unit else text), unit
+
+    def _text(self, key: str) -> str:
+        """Value as text: typed, or as the case file has it; empty where it has a default."""
+        if key in self.typed:
+            return self.typed[key]
+        value = self.case.uncertain.get(key, self.case.given.get(key))
+        if value is None or isinstance(value, Mapping) or self._origins.get(key) == DEFAULT_MARK:
+            return ""
+        if isinstance(value, bool):
+            return str(value).lower()
+        if isinstance(value, list | tuple):
+            return ", ".join(str(item) for item in value)
+        return f"{value:.12g}" if isinstance(value, float) else str(value)
+
+    def _choice_help(self, key: str) -> str:
+        """What the chosen name means, and who published it."""
+        name = str(self._chosen(key))
+        sources = sources_of(key.partition(".")[0], name)
+        return " ".join(
+            filter(None, (f"{name}: {choice_meanings().get(name, '')}".rstrip(": "), *sources))
+        )

@@ -1,0 +1,323 @@
+"""How the case and what was computed stand on the page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from dash import dcc, html
+
+from tribodyn.app.desk import RUNS, Desk
+from tribodyn.app.studies import STUDIES
+from tribodyn.errors import InputError, TribodynError, collected
+from tribodyn.report.blocks import drawn_block, topic_of
+
+if TYPE_CHECKING:
+    from tribodyn.app.jobs import Job
+    from tribodyn.study.case.case import Case
+
+#: Figures of the geometry that stand first.
+_FIRST = (
+    "transverse_contact_ratio",
+    "center_distance",
+    "operating_pressure_angle",
+    "backlash",
+    "pitch_line_velocity",
+    "line_load",
+    "oil_viscosity",
+    "gear_loss_factor",
+)
+_CONFIG = {
+    "displaylogo": False,
+    "responsive": True,
+    "showSendToCloud": False,
+    "plotlyServerURL": "",
+    "modeBarButtons": [["toImage"], ["zoom2d", "pan2d"], ["resetScale2d"]],
+    "toImageButtonOptions": {"format": "svg"},
+}
+_STATES = {"done": "done", "failed": "failed", "stopped": "stopped", "waiting": "waiting"}
+
+
+def button(text: Any, do: str, of: str = "", **more: Any) -> html.Button:
+    """A button that says what it does; ``more`` are attributes with underscores for dashes."""
+    data = {name.replace("_", "-"): value for name, value in more.items() if "_" in name}
+    plain = {name: value for name, value in more.items() if "_" not in name}
+    return html.Button(text, type="button", **{"data-do": do, "data-of": of, **data}, **plain)
+
+
+def graph(name: str, figure: dict[str, Any], title: str) -> html.Div:
+    """A figure, for eyes and for screen readers."""
+    height = figure["layout"].get("height", 420)
+    drawn = dcc.Graph(figure=figure, config=_CONFIG, id=name, style={"height": f"{height}px"})
+    return html.Div(drawn, className="figure", role="group", **{"aria-label": title})
+
+
+def table(head: list[str], rows: list[list[str]]) -> html.Div:
+    """A table that may be wider than the page."""
+    cells = [html.Tr([html.Td(cell) for cell in row]) for row in rows]
+    top = html.Thead(html.Tr([html.Th(text, **{"aria-label": text or "key"}) for text in head]))
+    return html.Div(html.Table([top, html.Tbody(cells)]), className="scroll", tabIndex="0")
+
+
+def cards(rows: list[list[str]]) -> html.Div:
+    """The figures that everybody asks for first."""
+    return html.Div(
+        [
+            html.Div(
+                [html.P(words, className="name"), html.P([shown, " ", html.Span(unit)])],
+                className="card",
+            )
+            for words, shown, unit in rows
+        ],
+        className="cards",
+    )
+
+
+def notice(heading: str, lines: list[str]) -> list[Any]:
+    """Sentences that are to be seen; nothing where there are none."""
+    if not lines:
+        return []
+    items = html.Ul([html.Li(line) for line in lines])
+    return [html.Div([html.H3(heading), items], className="notice")]
+
+
+def rail(desk: Desk) -> list[Any]:
+    """What can be looked at, one tab each, and the runs that are kept."""
+    views = [("pair", "Gear pair"), ("files", "Open and save"), ("studies", "Studies")]
+    tabs = [_tab(desk, view, text) for view, text in views]
+    for job in desk.jobs_here():
+        tabs.append(_tab(desk, f"job-{job.number}", [job.title, _mark(job)]))
+    parts = [html.Div(tabs, role="tablist", className="tabs", **{"aria-label": "Views"})]
+    return [*parts, _runs(desk)] if desk.runs else parts
+
+
+def _tab(desk: Desk, view: str, text: Any) -> html.Button:
+    here = desk.view == view
+    more = {"aria_selected": str(here).lower(), "aria_controls": "bench"}
+    return button(text, "view", view, role="tab", id=f"tab-{view}", **more)
+
+
+def _mark(job: Job) -> html.Span:
+    text = _STATES.get(job.state, "running")
+    return html.Span(text, className=f"state {text}")
+
+
+def _runs(desk: Desk) -> html.Div:
+    """The runs side by side: what differs, and which are laid over each other."""
+    rows = []
+    for job in desk.runs:
+        picked = job.number in desk.picked
+        told = ", ".join(desk.changes(job)) or ("as the first" if job is not desk.runs[0] else "")
+        more = {"aria_pressed": str(picked).lower(), "aria_label": f"Overlay {job.title}"}
+        pick = button("✓" if picked else "+", "pick", str(job.number), **more, className="pick")
+        rows.append(html.Li([pick, html.Strong(job.title), " ", html.Span(told)]))
+    ready = len(desk.picked) > 1
+    over = button("Lay over each other", "overlay", className="plain", disabled=not ready)
+    text = f"{len(desk.runs)} of {RUNS} runs are kept; pick two or more with +."
+    return html.Div([html.Ul(rows), html.P([over, " ", html.Span(text)])], className="runs")
+
+
+def pair(desk: Desk) -> list[Any]:
+    """Drawing and figures of the case as it stands."""
+    from tribodyn.report.numbers import describe
+    from tribodyn.study.pipeline.assembly import geometry
+    from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.first_look import operating_figures
+
+    case = desk.case
+    with collected():
+        found = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
+        told = [str(caution) for caution in case_cautions(case)]
+    numbers = [describe(name, value) for name, value in found.items()]
+    first = [describe(name, found[name], digits=4) for name in _FIRST if name in found]
+    rows = [[n.words, f"{n.shown} {n.unit}".strip(), n.meaning] for n in numbers]
+    every = [html.Summary(f"All derived values ({len(rows)})")]
+    every.append(table(["Quantity", "Value", "Meaning"], rows))
+    return [
+        cards([[n.words, n.shown, n.unit] for n in first]),
+        *notice("Take care", told),
+        *_drawing(case),
+        html.Details(every, className="block"),
+    ]
+
+
+def _drawing(case: Case) -> list[Any]:
+    from tribodyn import plot
+
+    figure = plot.hypoid_pair if case.gears.kind == "hypoid" else plot.gear_pair
+    try:
+        subject = case.hypoid_flanks if case.gears.kind == "hypoid" else case.gear_pair
+        drawn = figure(subject)
+    except InputError as error:
+        return [html.Div(html.P(error.problems[0].what), className="block")]
+    block = drawn_block(figure.name, figure.heading, drawn, figure.caption_of(subject))
+    return [_block(block.__dict__, f"pair-{figure.name}", drawn.to_plotly_json())]
+
+
+def _block(block: Any, name: str, figure: Any) -> html.Section:
+    inner: list[Any] = [html.H3(block["heading"])]
+    if block["missing"]:
+        inner.append(html.P(block["missing"], className="missing"))
+    else:
+        title = block["title"] or block["heading"]
+        inner += [html.P(block["title"], className="answer"), graph(name, figure, title)]
+        inner.append(html.P(block["caption"], className="caption"))
+    return html.Section(inner, className="block", id=f"block-{name}")
+
+
+def result(desk: Desk, job: Job) -> list[Any]:
+    """A job: how far it is, why it failed, or what came of it."""
+    if job.state in ("waiting", "running"):
+        return [_progress(job)]
+    if job.state != "done":
+        lines = job.problems or ["It was stopped."]
+        return notice(f"{job.title} {job.state}", lines)
+    topics = _topics(job.shown)
+    topic = desk.topic if desk.topic in topics else next(iter(topics))
+    tabs = [_topic_tab(name, topic) for name in topics]
+    head = _overview(job.shown) if topic == next(iter(topics)) else []
+    return [
+        html.Div(tabs, role="tablist", className="tabs topics", **{"aria-label": "Results"}),
+        html.Div([*head, *(_part(job, each) for each in topics[topic])], role="tabpanel"),
+    ]
+
+
+def _topic_tab(name: str, chosen: str) -> html.Button:
+    return button(name, "topic", name, role="tab", aria_selected=str(name == chosen).lower())
+
+
+def _overview(shown: dict[str, Any]) -> list[Any]:
+    """What is read first."""
+    return [
+        *([cards(shown["cards"])] if shown.get("cards") else []),
+        *notice("What it says", shown.get("told", [])),
+        *notice("Warnings", shown.get("warnings", [])),
+    ]
+
+
+def _topics(shown: dict[str, Any]) -> dict[str, list[Any]]:
+    """What is read first, figures by what they are about, and the tables."""
+    drawn = [block for block in shown.get("blocks", []) if not block["missing"]]
+    first = [block for block in drawn if block["name"] == "mesh_force"]
+    found: dict[str, list[Any]] = {"Overview": first or drawn}
+    for block in shown.get("blocks", []) if first else []:
+        found.setdefault(topic_of(block["name"]), []).append(block)
+    for heading, head, rows in shown.get("tables", []):
+        found[heading] = [{"heading": heading, "head": head, "rows": rows}]
+    return found
+
+
+def _part(job: Job, part: dict[str, Any]) -> html.Section:
+    if "rows" in part:
+        inner = [html.H3(part["heading"]), table(part["head"], part["rows"])]
+        return html.Section(inner, className="block")
+    figure = None if part["missing"] else job.figure(part["name"])
+    return _block(part, f"job-{job.number}-{part['name']}", figure)
+
+
+def _progress(job: Job) -> html.Div:
+    known = job.total is not None and job.total > 0
+    text = job.task or ("Waiting for a free place" if job.state == "waiting" else "Beginning")
+    count = f"{min(job.done, job.total or 0)} of {job.total}" if known else ""
+    bar = {"value": str(job.done), "max": str(job.total)} if known else {}
+    line = [html.Strong(text), " ", html.Span(count), " ", html.Span(f"{job.seconds} s")]
+    return html.Div(
+        [
+            html.P(line),
+            html.Progress(**bar, **{"aria-label": f"{job.title}: {text}"}),
+            html.P(button("Stop", "stop", str(job.number), id="stop")),
+        ],
+        className="block progress",
+    )
+
+
+def tools(desk: Desk) -> list[Any]:
+    """What can be done with the job that is looked at."""
+    job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
+    if job is None or not job.ended:
+        return []
+    number, parts = str(job.number), []
+    if job.saved:
+        label = html.Label("Save the files of it as folder", htmlFor="result-name")
+        field = dcc.Input(
+            id="result-name", value=_folder_name(desk, job), type="text", autoComplete="off"
+        )
+        more = {"data_from": "result-name", "className": "plain"}
+        parts += [label, field, button("Save files", "save-job", number, **more)]
+        parts.append(html.A("Report", href=f"report/{number}", target="_blank"))
+    elif job.state == "done" and job.kind != "overlay":
+        parts.append(html.Span("The files are being written …"))
+    if job.kind == "run":
+        parts.append(button("Edit its case", "case-of", number, className="plain"))
+    parts.append(button(f"Remove {job.title}", "remove", number, className="plain"))
+    return [html.Div(parts, className="tools")]
+
+
+def _folder_name(desk: Desk, job: Job) -> str:
+    stem = desk.name.removesuffix(".toml") or "my-gears"
+    return f"{stem}-{job.title.lower().replace(' ', '-')}"
+
+
+def files(desk: Desk) -> list[Any]:
+    """Cases that can be opened, and where to save this one."""
+    from tribodyn.cases.catalogue import cases
+
+    here = desk.folder.cases()
+    own = [html.Li(button(name, "open", f"file:{name}", className="link")) for name in here]
+    built = [
+        html.Li([button(name, "open", f"case:{name}", className="link"), " ", html.Span(title)])
+        for name, title in cases().items()
+    ]
+    name = dcc.Input(id="case-name", value=desk.name or "my-gears.toml", autoComplete="off")
+    write = button("Save", "save", id="save", data_from="case-name")
+    over = button("Replace", "replace", data_from="case-name", className="plain")
+    empty = html.P(f"There is no case file in {desk.folder.root.name} yet.", className="missing")
+    return [
+        html.Section(
+            [
+                html.H3("Save this case"),
+                html.P([html.Label("File", htmlFor="case-name"), " ", name, " ", write, " ", over]),
+                html.P(f"In the folder {desk.folder.root}", className="caption"),
+            ],
+            className="block tools",
+        ),
+        html.Section([html.H3("Open a case of the folder"), html.Ul(own) if own else empty],
+                     className="block"),
+        html.Section([html.H3("Built-in cases"), html.Ul(built)], className="block"),
+        html.Section(
+            [
+                html.H3("Begin anew"),
+                html.P(button("A short case to fill in", "open", "new:", className="plain")),
+            ],
+            className="block",
+        ),
+    ]  # fmt: skip
+
+
+def studies(desk: Desk) -> list[Any]:
+    """Kinds of studies, and the values of the one that is chosen."""
+    kinds = [
+        html.Li(
+            [
+                button(study.title, "study", kind, aria_pressed=str(kind == desk.study).lower()),
+                html.Span(study.meaning),
+            ]
+        )
+        for kind, study in STUDIES.items()
+    ]
+    parts: list[Any] = [html.Section([html.H3("Studies"), html.Ul(kinds)], className="block kinds")]
+    if desk.study:
+        start = button(f"Start: {STUDIES[desk.study].title}", "start", id="start", className="main")
+        form = [html.Div(id="study-form"), html.P(start)]
+        parts.append(html.Section(form, className="block", **{"aria-label": "Values of the study"}))
+    return parts
+
+
+def bench(desk: Desk) -> list[Any]:
+    """What is looked at; a case that cannot be drawn says why."""
+    if desk.view in ("files", "studies"):
+        return files(desk) if desk.view == "files" else studies(desk)
+    job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
+    try:
+        return pair(desk) if job is None else result(desk, job)
+    except TribodynError as error:
+        return notice("This cannot be shown", [str(problem) for problem in error.problems])

@@ -1,0 +1,275 @@
+"""Studies that the page starts: the functions of the commands, with their values as a form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.app.form import field_of
+from tribodyn.errors import InputError
+from tribodyn.model import REQUIRED, Option, choice, integer, number, text
+from tribodyn.study.studies.range_words import UnreadError, read_list, read_range, read_values
+
+if TYPE_CHECKING:
+    from tribodyn.progress import Progress
+    from tribodyn.study.case.case import Case
+
+#: Values of a study as text, by name.
+Values = Mapping[str, str]
+#: What a study shows: ``told``, ``tables``, and figures as (heading, figure, caption).
+Shown = dict[str, Any]
+
+_RANGE = "400..3500 rpm:20, or 50, 150, 300 N*m"
+_ENDS = "400..3500 rpm"
+
+
+def _text(default: Any, meaning: str, example: str) -> Option:
+    option: Option = text(default, meaning=f"{meaning}, such as {example}", example=example)
+    return option
+
+
+@dataclass(frozen=True)
+class Study:
+    """One kind of study."""
+
+    title: str
+    meaning: str
+    options: Mapping[str, Option]
+    compute: Callable[[Case, Values, Progress, Path], Shown]
+
+
+def _varied(case: Case, values: Values) -> Iterator[tuple[str, Any]]:
+    for key, name in (("key", "values"), ("second_key", "second_values")):
+        if values.get(key):
+            yield values[key], _read(name, values.get(name, ""), read_values)
+
+
+def _read(name: str, words: str, read: Callable[[str], Any]) -> Any:
+    """A range or a list as the commands take it."""
+    try:
+        return read(words)
+    except UnreadError as fault:
+        raise InputError(f'cannot read "{words}"', name, str(fault), f"Write {_RANGE}") from None
+
+
+def _ends(name: str, words: str) -> tuple[Any, Any]:
+    low, high, _ = _read(name, f"{words}:2", read_range)
+    return low, high
+
+
+def _points(case: Case, key: str, words: str) -> list[float] | None:
+    """Torques or speeds, read as the keys of the case."""
+    from tribodyn.study.studies.axes import ends_of, read_axes
+
+    if not words:
+        return None
+    given = _read(key, words, read_values)
+    if isinstance(given, list) and len(given) == 1:
+        return list(ends_of(case, key, given, by="study"))
+    return list(read_axes(case, {key: given}, by="study")[0].values)
+
+
+def _operation(case: Case, values: Values) -> list[list[float] | None]:
+    return [_points(case, f"operation.{n}", values.get(n, "")) for n in ("torque", "speed")]
+
+
+def _of(answer: Any, kind: str, case: Case, target: Path) -> Shown:
+    from tribodyn.report.answers import save_answer
+
+    save_answer(kind, case, target, answer)
+    table = ["Table", list(answer.head), [list(row) for row in answer.rows]]
+    return {"told": list(answer.told), "tables": [table], "figures": answer.figures}
+
+
+def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn import plot
+    from tribodyn.study.pipeline.words import in_words
+    from tribodyn.study.studies.sweep import sweep
+
+    found = sweep(case, dict(_varied(case, values)), by="study", progress=progress)
+    found.save(target)
+    names = found.shown()
+    figures = [(in_words(name), found.plot(name), "") for name in names]
+    figures[:1] = [(*figures[0][:2], plot.sweep.caption_of(found))] if figures else []
+    failed = dict.fromkeys(point.failed for point in found.points if point.failed)
+    return {"told": [f"{len(found.points)} values.", *failed], "tables": [], "figures": figures}
+
+
+def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn import plot
+    from tribodyn.report.answers import save_bifurcation
+    from tribodyn.study.studies.bifurcation import Findings, bifurcation
+
+    low, high, points = _read("values", values["values"], read_range)
+    cycles = int(values.get("cycles") or 64)
+    options: dict[str, Any] = {"cycles": cycles, "keep": min(48, cycles)}
+    found = bifurcation(
+        case, values["key"], (low, high), points, by="study", progress=progress,
+        sweep=values.get("sweep") or "up", transient=int(values.get("transient") or 300), **options,
+    )  # fmt: skip
+    findings = Findings(case, found)
+    save_bifurcation(found, case, findings, target)
+    head, rows = findings.rows()
+    each = plot.bifurcation
+    return {
+        "told": list(findings.sentences()),
+        "tables": [["Table", list(head), [list(row) for row in rows]]],
+        "figures": [(each.heading, found.plot(), each.caption_of(found))],
+    }
+
+
+def _losses(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.answers import losses_answer
+
+    torque, speed = _operation(case, values)
+    return _of(losses_answer(case, torque, speed, progress), "losses", case, target)
+
+
+def _film(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.answers import film_answer
+
+    torque, speed = _operation(case, values)
+    return _of(film_answer(case, torque, speed, progress), "film", case, target)
+
+
+def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.answers import relief_answer
+
+    progress.start("Tip relief")
+    torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
+    answer = relief_answer(case, torque, values.get("gears") or "both")
+    return _of(answer, "relief", case, target)
+
+
+def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.answers import harris_answer
+
+    progress.start("Static transmission error")
+    torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
+    return _of(harris_answer(case, torque), "harris", case, target)
+
+
+def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.answers import modes_answer
+
+    ends = _ends("speeds", values["speeds"]) if values.get("speeds") else None
+    return _of(modes_answer(case, ends, progress), "modes", case, target)
+
+
+def _run_up(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.answers import run_up_answer
+
+    ends, duration = _ends("speeds", values["speeds"]), float(values.get("duration") or 10.0)
+    return _of(run_up_answer(case, ends, duration, progress=progress), "run-up", case, target)
+
+
+_TORQUES = _text(None, "torques; 8 up to twice that of the case where it is empty", "50..300 N*m:6")
+_SPEEDS = _text(None, "speeds; 8 up to twice that of the case where it is empty", "400, 1400 rpm")
+_LIST = _text(None, "torques", "60 N*m, 120 N*m")
+_KEY = "operation.speed"
+_GUARD = "guards against a slip of the keyboard"
+
+STUDIES: dict[str, Study] = {
+    "sweep": Study(
+        "Sweep",
+        "The whole case at many values of one of its keys, or at a grid of two.",
+        {
+            "key": choice(REQUIRED, list, meaning="what varies"),
+            "values": _text(REQUIRED, "its values", _RANGE),
+            "second_key": choice(None, list, meaning="what varies besides"),
+            "second_values": _text(None, "its values", _RANGE),
+        },
+        _sweep,
+    ),
+    "losses": Study(
+        "Operating map",
+        "Losses and efficiency over torque and speed; no motion is computed.",
+        {"torque": _TORQUES, "speed": _SPEEDS},
+        _losses,
+    ),
+    "film": Study(
+        "Oil film over operation",
+        "Least film and lubrication regime over torque and speed.",
+        {"torque": _TORQUES, "speed": _SPEEDS},
+        _film,
+    ),
+    "bifurcation": Study(
+        "Bifurcation",
+        "The motion over one value: jumps, doubled periods, chaos.",
+        {
+            "key": choice(REQUIRED, list, meaning="what varies"),
+            "values": _text(REQUIRED, "its range with the number of points", "400..3500 rpm:60"),
+            "sweep": choice(
+                "up", ("up", "down", "both", "independent"), meaning="where each motion begins"
+            ),
+            "cycles": integer(64, 2, 4096, _GUARD, meaning="mesh cycles of the statistics"),
+            "transient": integer(300, 0, 100000, _GUARD, meaning="mesh cycles before"),
+        },
+        _bifurcation,
+    ),
+    "relief": Study(
+        "Tip relief",
+        "The tip relief that leaves least transmission error, and the case with it.",
+        {
+            "torque": _LIST,
+            "gears": choice("both", ("both", "pinion", "wheel"), meaning="gears with relief"),
+        },
+        _relief,
+    ),
+    "harris": Study(
+        "Harris map", "The static transmission error over the torque.", {"torque": _LIST}, _harris
+    ),
+    "modes": Study(
+        "Natural modes",
+        "Natural frequencies and critical speeds; no motion is computed.",
+        {"speeds": _text(None, "speeds of the Campbell diagram", _ENDS)},
+        _modes,
+    ),
+    "run-up": Study(
+        "Run-up",
+        "The motion while the speed rises: where it vibrates most.",
+        {
+            "speeds": _text(REQUIRED, "lowest and highest speed", _ENDS),
+            "duration": number(10.0, 0.1, 1e4, _GUARD, meaning="length of the rise in seconds"),
+        },
+        _run_up,
+    ),
+}  # fmt: skip
+
+
+def numeric_keys(options: Mapping[str, Option]) -> list[str]:
+    """Keys of a case that a study can vary."""
+    return [key for key, option in options.items() if option.kind == "number"]
+
+
+def first_values(kind: str, case: Case) -> dict[str, str]:
+    """Values to begin with: speeds about that of the case."""
+    from tribodyn.units import convert
+
+    rpm = convert(case.operation.speed, "rad/s", "rpm")
+    about = f"{0.5 * rpm:.4g}..{2.0 * rpm:.4g} rpm"
+    first = {"key": _KEY, "values": f"{about}:{8 if kind == 'sweep' else 60}", "speeds": about}
+    required = [n for n, o in STUDIES[kind].options.items() if o.required]
+    return {name: value for name, value in first.items() if name in required}
+
+
+def form_of(kind: str, values: Values, keys: list[str]) -> dict[str, Any]:
+    """The form of a study as data."""
+    study, fields = STUDIES[kind], []
+    for name, option in study.options.items():
+        field = field_of(name, option, values.get(name, ""), default_of(option))
+        if name.endswith("key"):
+            field["names"] = [["", "nothing"]] * (not option.required) + [[k, k] for k in keys]
+        fields.append(field)
+    group = {
+        "key": kind, "title": study.title, "meaning": study.meaning, "note": "", "open": True,
+        "fields": fields, "more": [], "groups": [],
+    }  # fmt: skip
+    return {"groups": [group], "faults": []}
+
+
+def default_of(option: Option) -> Any:
+    """Value in force where none is given."""
+    return None if option.required else option.default

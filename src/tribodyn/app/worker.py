@@ -1,0 +1,189 @@
+"""What a process of :mod:`tribodyn.app.jobs` does: one order, read from its standard input."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pathlib import Path
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+#: Shortest time between two messages about progress [s].
+_PAUSE = 0.15
+#: Case that is computed while nobody asks, so that all is loaded when somebody does.
+_FIRST = "fzg-roughness"
+
+Tell = Callable[..., None]
+
+
+class Teller:
+    """Progress as messages."""
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell, self._next = tell, 0.0
+        self._done = 0
+
+    def start(self, task: str, total: int | None = None) -> None:
+        """Begin a task."""
+        self._done = 0
+        self._tell(task=task, done=0, total=total)
+
+    def advance(self, steps: int = 1) -> None:
+        """Tell how much is done, now and then."""
+        self._done += steps
+        now = time.monotonic()
+        if now >= self._next:
+            self._next = now + _PAUSE
+            self._tell(done=self._done)
+
+    def finish(self) -> None:
+        """End a task."""
+
+
+def main() -> None:
+    """Get ready, wait for one order, and carry it out."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    channel = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # What a library prints is no message.
+    orders: SimpleQueue[str] = SimpleQueue()
+    threading.Thread(target=_listen, args=(orders,), daemon=True).start()
+
+    def tell(**told: Any) -> None:
+        channel.write(json.dumps(told, allow_nan=False) + "\n")
+        channel.flush()
+
+    _get_ready(lambda: not orders.empty())
+    _carry_out(json.loads(orders.get()), tell)
+
+
+def _listen(orders: SimpleQueue[str]) -> None:
+    """Hand on the order; when the page has gone, this process goes too."""
+    for line in sys.stdin:
+        orders.put(line)
+    os._exit(1)
+
+
+def _get_ready(wanted: Callable[[], bool]) -> None:
+    from tribodyn.cases.load import load_case
+    from tribodyn.errors import collected
+    from tribodyn.report.blocks import figure_blocks
+    from tribodyn.study.pipeline.run import computed, rehearse
+
+    with collected():
+        case = load_case(_FIRST)
+        for step in (lambda: rehearse(case), lambda: figure_blocks(computed(case))):
+            if wanted():
+                return
+            step()
+        import_module("xarray")  # to store what is found
+
+
+def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
+    from tribodyn.compiled import telling
+    from tribodyn.errors import TribodynError
+
+    folder = Path(order["folder"])
+    try:
+        with telling(lambda text: tell(task=text[:1].upper() + text[1:], done=0, total=None)):
+            _KINDS[order["kind"]](order, folder, tell)
+    except TribodynError as error:
+        tell(state="failed", problems=[str(problem) for problem in error.problems])
+    except Exception as error:
+        what = f"unexpected {type(error).__name__}: {error}"[:500]
+        tell(state="failed", problems=[f"{what}. This is a fault of tribodyn, not of the input."])
+
+
+def _case(order: Mapping[str, Any]) -> Case:
+    from tribodyn.study.case.read import read_case
+
+    return read_case(order["case"], "case.toml")
+
+
+def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
+    """Compute a case, show it, and write the directory of ``tribodyn run``."""
+    from tribodyn.report.blocks import figure_blocks
+    from tribodyn.report.numbers import HEAD, headlines, modes_table, table
+    from tribodyn.study.pipeline.run import computed
+
+    result = computed(_case(order), Teller(tell))
+    tell(task="Figures", done=0, total=None)
+    summary = result.summary()
+    modes = modes_table(result) if "natural_frequency_1" in summary else []
+    tables = [["Critical speeds", list(HEAD), modes]] if modes else []
+    rows = [[n.topic, n.words, f"{n.shown} {n.unit}".strip(), n.meaning] for n in table(summary)]
+    tables.append(["All numbers", ["Topic", "Quantity", "Value", "Meaning"], rows])
+    shown = {
+        "cards": [[card.words, card.shown, card.unit] for card in headlines(summary)],
+        "told": [],
+        "warnings": [str(warning) for warning in result.warnings],
+        "tables": tables,
+        "blocks": _written(figure_blocks(result), folder),
+    }
+    tell(state="done", shown=shown, task="")
+    result.save(folder / "result")
+    tell(saved=True)
+
+
+def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
+    """Figures as files of a folder, and what is said about them."""
+    for block in blocks:
+        if block.json:
+            (folder / f"{block.name}.json").write_text(block.json, encoding="utf-8")
+    return [{k: v for k, v in vars(block).items() if k != "json"} for block in blocks]
+
+
+def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
+    """Lay stored results over each other."""
+    from tribodyn import plot
+    from tribodyn.cases.stored_result import load_result
+    from tribodyn.report.blocks import drawn_block
+    from tribodyn.study.beside import compare_results, difference_rows
+
+    results = [load_result(place) for place in order["results"]]
+    found = compare_results(*results, names=order["names"])
+    figure = plot.result_comparison
+    block = drawn_block(figure.name, figure.heading, found.plot(), figure.caption_of(found))
+    rows = list(difference_rows(found.values, found.figures))
+    shown = {
+        "told": [] if rows else ["The results are equal."],
+        "tables": [["What differs", ["", *found.names, "change"], rows]] if rows else [],
+        "blocks": _written([block], folder),
+    }
+    tell(state="done", shown=shown, task="")
+
+
+def _study(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
+    """Compute a study, show it, and write the directory of its command."""
+    from tribodyn.app.studies import STUDIES
+    from tribodyn.errors import collected
+    from tribodyn.report.blocks import drawn_block
+
+    with collected() as warnings:
+        study = STUDIES[order["study"]]
+        shown = study.compute(_case(order), order["values"], Teller(tell), folder / "result")
+    blocks = [
+        drawn_block(f"figure-{number}", heading, figure, caption)
+        for number, (heading, figure, caption) in enumerate(shown.pop("figures"), 1)
+    ]
+    shown["warnings"] = list(dict.fromkeys(map(str, warnings)))
+    tell(state="done", shown={**shown, "blocks": _written(blocks, folder)}, task="", saved=True)
+
+
+_KINDS: dict[str, Callable[[Mapping[str, Any], Path, Tell], None]] = {
+    "run": _run,
+    "overlay": _overlay,
+    "study": _study,
+}
+
+
+if __name__ == "__main__":
+    main()

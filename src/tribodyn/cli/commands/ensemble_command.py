@@ -1,0 +1,78 @@
+"""``tribodyn ensemble``."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from cyclopts import Parameter
+
+from tribodyn.cli.commands.study_commands import Flag, Output, Words, begun, finish
+
+#: Part of the variants between the ends that are told.
+_SHARE = 0.95
+
+
+def ensemble(
+    case: str,
+    /,
+    *,
+    size: int = 64,
+    method: Literal["monte-carlo", "latin-hypercube", "sobol"] = "latin-hypercube",
+    seed: int = 0,
+    out: Output = None,
+    set_: Words = None,
+    force: Flag = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Compute many variants of a case whose inputs are spread, and draw every figure with bands.
+
+    Parameters
+    ----------
+    case : str
+        Case file, or name of a built-in case.
+    size : int
+        Variants.
+    method : str
+        How they are drawn: "monte-carlo", "latin-hypercube" or "sobol".
+    seed : int
+        The same seed gives the same variants.
+    out : Path
+        Directory to write.
+    set_ : list of str
+        Changes of the case, such as "operation.torque=150 N*m +- 2 %".
+    force : bool
+        Replace an earlier directory.
+    json : bool
+        Write figures in SI as one JSON object to stdout.
+    """
+    from tribodyn.cli.bar import progress_bar
+    from tribodyn.plot import ensemble as spread
+    from tribodyn.plot.signals.bands import banded
+    from tribodyn.report.blocks import sections_of
+    from tribodyn.study import SUMMARY
+    from tribodyn.study import ensemble as compute
+    from tribodyn.uncertainty import bootstrap_band
+
+    ready, target = begun("ensemble", case, out, set_, force)
+    with progress_bar() as progress:
+        found = compute(ready, size=size, method=method, seed=seed, progress=progress)
+    rows, facts = [], {}
+    for name, values in found.figures().items():
+        middle, variants = values[0], values[1:]
+        band = bootstrap_band(variants, seed=seed)
+        low, high = np.quantile(variants, (0.5 - 0.5 * _SHARE, 0.5 + 0.5 * _SHARE))
+        ends = (middle, low, high, float(band.low), float(band.high))
+        names = ("middle", "low", "high", "mean_low", "mean_high")
+        facts[name] = dict(zip(names, map(float, ends), strict=True))
+        if high > low:
+            rows.append([name, *(SUMMARY[name].show(float(end)) for end in ends)])
+    told = [f"{len(found.value)} variants over {', '.join(map(str, found.input))}"]
+    told += [f"{key} = {text}" for key, text in ready.uncertain.items()]
+    figures = [(spread.heading, found.plot(), spread.caption_of(found))]
+    figures += banded(found, sections_of(ready))
+    share = f"{_SHARE:.0%} of the variants"
+    head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
+    from tribodyn.report.answers import Answer
+
+    finish("ensemble", ready, target, Answer(found, figures, told, head, rows, facts), force, json)

@@ -1,0 +1,97 @@
+"""``tribodyn app``: how it begins, ends, and what it says when it cannot begin."""
+
+from __future__ import annotations
+
+import re
+import signal
+import socket
+import subprocess
+import sys
+import webbrowser
+from http.client import HTTPConnection
+from importlib import util
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("dash", reason="the page needs Dash")
+
+from tribodyn.app.server import Page
+from tribodyn.cli import call
+
+
+def test_it_serves_until_it_is_interrupted(tmp_path: Path) -> None:
+    words = ["-m", "tribodyn", "app", "--no-browser", "--port", "0", "--folder", str(tmp_path)]
+    served = subprocess.Popen([sys.executable, *words], stderr=subprocess.PIPE, text=True)
+    assert served.stderr is not None
+    address = served.stderr.readline()
+    port, token = re.findall(r"127\.0\.0\.1:(\d+)/\?token=(\S+)", address)[0]
+    connection = HTTPConnection("127.0.0.1", int(port))
+    for path, status in (("/", 403), (f"/?token={token}", 303)):
+        connection.request("GET", path)
+        answer = connection.getresponse()
+        answer.read()
+        assert answer.status == status
+    connection.close()
+    served.send_signal(signal.SIGINT)
+    rest = served.communicate(timeout=60)[1]
+    assert served.returncode == 0
+    assert "The page has ended." in rest
+    assert token not in rest
+
+
+@pytest.fixture
+def brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Page, "serve", Page.close)
+
+
+@pytest.mark.usefixtures("brief")
+def test_without_a_browser_the_address_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(webbrowser, "open", lambda address: False)
+    assert call(["app", "--port", "0", "--folder", str(tmp_path)]) == 0
+    told = capsys.readouterr().err
+    assert "http://127.0.0.1:" in told
+    assert "open the address in one yourself" in told
+
+
+def refused(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    assert call(["app", "--no-browser", "--port", "0", *words]) == 2
+    return capsys.readouterr().err
+
+
+def test_a_port_that_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = str(other.getsockname()[1])
+        words = ["app", "--no-browser", "--port", port, "--folder", str(tmp_path)]
+        assert call(words) == 2
+    assert "--port" in capsys.readouterr().err
+
+
+def test_wrong_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    here = ["--folder", str(tmp_path)]
+    bad, away = tmp_path / "bad.toml", tmp_path.parent / "away.toml"
+    bad.write_text('title = "x"\n[gears]\nteeth = 3\n')
+    away.write_text("title = 1\n")
+    assert "there is no folder" in refused(["--folder", str(tmp_path / "no")], capsys)
+    assert "no built-in case" in refused(["no-such-case", *here], capsys)
+    assert "bad.toml:3" in refused([str(bad), *here], capsys)
+    assert "--folder" in refused([str(away), *here], capsys)
+    assert "cannot serve at" in refused(["--host", "203.0.113.1", *here], capsys)
+    assert call(["app", "--port", "70000", *here]) == 2
+
+
+def test_without_dash_the_extra_is_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    known = util.find_spec
+
+    def lacking(name: str, *more: Any) -> Any:
+        return None if name == "dash" else known(name, *more)
+
+    monkeypatch.setattr(util, "find_spec", lacking)
+    assert 'pip install "tribodyn[app]"' in refused([], capsys)
