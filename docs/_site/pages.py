@@ -16,6 +16,7 @@ def rewrite(_: Any, name: str, source: list[str]) -> None:
     text = source[0]
     text = _EXAMPLE.sub(r"](/_generated/examples/\1.md)", text)
     text = text.replace("](../src/tribodyn/cli)", "](command-line.md)")
+    text = text.replace("](../src/tribodyn/app)", "](app.md)")
     text = _PACKAGE.sub(r"](/_generated/api/tribodyn.\1.md)", text)
     text = _SOURCE.sub(r"\1", text)
     if name == "index":

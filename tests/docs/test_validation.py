@@ -19,7 +19,9 @@ def stated(heading: str) -> dict[str, tuple[float, float]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("heading", "group"), [(g[0], g[2]) for g in GROUPS], ids=lambda g: str(g))
+@pytest.mark.parametrize(
+    ("heading", "group"), [(g[0], g[2]) for g in GROUPS], ids=[g[0] for g in GROUPS]
+)
 def test_figures_are_within_their_tolerances_and_as_on_the_page(heading, group) -> None:
     rows, known = rows_of(group), stated(heading)
     assert list(known) == [row.what for row in rows]
