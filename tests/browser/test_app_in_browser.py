@@ -141,6 +141,7 @@ def test_another_unit_leaves_the_value(visit: Visit) -> None:
     visit.tab.wait_for_function("document.getElementById('case-operation-torque').value === '0.12'")
     visit.tab.select_option("[aria-label='Unit of Torque']", "N*m")
     visit.tab.wait_for_function("document.getElementById('case-operation-torque').value === '120'")
+    assert visit.tab.get_attribute("#case-operation-torque", "aria-invalid") == "false"
 
 
 def test_another_model_brings_its_options(visit: Visit) -> None:
@@ -178,6 +179,7 @@ def test_a_study_is_started(visit: Visit) -> None:
     visit.wait("[role=tab]:has-text('Natural modes') .state", "done")
     visit.wait("#bench h3", "Natural modes")
     tab.wait_for_selector("#bench .main-svg")
+    assert "Hz" in tab.inner_text("#bench")
 
 
 def test_a_script_in_a_title_stays_text(visit: Visit) -> None:
@@ -246,6 +248,7 @@ def test_the_keyboard_is_enough(context: Any, served: Page) -> None:
     tab.keyboard.press("Control+Enter")
     visit.wait("[role=tab] .state", "done")
     visit.wait("#bench .topics")
+    assert tab.input_value("#case-operation-torque") == "80"
     tab.close()
 
 

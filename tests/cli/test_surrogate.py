@@ -45,3 +45,20 @@ def test_a_model_is_trained_and_asked(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "friction_scale is missing" in message
     assert call([*_WORDS, "--out", str(path)]) == 2
     assert "exists already" in capsys.readouterr().err
+
+
+def test_a_band_that_too_few_points_leave_open_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "model.nc"
+    words = [*_WORDS, "--out", str(path)]
+    words[words.index("128")] = "16"
+    assert call(words) == 0
+    told = capsys.readouterr().out
+    assert "A band of 95% takes 19 of them" in told
+    assert "open" in told
+    assert "inf" not in told
+    assert call(["surrogate", "predict", str(path), "force_scale=1", "friction_scale=1"]) == 0
+    told = capsys.readouterr().out
+    assert "open" in told
+    assert "inf" not in told

@@ -23,6 +23,8 @@ HOSTS = {
     "plotly.com",
     "docs.python.org",
     "example.org",
+    "evil.example",  # reserved for examples, as the loopback address is for the machine itself
+    "127.0.0.1",
     "jobqueue.dask.org",
     "kubernetes.dask.org",
 }

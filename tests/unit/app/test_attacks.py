@@ -146,9 +146,20 @@ def test_the_page_cannot_be_framed_and_loads_nothing_from_elsewhere(user: Browse
 
 
 ESCAPES = [
-    "../secret.toml", "/etc/passwd", "a/../../secret.toml", "..", ".hidden.toml", "C:\\x.toml",
-    "a\\..\\b.toml", "x\0.toml", "", "nul:.toml", "~root/x.toml", "link.toml", "a" * 300,
-]  # fmt: skip
+    "../secret.toml",
+    "/etc/passwd",
+    "a/../../secret.toml",
+    "..",
+    ".hidden.toml",
+    f"C:{chr(92)}x.toml",
+    "a\\..\\b.toml",
+    "x\0.toml",
+    "",
+    "nul:.toml",
+    "~root/x.toml",
+    "link.toml",
+    "a" * 300,
+]
 
 
 @pytest.mark.parametrize("name", ESCAPES)

@@ -107,15 +107,18 @@ def _told(model: Surrogate) -> list[str]:
             f"{each.determination:.5f}",
             f"{100.0 * each.mean_absolute_relative:.3g} %",
             f"{each.largest:.3g} {_unit(unit)}",
-            f"+- {half:.3g} {_unit(unit)}",
+            f"+- {half:.3g} {_unit(unit)}" if math.isfinite(half) else "open",
         ]
         for (name, each), half, unit in zip(
             model.errors.items(), model.band, model.target_unit, strict=True
         )
     ]
     count = model.true.shape[1]
+    least = math.ceil(model.level / (1.0 - model.level))
+    few = f" A band of {model.level:.0%} takes {least} of them; give --size more."
     return [
-        f"Learned from {model.training_rows} operating points, errors over {count} others.",
+        f"Learned from {model.training_rows} operating points, errors over {count} others."
+        + (few if count < least else ""),
         table([head, *rows]),
     ]
 
@@ -141,9 +144,8 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
     rows, facts = [["target", "prediction", f"{model.level:.0%} band"]], {}
     for name, unit in zip(model.targets, model.target_unit, strict=True):
         value, (low, high) = float(answers[name]), map(float, bands[name])
-        rows.append(
-            [str(name), f"{value:.6g} {_unit(unit)}", f"{low:.6g} to {high:.6g} {_unit(unit)}"]
-        )
+        band = f"{low:.6g} to {high:.6g} {_unit(unit)}" if math.isfinite(high) else "open"
+        rows.append([str(name), f"{value:.6g} {_unit(unit)}", band])
         facts[str(name)] = {
             "value": value,
             "low": _finite(low),
@@ -164,7 +166,7 @@ def _inputs(model: Surrogate, given: dict[str, Any]) -> dict[str, float]:
         if name not in units
     ]
     problems += [
-        Problem(f"{name} is missing", name, "", f'Write "{name}=VALUE {unit}"'.strip())
+        Problem(f"{name} is missing", name, "", f'Write "{name}=VALUE {_unit(unit)}'.strip() + '"')
         for name, unit in units.items()
         if name not in given
     ]
