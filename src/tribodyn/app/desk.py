@@ -116,8 +116,10 @@ class Desk:
             what, remedy = f"{RUNS} studies are kept already", "Remove one that you no longer need"
             raise InputError(what, "", "", remedy)
         order = {
-            "case": self.case.to_toml(), "study": self.study, "values": self.values[self.study]
-        }  # fmt: skip
+            "case": self.case.to_toml(),
+            "study": self.study,
+            "values": self.values[self.study],
+        }
         job = self._start("study", STUDIES[self.study].title, order)
         self.studies.append(job)
         self.view = f"job-{job.number}"

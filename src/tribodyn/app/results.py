@@ -280,8 +280,10 @@ def files(desk: Desk) -> list[Any]:
             ],
             className="block tools",
         ),
-        html.Section([html.H3("Open a case of the folder"), html.Ul(own) if own else empty],
-                     className="block"),
+        html.Section(
+            [html.H3("Open a case of the folder"), html.Ul(own) if own else empty],
+            className="block",
+        ),
         html.Section([html.H3("Built-in cases"), html.Ul(built)], className="block"),
         html.Section(
             [
@@ -290,7 +292,7 @@ def files(desk: Desk) -> list[Any]:
             ],
             className="block",
         ),
-    ]  # fmt: skip
+    ]
 
 
 def studies(desk: Desk) -> list[Any]:

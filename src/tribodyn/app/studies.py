@@ -106,9 +106,16 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     cycles = int(values.get("cycles") or 64)
     options: dict[str, Any] = {"cycles": cycles, "keep": min(48, cycles)}
     found = bifurcation(
-        case, values["key"], (low, high), points, by="study", progress=progress,
-        sweep=values.get("sweep") or "up", transient=int(values.get("transient") or 300), **options,
-    )  # fmt: skip
+        case,
+        values["key"],
+        (low, high),
+        points,
+        by="study",
+        progress=progress,
+        sweep=values.get("sweep") or "up",
+        transient=int(values.get("transient") or 300),
+        **options,
+    )
     findings = Findings(case, found)
     save_bifurcation(found, case, findings, target)
     head, rows = findings.rows()
@@ -236,7 +243,7 @@ STUDIES: dict[str, Study] = {
         },
         _run_up,
     ),
-}  # fmt: skip
+}
 
 
 def numeric_keys(options: Mapping[str, Option]) -> list[str]:
@@ -264,9 +271,15 @@ def form_of(kind: str, values: Values, keys: list[str]) -> dict[str, Any]:
             field["names"] = [["", "nothing"]] * (not option.required) + [[k, k] for k in keys]
         fields.append(field)
     group = {
-        "key": kind, "title": study.title, "meaning": study.meaning, "note": "", "open": True,
-        "fields": fields, "more": [], "groups": [],
-    }  # fmt: skip
+        "key": kind,
+        "title": study.title,
+        "meaning": study.meaning,
+        "note": "",
+        "open": True,
+        "fields": fields,
+        "more": [],
+        "groups": [],
+    }
     return {"groups": [group], "faults": []}
 
 

@@ -17,15 +17,23 @@ _READ = {
     "root_relief": ("root_relief_depth", "root_relief_datum_length"),
     "profile_crowning": ("profile_crowning_at_root", "profile_crowning_at_tip"),
     "helix_crowning": (
-        "helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face",
+        "helix_crowning_amount_datum_face",
+        "helix_crowning_amount_non_datum_face",
     ),
-}  # fmt: skip
+}
 #: Forms that a case has not, or whose sign other programs do not agree upon.
 _NOT_READ = (
-    "profile_slope", "helix_slope", "helix_deviation", "profile_deviation", "profile_twist",
-    "triangular_tip_relief", "triangular_root_relief", "end_relief_datum_face",
-    "end_relief_non_datum_face", "topographical_modification",
-)  # fmt: skip
+    "profile_slope",
+    "helix_slope",
+    "helix_deviation",
+    "profile_deviation",
+    "profile_twist",
+    "triangular_tip_relief",
+    "triangular_root_relief",
+    "end_relief_datum_face",
+    "end_relief_non_datum_face",
+    "topographical_modification",
+)
 _KINDS = (*_READ, *_NOT_READ)
 
 

@@ -28,14 +28,16 @@ _FORMS: dict[str, tuple[str, tuple[str, ...], str]] = {
     "tip_relief": ("tip_relief", ("tip_relief_depth",), "tip_relief_datum_length"),
     "root_relief": ("root_relief", ("root_relief_depth",), "root_relief_datum_length"),
     "profile_crowning": (
-        "profile_crowning", ("profile_crowning_at_root", "profile_crowning_at_tip"), "",
+        "profile_crowning",
+        ("profile_crowning_at_root", "profile_crowning_at_tip"),
+        "",
     ),
     "crowning": (
         "helix_crowning",
         ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
         "",
     ),
-}  # fmt: skip
+}
 _TO_MM, _TO_DEG = 1e3, 180.0 / math.pi
 
 Attribute = tuple[str, str, Any]  # name, unit, value

@@ -10,8 +10,13 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.measurement.readers.content import Content, from_arrays, rate_of, tells
-from tribodyn.measurement.readers.matlab import refuse_table
+from tribodyn.measurement.readers.content import (
+    Content,
+    from_arrays,
+    rate_of,
+    refuse_table,
+    tells,
+)
 from tribodyn.stored import read_dataset
 from tribodyn.types import Array
 

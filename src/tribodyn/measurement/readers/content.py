@@ -14,6 +14,9 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 
+#: Objects that hold channels; other ones, such as strings, are left out.
+_TABLES = ("table", "timetable", "")
+
 #: Names of a column of times, and units that tell one.
 _TIME = {"time", "t", "zeit", "times", "timestamp", "time stamp", "temps", "tid", "tempo"}
 _UNITS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6,
@@ -198,3 +201,18 @@ def _number(value: Any) -> float | None:
     except (TypeError, ValueError):
         return None
     return number if 0.0 < number < np.inf else None
+
+
+def refuse_table(kind: Any, path: Path) -> None:
+    """Tell what to do with a table or timetable of MATLAB; other objects hold no channel."""
+    told = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
+    if told not in _TABLES:
+        return
+    raise InputError(
+        Problem(
+            "holds a table, timetable or other object of MATLAB",
+            str(path),
+            "MATLAB keeps how these are written to itself",
+            'In MATLAB: s = table2struct(T, "ToScalar", true); save("s.mat", "-struct", "s")',
+        )
+    )

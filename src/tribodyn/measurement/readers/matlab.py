@@ -8,11 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
-from tribodyn.measurement.readers.content import Content, from_arrays
+from tribodyn.measurement.readers.binary import hdf5
+from tribodyn.measurement.readers.content import Content, from_arrays, refuse_table
 
-#: Objects that hold channels; other ones, such as strings, are left out.
-_TABLES = ("table", "timetable", "")
 _DEEPEST = 8
 
 
@@ -21,9 +19,7 @@ def content(path: Path) -> Content:
     with open(path, "rb") as file:
         head = file.read(128)
     if head.startswith(b"MATLAB 7.3"):
-        from tribodyn.measurement.readers.binary import hdf5  # which refuses tables as we do
-
-        return hdf5(path)
+        return hdf5(path)  # which refuses tables as we do
     from scipy.io import loadmat
     from scipy.io.matlab import MatlabOpaque
 
@@ -36,21 +32,6 @@ def content(path: Path) -> Content:
         elif not name.startswith("__"):
             named |= dict(_flat(name, value))
     return from_arrays(named, path)
-
-
-def refuse_table(kind: Any, path: Path) -> None:
-    """Tell what to do with a table or timetable of MATLAB; other objects hold no channel."""
-    told = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
-    if told not in _TABLES:
-        return
-    raise InputError(
-        Problem(
-            "holds a table, timetable or other object of MATLAB",
-            str(path),
-            "MATLAB keeps how these are written to itself",
-            'In MATLAB: s = table2struct(T, "ToScalar", true); save("s.mat", "-struct", "s")',
-        )
-    )
 
 
 def _flat(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, Any]]:

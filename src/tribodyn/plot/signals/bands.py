@@ -76,8 +76,10 @@ def _drawn(result: CaseEnsemble, name: str) -> tuple[Any, bool]:
     if made:
         told = {"showlegend": True, "name": f"{_SHARE:.0%} of {len(variants)} variants"}
         made[1 if len(made) > 1 else 0] |= told
-    ends = any(trace.type in ("bar", "scatter") and trace.error_y.array is not None
-               for trace in figure.data)  # fmt: skip
+    ends = any(
+        trace.type in ("bar", "scatter") and trace.error_y.array is not None
+        for trace in figure.data
+    )
     return figure.add_traces(made), bool(made) or ends
 
 
