@@ -63,7 +63,7 @@ BROKEN = (
     Broken("misalignment-in-mm", _DISTANCE, _DISTANCE + '\nmisalignment = "3 mm"', "misalignment",
            ("gears.misalignment", "-500 um to 500 um")),
     Broken("relief-in-wrong-table", "teeth = 16", 'teeth = 16\nroot_relief = "3 um"', "root_relief",
-           ("unknown key", "[gears.pinion.modification] or [gears.wheel.modification]")),
+           ("unknown key", "It belongs to [gears.pinion.modification]")),
     Broken("modification-is-a-value", "teeth = 16", "teeth = 16\nmodification = 3", "modification",
            (PINION, "is a table", "[gears.pinion.modification]")),
 )  # fmt: skip
