@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from collections.abc import Iterator, Sequence
 from os import PathLike
 from pathlib import Path
@@ -15,6 +16,7 @@ import numpy as np
 from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import whole
+from tribodyn.record import Record
 from tribodyn.study import SUMMARY, Result
 
 #: Arrays of a curve of a figure that become columns.
@@ -23,17 +25,19 @@ _nothing = "".format  # what a figure without conditions lacks
 Table = tuple[list[str], list[Sequence[Any]]]  # heads with units, columns
 
 
-def write_tables(result: Result, folder: str | PathLike[str]) -> Path:
+def write_tables(result: Result | Record, folder: str | PathLike[str]) -> Path:
     """Write all tables and figures of a result into a new folder, as CSV and as JSON.
 
     Parameters
     ----------
-    result : Result
-        What was computed, or read back.
+    result : Result or Record
+        What was computed, or read back; sweeps, bifurcations, maps and every other result that has
+        ``to_xarray`` too.
     folder : path
         Folder to make: ``summary``, ``mesh over ...``, ``motion over ...`` and ``figure ...``,
         each as ``.csv`` with units in the head and as ``.json``; figures as JSON are those of
-        plotly.
+        plotly. Of other results than those of a run: ``table over ...`` and ``figure ...``.
+        Figures that the gears or the case have nothing for are left out.
 
     Returns
     -------
@@ -62,13 +66,19 @@ def write_tables(result: Result, folder: str | PathLike[str]) -> Path:
         for name in figures_of(result):
             if getattr(FIGURES[name], "missing", _nothing)(result):
                 continue
-            figure = draw(result, name)
+            try:
+                figure = draw(result, name)
+            except InputError:  # It needs gears of another kind, or a choice that has no default.
+                continue
             (place / f"figure_{name}.json").write_text(figure.to_json(), encoding="utf-8")
             (place / f"figure_{name}.csv").write_text(_curves(figure), encoding="utf-8")
     return target
 
 
-def _tables(result: Result) -> Iterator[tuple[str, Table]]:
+def _tables(result: Result | Record) -> Iterator[tuple[str, Table]]:
+    if not isinstance(result, Result):
+        yield from _of_data("table", result.to_xarray())
+        return
     summary = result.summary()
     yield (
         "summary",
@@ -82,14 +92,24 @@ def _tables(result: Result) -> Iterator[tuple[str, Table]]:
             ],
         ),
     )
-    for kind, data in (("mesh", result.mesh.to_xarray()), ("motion", result.to_xarray())):
-        groups: dict[tuple[str, ...], list[str]] = {}
-        for name, variable in data.data_vars.items():
-            groups.setdefault(tuple(map(str, variable.dims)), []).append(str(name))
-        for dims, names in groups.items():
-            frame = data[names].to_dataframe().reset_index()
-            heads = [_head(str(column), data) for column in frame]
-            yield f"{kind}_over_{'_and_'.join(dims)}", (heads, [frame[c].tolist() for c in frame])
+    yield from _of_data("mesh", result.mesh.to_xarray())
+    yield from _of_data("motion", result.to_xarray())
+
+
+def _of_data(kind: str, data: Any) -> Iterator[tuple[str, Table]]:
+    """One table for all that stands over the same dimensions."""
+    data = data if hasattr(data, "data_vars") else data.to_dataset(name=data.name or "value")
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name, variable in data.data_vars.items():
+        groups.setdefault(tuple(map(str, variable.dims)), []).append(str(name))
+    for dims, names in groups.items():
+        if not dims:
+            columns: list[Sequence[Any]] = [[data[name].values.item()] for name in names]
+            yield f"{kind}_of_single_values", ([_head(name, data) for name in names], columns)
+            continue
+        frame = data[names].to_dataframe().reset_index()
+        heads = [_head(str(column), data) for column in frame]
+        yield f"{kind}_over_{'_and_'.join(dims)}", (heads, [frame[c].tolist() for c in frame])
 
 
 def _head(name: str, data: Any) -> str:
@@ -108,8 +128,15 @@ def _as_csv(table: Table) -> str:
 
 def _as_json(table: Table) -> str:
     heads, columns = table
-    plain = [[None if value != value else value for value in column] for column in columns]
+    plain = [[_plain(value) for value in column] for column in columns]
     return json.dumps(dict(zip(heads, plain, strict=True)), allow_nan=False, ensure_ascii=False)
+
+
+def _plain(value: Any) -> Any:
+    """A value of JSON: nothing for what is no number, texts for complex and other values."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value if value is None or isinstance(value, str | int) else str(value)
 
 
 def _curves(figure: Any) -> str:

@@ -43,3 +43,19 @@ def test_tables_and_figures_hold_what_the_result_holds(tmp_path: Path, capsys) -
     capsys.readouterr()
     assert call(["export", str(tmp_path / "run")]) == 2
     assert "--rexs FILE for a case, or --tables FOLDER" in capsys.readouterr().err
+
+
+def test_results_of_studies_are_written_too(tmp_path: Path) -> None:
+    case = td.load_case("fzg-roughness")
+    modes = td.natural_modes(case)
+    place = write_tables(modes, tmp_path / "modes")
+    with (place / "table_over_mode.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    np.testing.assert_allclose([float(row["frequency [Hz]"]) for row in rows], modes.frequency)
+    drawn = json.loads((place / "figure_mode_shapes.json").read_text(encoding="utf-8"))
+    assert len(drawn["data"]) == len(modes.plot().data)
+    found = td.harris_map(case, torque=["60 N*m", "90 N*m"])
+    place = write_tables(found, tmp_path / "harris")
+    told = json.loads((place / "table_over_torque.json").read_text(encoding="utf-8"))
+    measured = told["peak_to_peak_transmission_error [m]"]
+    np.testing.assert_array_equal(measured, found.peak_to_peak_transmission_error)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import tribodyn
 from tribodyn.dynamics import steady_state
 from tribodyn.errors import InputError, ModelWarning, collected
+from tribodyn.exchange import write_tables
 from tribodyn.gear import tooth_contact
 from tribodyn.plot import FIGURES
 from tribodyn.report.blocks import HYPOID_SECTIONS
@@ -199,3 +201,12 @@ def test_the_report_draws_gears_contact_and_forces_in_space(result):
     assert np.mean(course.y) == pytest.approx(mean, rel=0.02)
     assert "along its own axis" in blocks["bearing_force"].layout.title.text
     assert all(not FIGURES[name].missing(result) for name in HYPOID_SECTIONS)
+
+
+def test_tables_and_those_figures_that_its_gears_have_are_exported(result, tmp_path):
+    place = write_tables(result, tmp_path / "all")
+    written = {path.stem for path in place.glob("figure_*.json")}
+    assert {"figure_mesh_force", "figure_ease_off"} <= written
+    assert "figure_path_of_contact" not in written
+    cells = json.loads((place / "summary.json").read_text(encoding="utf-8"))
+    assert dict(zip(cells["figure"], cells["value"], strict=True)) == result.summary()
