@@ -67,7 +67,7 @@ def teeth(count: int) -> None:
 
 
 def torques(count: int) -> list[str]:
-    return [f"{60 + i} N*m" for i in range(count)]
+    return [f"{60 + 0.2 * i} N*m" for i in range(count)]
 
 
 START = ([1.8], [0.0])
@@ -130,7 +130,7 @@ CALLS: dict[str, tuple[Callable[[int], Any], int, int]] = {
     ),
     "case": (lambda n: td.run(case(**{"film.model": "newton", "film.positions": n})), 8, 200),
     "tip relief": (lambda n: td.optimize_tip_relief(case(), torques(n)), 1, 60),
-    "harris map": (lambda n: td.harris_map(case(), torques(n)), 2, 4000),
+    "harris map": (lambda n: td.harris_map(case(), torques(n)), 2, 20_000),
 }  # fmt: skip
 
 
