@@ -24,7 +24,6 @@ from tribodyn.cli import call
 def test_it_serves_until_it_is_interrupted(tmp_path: Path) -> None:
     words = ["-m", "tribodyn", "app", "--no-browser", "--port", "0", "--folder", str(tmp_path)]
     served = subprocess.Popen([sys.executable, *words], stderr=subprocess.PIPE, text=True)
-    assert served.stderr is not None
     address = served.stderr.readline()
     port, token = re.findall(r"127\.0\.0\.1:(\d+)/\?token=(\S+)", address)[0]
     connection = HTTPConnection("127.0.0.1", int(port))

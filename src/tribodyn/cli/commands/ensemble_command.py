@@ -47,14 +47,19 @@ def ensemble(
         Write figures in SI as one JSON object to stdout.
     """
     from tribodyn.cli.bar import progress_bar
+    from tribodyn.errors import InputError
     from tribodyn.plot import ensemble as spread
     from tribodyn.plot.signals.bands import banded
+    from tribodyn.report.answers import Answer
     from tribodyn.report.blocks import sections_of
     from tribodyn.study import SUMMARY
     from tribodyn.study import ensemble as compute
     from tribodyn.uncertainty import bootstrap_band
 
     ready, target = begun("ensemble", case, out, set_, force)
+    if not ready.uncertain:
+        remedy = 'Give a value its spread, as in --set "operation.torque=90 N*m +- 2 %"'
+        raise InputError("no value of the case is spread", case, "All variants were alike", remedy)
     with progress_bar() as progress:
         found = compute(ready, size=size, method=method, seed=seed, progress=progress)
     rows, facts = [], {}
@@ -73,6 +78,4 @@ def ensemble(
     figures += banded(found, sections_of(ready))
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
-    from tribodyn.report.answers import Answer
-
     finish("ensemble", ready, target, Answer(found, figures, told, head, rows, facts), force, json)

@@ -85,8 +85,11 @@ class CaseEnsemble(Record):
             raise InputError(Problem("no whole results of this ensemble", "", why, "Spread keys"))
         count = len(self.value)
         chosen = np.unique(np.linspace(0, count - 1, min(count, _WHOLE)).round().astype(int))
-        rows = [np.median(self.value, axis=0), *self.value[chosen]]
-        cases = [self.case.replace(dict(zip(keys, map(float, row), strict=True))) for row in rows]
+        # The case has its own values; what others spread is taken in the middle of the draws.
+        drawn = zip(keys, np.median(self.value, axis=0), strict=True)
+        middle = {key: float(value) for key, value in drawn if key not in self.case.uncertain}
+        rows = [dict(zip(keys, map(float, row), strict=True)) for row in self.value[chosen]]
+        cases = [self.case.replace(row) if row else self.case for row in (middle, *rows)]
         found: dict[int, Result] = {}
         with quiet():
             over_cases(computed, cases, found)
