@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
-from tribodyn.study.case.gears import is_idle
+from tribodyn.study.case.gears import HYPOID_KEYS, is_idle
 from tribodyn.study.case.given import Given
 from tribodyn.study.case.heat import heat_balance, heat_of_bodies
-from tribodyn.study.case.hypoid import HYPOID_KEYS
 from tribodyn.study.case.section import Choice, Known, choices, section_at
 
 if TYPE_CHECKING:
