@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import inspect
 import math
+from collections.abc import Iterator
 from typing import Any
 
+from tribodyn.errors import Problem
 from tribodyn.gear.hypoid.blank import HANDS, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, numbers
+from tribodyn.study.case.given import Given
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 
@@ -355,3 +358,17 @@ def is_needed(key: str, kind: str | None) -> bool:
     return all(
         key not in keys or kind_of == (kind or "spur") for kind_of, keys in _REQUIRED.items()
     )
+
+
+def heat_of_bodies(given: Given) -> Iterator[tuple[str, Problem]]:
+    """Conductivity and specific heat of a gear tell only together how its flank warms."""
+    for gear in ("pinion", "wheel"):
+        keys = [f"gears.{gear}.{name}" for name in ("thermal_conductivity", "specific_heat")]
+        present = [key for key in keys if key in given]
+        if len(present) == 1:
+            absent = next(key for key in keys if key not in given)
+            name = absent.rpartition(".")[2]
+            why = f"{given.show(present[0])} of the {gear} needs its counterpart"
+            example = {"specific_heat": "460 J/kg/K", "thermal_conductivity": "47 W/m/K"}[name]
+            remedy = f'Add {name} = "{example}", that of steel, or remove both'
+            yield absent, Problem(f"{name} of the {gear} is missing", "", why, remedy)
