@@ -136,7 +136,7 @@ class PhaseFunction:
     values : array (n, ...)
         Values at the knots.
     onto : array (m, k), optional
-        Matrix by which the last m values become k.
+        Matrix of pure numbers by which the last m values become k.
     """
 
     grid: PhaseGrid

@@ -82,15 +82,17 @@ class FlankWatch:
 
     def compression(self, states: Array) -> Array:
         """Compression of each mesh at both ends of every step, (periods, steps, 2, meshes)."""
-        return self._along(states) - self._error
+        return self._along(states[..., None])[..., 0] - self._error
 
     def _along(self, states: Array) -> Array:
-        q = states[..., : self._size]
-        ends = np.stack((q[..., :-1, :], q[..., 1:, :]), axis=-2)
-        ends = ends.reshape(*q.shape[:-2], -1, self._steps, 2, self._size)
+        """States (rows, 2 n, k) along the directions, (periods, steps, 2, meshes, k)."""
+        shape = (-1, self._steps, 2, self._direction.shape[2], states.shape[2])
+        q = states[:, : self._size]
         if self._held:  # the same direction all along
-            return np.asarray(ends @ self._direction[0, 0].T)
-        return np.asarray(np.einsum("rsji,...rsi->...rsj", self._direction, ends))
+            along = np.tensordot(q, self._direction[0, 0], (1, 1)).swapaxes(1, 2)
+            return np.stack((along[:-1], along[1:]), axis=1).reshape(shape)
+        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(-1, self._steps, 2, *q.shape[1:])
+        return np.asarray(np.einsum("rsji,crsik->crsjk", self._direction, ends))
 
     def clearance(self, compression: Array) -> Array:
         """Distance of each mesh from parting, on the flank on which it begins."""
@@ -98,12 +100,17 @@ class FlankWatch:
 
     @staticmethod
     def flank(compression: Array) -> Array:
-        """Side of the play on which each mesh begins, (..., 1, 1, 1, meshes): 1 or -1."""
-        return np.where(compression[..., :1, :1, :1, :] < 0.0, -1.0, 1.0)
+        """Side of the play on which each mesh begins, (meshes,): 1 or -1."""
+        return np.where(compression[0, 0, 0] < 0.0, -1.0, 1.0)
 
-    def in_touch(self, states: Array) -> bool:
-        """Whether no mesh parts on the way."""
-        return bool(np.all(self.clearance(self.compression(states)) > 0.0))
+    def in_touch(self, states: Array, beside: Array | None = None) -> bool:
+        """Whether no mesh parts on the way, nor on ways (rows, 2 n, k) beside it."""
+        compression = self.compression(states)
+        room = self.clearance(compression)
+        if beside is None:
+            return bool(np.all(room > 0.0))
+        moved = self.flank(compression)[:, None] * self._along(beside)
+        return bool(np.all(room > 0.0) and np.all(room[..., None] + moved > 0.0))
 
     def stays(self, states: Array, slopes: Array, matrix: Array, distance: Array) -> bool:
         """Whether a motion beside an orbit reaches it without parting."""
@@ -111,8 +118,8 @@ class FlankWatch:
         room = self.clearance(compression).reshape(-1)
         if np.any(room <= 0.0):
             return False
-        rates = self.flank(compression) * self._along(slopes)
-        rates = rates.reshape(len(slopes), -1).T
+        rates = self.flank(compression)[:, None] * self._along(slopes)
+        rates = rates.reshape(room.size, -1)
         first, steepest = float(np.abs(rates @ distance).max(initial=0.0)), 0.0
         if rates.size:
             steepest = float(np.sqrt((rates**2).sum(axis=1).max()))
@@ -157,7 +164,7 @@ class OrbitPoint:
     scale: float  #: size of the motion [m/s]
     multipliers: ComplexArray  #: floquet multipliers, the largest first
     states: Array  #: the motion over one period
-    slopes: Array  #: its derivative by the reduced vector
+    slopes: Array  #: its derivative by the reduced vector, the last axis
     search: int = 0
     linear: bool = False  #: in touch all along, so that other motions differ by multiples of slopes
 
@@ -195,11 +202,9 @@ def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> Or
         return replace(known, point=y, residual=image - y, scale=scale, states=states)
     if mapping.affine:
         # Of a linear map any difference is exact, and a large one loses no digits.
-        matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((0, *states.shape))
+        matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((*states.shape, 0))
     else:
-        step = _DISTURBANCE * scale
-        images, motions = mapping.follow(y + step * np.eye(y.size))
-        matrix, slopes = (images - image).T / step, (motions - states) / step
+        _, matrix, _, slopes = mapping.differences(y, _DISTURBANCE * scale)
     return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix), states, slopes)
 
 
@@ -244,13 +249,11 @@ def _in_one_march(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint |
     if not watch.whole or mapping.compiled.nodes.friction_coefficients.shape[-1] > 1:
         return None
     step = _APART * float(np.linalg.norm(y))
-    images, motions = mapping.follow(y + step * np.vstack((np.zeros(y.size), np.eye(y.size))))
-    if not watch.in_touch(motions):
+    image, matrix, states, slopes = mapping.differences(y, step)
+    if not watch.in_touch(states, step * slopes):
         return None
-    matrix, slopes = (images[1:] - images[0]).T / step, (motions[1:] - motions[0]) / step
-    scale = motion_size(mapping, motions[0])
-    told = mapping.multipliers(matrix), motions[0], slopes
-    start = OrbitPoint(y, images[0] - y, matrix, scale, *told, linear=True)
+    told = mapping.multipliers(matrix), states, slopes
+    start = OrbitPoint(y, image - y, matrix, motion_size(mapping, states), *told, linear=True)
     orbit = finish_orbit(mapping, y + start.correction, tolerance, start)
     if orbit.linear and _good(orbit, tolerance) and watch.in_touch(orbit.states):
         return orbit if watch.stays(orbit.states, slopes, matrix, y - orbit.point) else None
