@@ -84,4 +84,4 @@ def test_a_graphics_processor_that_is_not_there_is_told_at_its_key(monkeypatch) 
     with pytest.raises(InputError, match=r"solver\.backend: numba-cuda is not installed"):
         td.run(asking)
     with pytest.raises(InputError, match='does not belong to engine = "newmark"'):
-        read_case(TEXT + '\n[solver]\nengine = "newmark"\nbackend = "cuda"\n')
+        asking.replace({"solver.engine": "newmark", "solver.backend": "cuda"})
