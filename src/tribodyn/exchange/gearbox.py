@@ -25,6 +25,10 @@ _OTHER_STAGES = ("bevel_stage", "worm_stage")
 _TIP_MODULES = 2.0
 
 
+#: What to do about a file that says too little.
+_EXPORT = "Correct it in the program that wrote the file, and export it again"
+
+
 @dataclass(frozen=True)
 class StageGear:
     """One gear of a stage, in SI and radians; None is what the file does not say.
@@ -208,7 +212,7 @@ class GearboxModel:
         if not known:
             found = ", ".join(k for k in self.components if k.endswith("_stage")) or "none"
             why = f"Stages in the file: {found}; cylindrical pairs are computed"
-            raise InputError("there is no cylindrical stage", self.path, why)
+            raise InputError("there is no cylindrical stage", self.path, why, _EXPORT)
         if number is None and len(known) == 1:
             number = known[0]
         if number not in known:
@@ -277,15 +281,18 @@ class GearboxModel:
                 found = Stage(stage.id, one, two, distance, stage.id in self._planetary)
                 self._remark_on_stage(found)
                 return found
-        raise InputError("no relation names both gears of the stage", str(stage))
+        why = "A stage refers to its two gears"
+        raise InputError("no relation names both gears of the stage", str(stage), why, _EXPORT)
 
     def _gear(self, gear: Component) -> StageGear:
         if gear.kind not in _GEARS:
-            raise InputError(f"a cylindrical stage has a {gear.kind}", str(gear))
+            why = f"Read are: {', '.join(sorted(_GEARS))}"
+            raise InputError(f"a cylindrical stage has a {gear.kind}", str(gear), why, _EXPORT)
         flank = self._flank(gear)
         teeth = _needed(gear, "number_of_teeth", "")
         if teeth != int(teeth) or not 1 <= abs(teeth) <= 10_000:
-            raise InputError(f"number_of_teeth = {teeth:g}", str(gear), "It is no number of teeth")
+            why = "Teeth are counted, up to 10000"
+            raise InputError(f"number_of_teeth = {teeth:g}", str(gear), why, _EXPORT)
         sign = -1.0 if gear.kind == "ring_gear" else 1.0
         found = StageGear(
             gear.id,
@@ -312,7 +319,8 @@ class GearboxModel:
                         self._remark(f"{gear}: {name} of its flanks differs; the left one is read")
             if sides:
                 return sides[0]
-        raise InputError("no relation names its flanks", str(gear))
+        why = "A gear refers to its flanks"
+        raise InputError("no relation names its flanks", str(gear), why, _EXPORT)
 
     def _without_nonsense(self, found: StageGear, gear: Component) -> StageGear:
         if found.tip_diameter is None:
@@ -437,7 +445,7 @@ def _require_gear(found: StageGear, gear: Component) -> None:
     for name, (value, low, high) in limits.items():
         if not low <= value <= high:
             why = f"Gears have {low:g} to {high:g} (SI, radians)"
-            raise InputError(f"{name} = {value:g}", str(gear), why)
+            raise InputError(f"{name} = {value:g}", str(gear), why, _EXPORT)
 
 
 def read_rexs(path: str | PathLike[str]) -> GearboxModel:

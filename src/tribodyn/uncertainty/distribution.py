@@ -114,7 +114,14 @@ def _spread(text: str, mean: float, unit: str) -> float:
 def _wrong(name: str, given: Any, why: str = "") -> InputError:
     what = f"{shortened(repr(given))} is no distribution"
     remedy = 'Write "0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
-    return InputError(Problem(what, name, why, remedy + "or give data or a SciPy distribution"))
+    return InputError(
+        Problem(
+            what,
+            name,
+            why or "It is none of the kinds that are known",
+            remedy + "or give data or a SciPy distribution",
+        )
+    )
 
 
 class _Data:

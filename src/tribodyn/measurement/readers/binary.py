@@ -62,7 +62,12 @@ def uff(path: Path) -> Content:
             continue
         if data.size != held["num_pts"]:
             what = f"holds {data.size} of {held['num_pts']} samples"
-            raise InputError(what, where=str(path), why="The file is cut short")
+            raise InputError(
+                what,
+                where=str(path),
+                why="The file is cut short",
+                remedy="Save the recording again",
+            )
         name = _uff_name(held, channels)
         channels[name] = data.astype(float)
         units[name] = _label(held["ordinate_axis_units_lab"])
@@ -114,6 +119,7 @@ def tdms(path: Path) -> Content:
             "its last segment is incomplete",
             where=str(path),
             why="The file is cut short, or was still being written",
+            remedy="Save the recording again, once it has ended",
         )
     several = len(held.groups()) > 1
     for group in held.groups():
@@ -127,7 +133,12 @@ def tdms(path: Path) -> Content:
             if (step := float(channel.properties.get("wf_increment", 0.0))) > 0.0:
                 rates[name] = 1.0 / step
     if not channels:
-        raise InputError("holds no channel of numbers", where=str(path))
+        raise InputError(
+            "holds no channel of numbers",
+            where=str(path),
+            why="A recording is read by its channels of numbers",
+            remedy="Look into the file with the program that wrote it",
+        )
     first = next(iter(channels))
     time = None
     if first not in rates and len(channels) > 1 and is_time(first.rsplit("/", 1)[-1], units[first]):

@@ -37,7 +37,12 @@ def content(path: Path) -> Content:
     if is_time(names[0], units[0]):
         time = in_seconds(columns.pop(names[0]), of.pop(names[0]))
     if not columns:
-        raise InputError("has times and nothing else", where=str(path), remedy="Add a column")
+        raise InputError(
+            "has times and nothing else",
+            where=str(path),
+            remedy="Add a column",
+            why="A recording has at least one signal",
+        )
     return Content(columns, of, time=time)
 
 
@@ -47,7 +52,12 @@ def _text(path: Path) -> str:
         with gzip.open(path) as file:
             raw = file.read(LARGEST["recording"] + 1)
         if len(raw) > LARGEST["recording"]:
-            raise InputError("is too large once it is unpacked", where=str(path))
+            raise InputError(
+                "is too large once it is unpacked",
+                where=str(path),
+                why="So large a table does not fit into the memory",
+                remedy="Cut the recording, or lower its sampling rate",
+            )
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return raw.decode("utf-16")
     try:
@@ -132,5 +142,10 @@ def _numbers(
                     remedy="The file is cut short there, or a sample is missing: cut the row, or "
                     "fill it by interpolation",
                 )
-        raise InputError("holds numbers that are not finite", where=str(path))
+        raise InputError(
+            "holds numbers that are not finite",
+            where=str(path),
+            why="Spectra and orders need every sample",
+            remedy="Fill the gaps, or cut the recording before them",
+        )
     return table
