@@ -241,7 +241,8 @@ def _wanted(hint: Any, sized: bool, strict: bool = False) -> Wanted:
     if origin is np.ndarray:
         item = typing.get_args(args[1])[0]
         # Methods and records also serve the package itself, for complex and logical arrays too.
-        return _numbers(_ITEMS[item] + "cb" * (not sized), sized, False) if item in _ITEMS else _ANYTHING
+        kinds = _ITEMS.get(item, "") + "cb" * (not sized)
+        return _numbers(kinds, sized, as_given=False) if item in _ITEMS else _ANYTHING
     if origin is typing.Literal:
         words = ", ".join(f'"{v}"' if isinstance(v, str) else str(v) for v in args)
         return _that(words, lambda value: isinstance(value, str | int) and value in args)
@@ -420,20 +421,7 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
 
 
 def guarded(thing: Any, page: str) -> Any:
-    """Have one public function or class read its arguments; anything else is left as it is.
-
-    Parameters
-    ----------
-    thing : object
-        What a page names.
-    page : str
-        Name of its module.
-
-    Returns
-    -------
-    object
-        The function that reads its arguments first, or the same class.
-    """
+    """Have one public function or class read its arguments; anything else is left as it is."""
     if isinstance(thing, _FUNCTIONS):
         if getattr(thing, "reads", False):
             return thing
@@ -460,13 +448,7 @@ def _guard_methods(owner: type) -> None:
 
 
 def guard(page: str) -> None:
-    """Have the public functions, constructors and methods of a page read their arguments.
-
-    Parameters
-    ----------
-    page : str
-        Name of its module; its ``__all__`` says what is public.
-    """
+    """Have the public functions, constructors and methods of a page read their arguments."""
     module = sys.modules[page]
     for name in module.__all__:
         setattr(module, name, guarded(getattr(module, name), page))

@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 
 from freeze.frozen_surface import PAGES
-
 from tribodyn.cases import case_files, run
 from tribodyn.contact import path_of_contact
 from tribodyn.drawing import FIGURES, Drawing
@@ -54,7 +53,8 @@ _SLOW = """
 cases.PaperComparison cases.compare_with_paper dynamics.Branch dynamics.HypoidSupports
 dynamics.SpecialPoint dynamics.continuation exchange.write_tables gear.HypoidKinematics
 gear.ToothContact gear.hypoid_kinematics gear.tooth_contact mesh.hypoid_loaded_contact
-ehl.MixedLineContact ehl.mixed_line_contact plot.tooth_force mesh.moving_film plot.continuation plot.flank_modification plot.friction_claims
+ehl.MixedLineContact ehl.mixed_line_contact plot.tooth_force mesh.moving_film
+plot.continuation plot.flank_modification plot.friction_claims
 plot.friction_effect plot.friction_harmonics plot.hypoid_contact plot.surrogate
 plot.tip_relief_map stiffness.TipReliefOptimum stiffness.optimize_tip_relief study.DataSet
 study.bifurcation study.friction_experiment study.load_data study.operating_data
@@ -110,9 +110,26 @@ def working_calls(slow: bool = True) -> dict[str, Call]:
         arguments = _drawn(thing, objects) if isinstance(thing, Drawing) else _made(thing, objects)
         if name not in calls and arguments is not None:
             calls[name] = thing, arguments
+    kinds = {thing for thing in things.values() if isinstance(thing, type)}
+    _RESULTS[:] = [found[0] for kind, found in objects.items() if kind in kinds]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         return calls | _others(things, objects, calls)
+
+
+_RESULTS: list[Any] = []
+
+
+def results() -> list[Any]:
+    """Objects that the examples made, of public classes."""
+    return _RESULTS
+
+
+def methods(kind: type) -> list[str]:
+    """Public methods of a class that neither show nor open anything."""
+    names = [name for name in dir(kind) if not name.startswith("_") or name == "__call__"]
+    left = {"show", "open", "write_image"}
+    return [name for name in names if callable(getattr(kind, name)) and name not in left]
 
 
 def _others(
