@@ -8,7 +8,7 @@
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
 ``analysis``, ``measurement``, ``uncertainty``,
-``exchange``, ``study``, ``cases``, ``plot`` and ``report``.
+``exchange``, ``study``, ``cases``, ``variants``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
         sweep,
         vibration_data,
     )
+    from tribodyn.variants import open_study, run_study
 
 __version__ = "0.1.0"
 
@@ -65,10 +66,12 @@ __all__ = [
     "loaded_contact",
     "loss_map",
     "natural_modes",
+    "open_study",
     "operating_data",
     "optimize_tip_relief",
     "rig_power_flow",
     "run",
+    "run_study",
     "run_up",
     "speed_sweep",
     "sweep",
@@ -94,10 +97,12 @@ _HOMES = {
     "loaded_contact": "study",
     "loss_map": "study",
     "natural_modes": "study",
+    "open_study": "variants",
     "operating_data": "study",
     "optimize_tip_relief": "study",
     "rig_power_flow": "study",
     "run": "cases",
+    "run_study": "variants",
     "run_up": "study",
     "speed_sweep": "study",
     "sweep": "study",
@@ -107,7 +112,7 @@ _HOMES = {
 _ROOMS = (
     "analysis", "cases", "contact", "dynamics", "ehl", "errors", "exchange", "friction", "gear",
     "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report",
-    "stiffness", "study", "surrogate", "uncertainty", "units",
+    "stiffness", "study", "surrogate", "uncertainty", "units", "variants",
 )  # fmt: skip
 
 

@@ -8,10 +8,12 @@ interrupted.
 
 from __future__ import annotations
 
+import os
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, wait
+from contextlib import contextmanager
 from contextvars import copy_context
 from queue import SimpleQueue
 from types import TracebackType
@@ -20,7 +22,16 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["STOPPED", "Threads", "in_threads", "refuse_stopped", "stop_flag", "stoppable"]
+__all__ = [
+    "STOPPED",
+    "Threads",
+    "alone",
+    "in_threads",
+    "processors",
+    "refuse_stopped",
+    "stop_flag",
+    "stoppable",
+]
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -122,6 +133,21 @@ class Threads:
         self._threads = []
 
 
+@contextmanager
+def alone() -> Iterator[None]:
+    """Let this thread begin no others inside the block: others like it keep the processors busy."""
+    _here.alone = True
+    try:
+        yield
+    finally:
+        _here.alone = False
+
+
+def processors() -> int:
+    """Threads that this one may begin."""
+    return 1 if getattr(_here, "alone", False) else os.cpu_count() or 1
+
+
 def in_threads(
     function: Callable[[Item], Value], items: Iterable[Item], count: int, *, brief: bool = False
 ) -> list[Value]:
@@ -130,8 +156,9 @@ def in_threads(
     What is ``brief`` anyway, and what one thread of several does by itself, is computed here.
     """
     items = list(items)
-    count = max(min(count, len(items)), 1)
-    aside = getattr(_here, "flag", None) is None and not brief
+    alone = getattr(_here, "alone", False)
+    count = 1 if alone else max(min(count, len(items)), 1)
+    aside = getattr(_here, "flag", None) is None and not brief and not alone
     aside = aside and threading.current_thread() is threading.main_thread()
     if count == 1 and not aside:
         return [function(item) for item in items]

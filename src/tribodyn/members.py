@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.files import cannot_write, lock
 
-__all__ = ["Members"]
+__all__ = ["NAME", "Members", "read_lines"]
 
 #: File of the members.
 NAME = "members.jsonl"
@@ -30,10 +30,15 @@ _WORDS = {
 
 
 class Members:
-    """Members of a study by name, in a hidden folder beside its place until it is discarded."""
+    """Members of a study by name, in a hidden folder beside its place until it is discarded.
 
-    def __init__(self, target: Path | None = None, anew: bool = False) -> None:
-        self.target, self.anew = target, anew
+    ``inside`` keeps them in the place itself, for good.
+    """
+
+    def __init__(
+        self, target: Path | None = None, anew: bool = False, *, inside: bool = False
+    ) -> None:
+        self.target, self.anew, self.inside = target, anew, inside
         self.folder: Path | None = None
         self._found: dict[str, Any] = {}
         self._held, self._kept = -1, False
@@ -45,7 +50,7 @@ class Members:
         if self.target is None:
             return self
         place = self.target.absolute()
-        folder = place.with_name(f".{place.name}.members")
+        folder = place if self.inside else place.with_name(f".{place.name}.members")
         try:
             self._hold(folder)
             self._open(folder, json.loads(json.dumps(identity)))
@@ -68,14 +73,14 @@ class Members:
 
     def _open(self, folder: Path, identity: dict[str, Any]) -> None:
         path = folder / NAME
-        lines, size = _lines(path)
+        lines, size = read_lines(path)
         if lines and lines[0] != identity:
             if not self.anew:
                 self.close()
                 raise InputError(*_other(str(self.target), lines[0], identity))
             lines, size = [], 0
             for entry in folder.iterdir():
-                entry.unlink()
+                shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
         self.folder, self._file = folder, path.open("ab")
         self._file.truncate(size)
         if not lines:
@@ -85,6 +90,10 @@ class Members:
     def __len__(self) -> int:
         """Number of members that were there."""
         return len(self._found)
+
+    def all(self) -> dict[str, Any]:
+        """Everything that was there, by name."""
+        return dict(self._found)
 
     def get(self, name: str) -> Any:
         """Member that an earlier process has finished, or None."""
@@ -144,7 +153,7 @@ class Members:
         self.close()
 
 
-def _lines(path: Path) -> tuple[list[Any], int]:
+def read_lines(path: Path) -> tuple[list[Any], int]:
     """Lines that were written whole, and where the last of them ends."""
     found, size = [], 0
     content = path.read_bytes() if path.is_file() else b""

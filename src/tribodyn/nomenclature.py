@@ -215,6 +215,7 @@ def _read() -> dict[str, Quantity]:
     return {quantity.name: quantity for quantity in quantities}
 
 
+#: Every quantity by its name.
 QUANTITIES: dict[str, Quantity] = _read()
 
 

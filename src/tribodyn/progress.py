@@ -33,4 +33,5 @@ class _Silent:
         """End silently."""
 
 
+#: Progress that says nothing: the default everywhere.
 SILENT: Progress = _Silent()

@@ -1,11 +1,14 @@
 """Text of the documentation that the program itself writes: ``python tests/docs/generated.py``."""
 
-import importlib
-import inspect
 import re
+import sys
 
 from contents import page as contents_page
 from pages import ROOT
+
+sys.path.insert(0, str(ROOT / "docs"))
+
+from _site.names import described, packages
 
 from tribodyn.study import Case
 from tribodyn.study.case.reference import reference_tables, start_toml
@@ -48,15 +51,6 @@ BibTeX. Docstrings name the source of every formula with its equation or table.
 
 """
 
-#: Packages whose names are for users.
-_PACKAGES = (
-    "tribodyn", "tribodyn.gear", "tribodyn.contact", "tribodyn.lubricant", "tribodyn.ehl",
-    "tribodyn.friction", "tribodyn.losses", "tribodyn.stiffness", "tribodyn.mesh",
-    "tribodyn.dynamics", "tribodyn.analysis", "tribodyn.measurement", "tribodyn.uncertainty",
-    "tribodyn.surrogate",
-    "tribodyn.plot", "tribodyn.report", "tribodyn.errors", "tribodyn.units", "tribodyn.progress",
-)  # fmt: skip
-
 
 def _reference(text: str) -> str:
     """The page of public names."""
@@ -66,14 +60,12 @@ def _reference(text: str) -> str:
         "What can be imported, by package, with the first line of its contract. `help(name)` shows",
         "the whole: parameters with units and shapes, results, errors, range, source, example.",
     ]
-    for name in _PACKAGES:
-        package = importlib.import_module(name)
+    for name, package in packages().items():
         lines += ["", f"## `{name}`", "", "| name | what it is |", "|---|---|"]
-        for public in sorted(package.__all__, key=str.casefold):
-            meant = inspect.getdoc(getattr(package, public)) or ""
-            first = meant.partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
-            plain = re.sub(r":[a-z]+:`~?([^`]*)`", r"`\1`", first)
-            lines.append(f"| `{public}` | {plain} |")
+        lines += [
+            f"| `{public}` | {described(package, public)} |"
+            for public in sorted(package.__all__, key=str.casefold)
+        ]
     return "\n".join(lines) + "\n"
 
 

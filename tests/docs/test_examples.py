@@ -8,8 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.py"))
+from gallery import EXAMPLES, GALLERY, masked
 
 
 def figure(text: str, label: str, column: int = 0) -> float:
@@ -291,6 +290,10 @@ def test_example_prints_known_figures(path: Path, tmp_path: Path) -> None:
         env={**os.environ, "PYTHONIOENCODING": "utf-8"},
     )
     assert done.returncode == 0, done.stderr
+    shown = (GALLERY / f"{path.stem}.txt").read_text("utf-8")
+    assert masked(done.stdout) == masked(shown), (
+        f"run: python tests/docs/gallery.py {path.name[:2]}"
+    )
     EXPECTED[path.name](done.stdout)
     for place in re.findall(r"^(?:figures|files) in (.*?):", done.stdout, re.M):
         assert Path(place).parent == tmp_path.resolve()

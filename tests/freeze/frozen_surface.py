@@ -20,6 +20,7 @@ PACKAGE = Path(str(files("tribodyn")))
 _PARTS = """
 analysis cases cli contact dynamics ehl errors exchange friction gear losses lubricant
 measurement mesh nomenclature plot progress report stiffness study surrogate uncertainty units
+variants
 """
 
 #: Pages of public names.

@@ -23,6 +23,8 @@ HOSTS = {
     "plotly.com",
     "docs.python.org",
     "example.org",
+    "jobqueue.dask.org",
+    "kubernetes.dask.org",
 }
 
 

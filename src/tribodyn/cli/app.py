@@ -32,6 +32,11 @@ COMMANDS = (
         "Follow the motion of a case over one value.",
     ),
     (
+        "study",
+        "study_command:study",
+        "Compute many members of a case into a store, here or on a cluster.",
+    ),
+    (
         "modes",
         "study_commands:modes",
         "Find natural frequencies and critical speeds of a case.",

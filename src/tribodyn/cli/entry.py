@@ -103,6 +103,7 @@ _EXAMPLES = {
     "check": "fzg-roughness",
     "sweep": 'fzg-roughness "operation.speed=400..3500 rpm:60"',
     "bifurcation": 'fzg-roughness "operation.speed=400..3500 rpm:300"',
+    "study": "study.toml",
     "modes": "fzg-roughness",
     "harris": "fzg-roughness",
     "relief": "fzg-roughness",

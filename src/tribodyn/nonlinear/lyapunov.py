@@ -77,7 +77,7 @@ class LyapunovExponents(Record):
         Growth of the orthogonal disturbances in every mesh cycle [1/s].
     verdict : "physical", "step-limited", "undecided" or ""
         What half the step says of it, see
-        :func:`~tribodyn.nonlinear.verdict.exponent_verdict`; empty where it was not asked.
+        :func:`~tribodyn.nonlinear.lyapunov.exponent_verdict`; empty where it was not asked.
     """
 
     exponents: Array = quantity("exponent", unit="1/s", name="lyapunov_exponent")

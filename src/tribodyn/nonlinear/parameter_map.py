@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -142,16 +143,9 @@ def parameter_map(
     shape = (axes.first.size, axes.second.size)
     points, number = _points(systems, axes, mesh_frequency, steps)
     kept = signal if systems[0].contacts else name
-    survey = Survey(
-        transient, cycles, max(2, cycles), kept, keep_partial, tolerance=_NEAR, width=_WIDTH
-    )
+    survey = map_survey(transient, cycles, kept, keep_partial)
     progress.start("Motions", points.count * (1 + bool(verdict)))
-    outcomes = Outcomes(points.count, survey.keep, points.size)
-    outcomes.first[:] = np.nan if begin is None else begin
-    march_points(points, survey, outcomes, None, progress)
-    words = np.full(points.count, "", dtype="<U12")
-    if verdict and not survey.stop.is_set():
-        words = _judged(points, number, outcomes, survey, progress)
+    outcomes, words = surveyed(points, number, survey, begin, verdict, progress)
     progress.finish()
     return ParameterMap(
         names=axes.names,
@@ -169,6 +163,32 @@ def parameter_map(
     )
 
 
+def map_survey(
+    transient: int = 300, cycles: int = 24, signal: int | str = 0, keep_partial: bool = False
+) -> Survey:
+    """How the motions of a map are marched."""
+    keep = max(2, cycles)
+    return Survey(transient, cycles, keep, signal, keep_partial, tolerance=_NEAR, width=_WIDTH)
+
+
+def surveyed(
+    points: Points,
+    step_number: Array,
+    survey: Survey,
+    begin: Any = None,
+    verdict: bool = True,
+    progress: Progress = SILENT,
+) -> tuple[Outcomes, NDArray[np.str_]]:
+    """March motions from rest, or from where they begin, and judge each of them."""
+    outcomes = Outcomes(points.count, survey.keep, points.size)
+    outcomes.first[:] = np.nan if begin is None else begin
+    march_points(points, survey, outcomes, None, progress)
+    words: NDArray[np.str_] = np.full(points.count, "", dtype="<U12")
+    if verdict and not survey.stop.is_set():
+        words = _judged(points, step_number, outcomes, survey, progress)
+    return outcomes, words
+
+
 def _points(
     systems: list[System], axes: _Axes, mesh_frequency: float | None, steps: int | None
 ) -> tuple[Points, Array]:
@@ -180,14 +200,21 @@ def _points(
     frequency = flat.pop("mesh_frequency", np.full(count, fixed))
     factors = {name: values for name, values in flat.items() if name in SCALES}
     each = [system for system in systems for _ in range(count // len(systems))]
-    number = _rates(each, factors) / frequency
+    return stepped(each, frequency, factors, steps)
+
+
+def stepped(
+    systems: list[System], frequency: Array, factors: dict[str, Array], steps: int | None = None
+) -> tuple[Points, Array]:
+    """Motions with the steps that each of them needs, and ``omega_max * dt``."""
+    number = _rates(systems, factors) / frequency
     chosen = _steps(number, steps)
-    return Points(each, frequency, chosen, factors), number / chosen
+    return Points(systems, frequency, chosen, factors), number / chosen
 
 
 def _judged(
     points: Points, step_number: Array, outcomes: Outcomes, survey: Survey, progress: Progress
-) -> Array:
+) -> NDArray[np.str_]:
     """Judge by half the step: by one period where that is enough, else by marching anew."""
     words = np.full(points.count, "", dtype="<U12")
     finer = points.refined(2 * points.steps)

@@ -46,7 +46,7 @@ class PoincareSection(Record):
         Mesh cycles after which the motion repeats, 1 to 16; 0 if it is quasi-periodic, chaotic or
         not yet settled.
     verdict : "physical", "step-limited", "undecided" or ""
-        What half the step says of it, see :func:`~tribodyn.nonlinear.verdict.step_verdict`; empty
+        What half the step says of it, see :func:`~tribodyn.nonlinear.survey.step_verdict`; empty
         where it was not asked.
     """
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
+#: How the force on the mesh follows from its deflection.
 MeshForce = Literal["stiffness", "tangent", "force-law"]
 
 

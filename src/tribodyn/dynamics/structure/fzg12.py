@@ -94,6 +94,7 @@ class RectangularMesh:
 
 
 _BODIES = ("shaft1", "wheel", "pinion", "shaft2")
+#: Coordinates of the structure with 12 degrees of freedom, in their order.
 FZG12_NAMES = tuple(f"{body}_{axis}" for body in _BODIES for axis in ("v", "w", "theta"))
 #: Mesh frequency of the benchmark: 16 teeth at 1000 rpm [Hz].
 FZG12_MESH_FREQUENCY = 16 * 1000.0 / 60.0

@@ -162,6 +162,7 @@ def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | 
     )
 
 
+#: Coordinates of a gear pair with 6 degrees of freedom, in their order.
 SPUR6_NAMES = ("pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta")
 
 
@@ -272,6 +273,7 @@ def spur6(
     )
 
 
+#: Coordinates of a torsional gear pair, in their order.
 TORSIONAL_NAMES = ("pinion_theta", "wheel_theta")
 
 

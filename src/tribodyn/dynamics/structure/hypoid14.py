@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
 
 _WAYS = ("x", "y", "z", "theta_x", "theta", "theta_z")
+#: Coordinates of the structure of a hypoid pair, in their order.
 HYPOID14_NAMES = (
     "engine_theta",
     *(f"{gear}_{way}" for gear in ("pinion", "wheel") for way in _WAYS),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, wait
@@ -28,7 +27,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
-from tribodyn.interrupt import Threads
+from tribodyn.interrupt import Threads, processors
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
@@ -272,7 +271,7 @@ def _at(problem: Problem, index: int, shape: tuple[int, ...], columns: list[Arra
 
 def _in_order(work: Callable[[int], Value], size: int, threads: int | None) -> Iterator[Value]:
     """Results in order as they come; an interrupt or an error leaves no work behind."""
-    count = min(threads or os.cpu_count() or 1, size)
+    count = min(threads or processors(), size)
     if count <= 1:
         yield from map(work, range(size))
         return

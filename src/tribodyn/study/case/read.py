@@ -194,7 +194,7 @@ def read_case(text: str, name: str = "") -> Case:
     my.toml: gears: the table [gears] is missing. Add it with normal_module, \
 normal_pressure_angle, driver, pinion, wheel.
     """
-    data = _parse(text, name)
+    data = parse_toml(text, name)
     if not data:
         remedy = "Write a case to start from: tribodyn new my.toml"
         raise InputError(
@@ -230,7 +230,8 @@ def _at(data: Any, *keys: str) -> Any:
     return data
 
 
-def _parse(text: str, name: str) -> dict[str, Any]:
+def parse_toml(text: str, name: str) -> dict[str, Any]:
+    """Read TOML, and say what is wrong with it."""
     if chain := _CHAIN.search(text):
         line = text.count("\n", 0, chain.start()) + 1
         what = "a key has more parts than any key of a case"

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _EXAMPLE = 'Write, for example, {"operation.speed": ("400 rpm", "3500 rpm", 60)}'
 _WORD = 'Write, for example, "operation.speed=400..3500 rpm:60"'
+_LINE = 'Write, for example, operation.speed = "400..3500 rpm:60"'
 #: Values of a study: more are a slip of the keyboard, since each is a computation.
 _MOST = 100_000
 
@@ -66,7 +67,7 @@ class Axis:
 
 def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple[float, ...]:
     """Read values of one key as the case does, each by itself."""
-    found = [_one(case, key, end, by) for end in ends]
+    found = [member_value(case, key, end, by) for end in ends]
     if not all(isinstance(value, float) for value in found):
         what, why = f"{key} goes from {ends[0]} to {ends[-1]}", "It has no values in between"
         remedy = 'Take a number such as "operation.speed", or list the values for a sweep'
@@ -76,7 +77,7 @@ def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple
     return tuple(float(value) for value in found)
 
 
-def _one(case: Case, key: str, value: Any, by: str) -> Any:
+def member_value(case: Case, key: str, value: Any, by: str) -> Any:
     """Read one value; what it does together with other keys is seen when it is computed."""
     spec = spec_of(case, key)
     if spec is None and section_at(tuple(key.split("."))) is not None:
@@ -98,8 +99,13 @@ def _one(case: Case, key: str, value: Any, by: str) -> Any:
         told = fault.problem
         where, remedy = f"{by} {key}".strip(), told.remedy
         if by and spec.unit and isinstance(value, int | float):
-            remedy = f"Write the unit behind the last number. {_WORD}"
+            remedy = f"Write the unit behind the last number. {_example(by)}"
         raise InputError(Problem(told.what, where, told.why, remedy)) from None
+
+
+def _example(by: str) -> str:
+    """How values are written: in Python, in a study file, on the command line."""
+    return {"": _EXAMPLE, "axes": _LINE}.get(by, _WORD)
 
 
 def _place(by: str) -> str:
@@ -115,7 +121,7 @@ def read_axes(case: Case, over: Mapping[str, Any], *, by: str = "") -> tuple[Axi
     """Read the keys that vary."""
     if not over:
         raise InputError(Problem("nothing varies", "argument over", "", _EXAMPLE))
-    axes = tuple(_axis(case, key, values, by) for key, values in over.items())
+    axes = tuple(read_axis(case, key, values, by) for key, values in over.items())
     _check_number(math.prod(len(axis.values) for axis in axes), by)
     return axes
 
@@ -126,14 +132,15 @@ def _check_number(points: int, by: str) -> None:
         raise InputError(Problem(f"{points} values", _place(by), why, "Take fewer points"))
 
 
-def _axis(case: Case, key: str, given: Any, by: str) -> Axis:
+def read_axis(case: Case, key: str, given: Any, by: str) -> Axis:
+    """Read the values of one key."""
     if isinstance(given, tuple) and len(given) == 3:
         values = _range(case, key, given, by)
     elif isinstance(given, list | np.ndarray):
-        values = tuple(_one(case, key, value, by) for value in given)
+        values = tuple(member_value(case, key, value, by) for value in given)
     else:
         why = "It is (first, last, points), a tuple, or a list of values"
-        raise InputError(Problem(f"{key} = {given!r}", _place(by), why, _EXAMPLE))
+        raise InputError(Problem(f"{key} = {given!r}", _place(by), why, _example(by)))
     if len(values) < 2:
         what = f"{key} has {len(values)} value{'s' if not values else ''}"
         remedy = "Give more values, or change the one in the case itself"
@@ -148,7 +155,7 @@ def _range(case: Case, key: str, given: tuple[Any, ...], by: str) -> tuple[float
     if isinstance(points, bool) or int(points) != points or points < 2:
         why = "A range has at least two points, both ends included"
         what = f"{key} has {points} point{'s' if points != 1 else ''}"
-        raise InputError(Problem(what, _place(by), why, _WORD if by else _EXAMPLE))
+        raise InputError(Problem(what, _place(by), why, _example(by)))
     _check_number(int(points), by)
     low, high = ends_of(case, key, (first, last), by=by)
     if not low < high:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -118,6 +118,19 @@ def points_of(
             raise
     progress.finish()
     return tuple(finished(done))
+
+
+def points_under(
+    case: Case, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+) -> list[SweepPoint]:
+    """Compute a case under each of some changes, in their order; what fails is told."""
+    done: dict[int, SweepPoint] = {}
+
+    def point(change: Mapping[str, Any]) -> SweepPoint:
+        return _point(lambda *_: computed(case.replace(change)), tuple(change.values()))
+
+    over_cases(point, changes, done, progress)
+    return [done[index] for index in range(len(changes))]
 
 
 def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[str, Any]:

@@ -86,10 +86,12 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
             keyed[key] = column
     with placed(case), quiet():
         if keyed:
-            changes = [
-                {key: float(column[lane]) for key, column in keyed.items()} for lane in range(count)
-            ]
-            members = varied(case, changes, progress)
+            # Lanes of the same values share one structure, and so one march.
+            rows = [tuple(map(float, row)) for row in zip(*keyed.values(), strict=True)]
+            places = {row: place for place, row in enumerate(dict.fromkeys(rows))}
+            changes = [dict(zip(keyed, row, strict=True)) for row in places]
+            built_members = varied(case, changes, progress)
+            members = [built_members[places[row]] for row in rows]
         else:
             members = [built(case)] * count
     frequency = speed * np.array([member.mesh.mesh_frequency for member in members])

@@ -1,0 +1,84 @@
+"""Public names: the package that each is explained on, and its line."""
+
+import importlib
+import inspect
+import pkgutil
+import re
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import tribodyn
+
+#: Modules whose names are for our own use, and the commands, which have a page.
+_INNER = {"cli", "compiled", "files", "interrupt", "stored"}
+
+
+@cache
+def packages() -> dict[str, ModuleType]:
+    """Packages of public names."""
+    found = {"tribodyn": tribodyn}
+    for info in pkgutil.iter_modules(tribodyn.__path__, "tribodyn."):
+        short = info.name.partition(".")[2]
+        if not short.startswith("_") and short not in _INNER:
+            module = importlib.import_module(info.name)
+            if getattr(module, "__all__", ()):
+                found[info.name] = module
+    return found
+
+
+@cache
+def homes() -> dict[tuple[str, str], str]:
+    """Full name under which each name of each package is explained.
+
+    It is that of the top level; else of the package in which the thing is defined; else of the
+    first that has it.
+    """
+    found: dict[tuple[str, str], str] = {}
+    first: dict[int, str] = {}
+    places = [(name, public) for name, package in packages().items() for public in package.__all__]
+    for name, public in sorted(places, key=lambda place: not _defined_in(*place)):
+        thing = getattr(packages()[name], public)
+        if isinstance(thing, ModuleType | str | int | float | tuple):
+            found[name, public] = f"{name}.{public}"
+        else:
+            found[name, public] = first.setdefault(id(thing), f"{name}.{public}")
+    return found
+
+
+def _defined_in(package: str, name: str) -> bool:
+    module = getattr(getattr(packages()[package], name), "__module__", "") or ""
+    return package == "tribodyn" or f"{module}.".startswith(f"{package}.")
+
+
+def described(package: ModuleType, name: str) -> str:
+    """First line of a contract, or the comment on a constant."""
+    thing = getattr(package, name)
+    comment = _comments(package.__name__).get(name, "")
+    own = inspect.ismodule(thing) or not is_constant(thing)
+    told = (inspect.getdoc(thing) or "") if own else ""
+    told = told or comment
+    if hasattr(thing, "names") and not told:
+        told = f"Named choices: {', '.join(f'``{each}``' for each in thing.names())}."
+    told = told or {"__version__": "Version of the package."}.get(name, "")
+    first = told.partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    return re.sub(r":[a-z]+:`~?([^`]*)`", r"`\1`", first).replace("``", "`")
+
+
+def is_constant(thing: Any) -> bool:
+    """Whether a name stands for a value, whose own docstring is that of its type."""
+    return not (inspect.isclass(thing) or inspect.isroutine(thing) or hasattr(thing, "draw"))
+
+
+@cache
+def _comments(package: str) -> dict[str, str]:
+    """Comments ``#:`` on the constants of a package."""
+    found: dict[str, str] = {}
+    origin = Path(inspect.getfile(packages()[package]))
+    files = origin.parent.rglob("*.py") if origin.name == "__init__.py" else [origin]
+    for file in files:
+        text = file.read_text("utf-8")
+        for match in re.finditer(r"((?:^#: .*\n)+)^([A-Za-z]\w*)(?::| =)", text, re.MULTILINE):
+            found[match[2]] = re.sub(r"^#: ", "", match[1], flags=re.MULTILINE).strip()
+    return found

@@ -1,0 +1,128 @@
+"""``tribodyn study``: many members of a case, into a store that is gone on with."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribodyn.cli.bar import counted, left, progress_bar
+from tribodyn.cli.commands.study_commands import Flag, Output
+from tribodyn.cli.commands.sweep_command import INTERRUPTED
+from tribodyn.cli.screen import say, say_json, tell
+from tribodyn.errors import quiet
+
+if TYPE_CHECKING:
+    from tribodyn.progress import Progress
+    from tribodyn.variants import StudyState
+
+#: Time between two lines of progress where there is no terminal [s].
+_BETWEEN = 30.0
+
+
+def study(
+    study: str,
+    /,
+    *,
+    out: Output = None,
+    scheduler: str = "",
+    status: Flag = False,
+    force: Flag = False,
+    json: Flag = False,
+) -> int:
+    """Compute the members of a study file into a store; the same command goes on with it.
+
+    Parameters
+    ----------
+    study : str
+        Path of a study file; with --status that of a store will do.
+    out : Path
+        Store to write; by default that of the file with "-study".
+    scheduler : str
+        Address of a Dask scheduler whose workers compute, such as "tcp://127.0.0.1:8786"; by
+        default this machine does.
+    status : bool
+        Say how far the study has come, which may run elsewhere, and compute nothing.
+    force : bool
+        Replace another study in that place.
+    json : bool
+        Write how far it has come as one JSON object to stdout.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    from tribodyn.variants import run_study, study_state
+
+    place = out if out is not None else Path(f"{Path(study).stem}-study")
+    if status:
+        state = study_state(study if out is None and Path(study).is_dir() else place)
+        _show(state, json)
+        return 0
+    try:
+        with quiet("leftover"), _progress() as progress:
+            state = run_study(study, place, scheduler=scheduler, force=force, progress=progress)
+    except KeyboardInterrupt:
+        tell("interrupted: what is finished is stored; the same command goes on from there")
+        _show(study_state(place), json)
+        return INTERRUPTED
+    _show(state, json)
+    for name in state.damaged:
+        tell(f"Chunk {name} was damaged or gone and was computed anew.")
+    for name, why in state.missing.items():
+        tell(f"Chunk {name} could not be computed; the same command tries again. {why}")
+    tell(f"Store: {place}")
+    return 1 if state.missing or state.failed == state.members else 0
+
+
+def _show(state: StudyState, as_json: bool) -> None:
+    if as_json:
+        say_json({**asdict(state), "complete": state.complete})
+        return
+    share = 100.0 * state.done / max(state.members, 1)
+    say(f"{state.title}\n  {state.done} of {state.members} members are done ({share:.3g} %)")
+    if state.failed:
+        say(f"  {state.failed} of them failed:")
+        for reason, count in state.reasons.items():
+            say(f"  {count:>8}  {reason}")
+    if not state.complete:
+        running = ["It is being computed", *filter(None, [left(state.seconds_left)])]
+        say(
+            f"  {', '.join(running) if state.running else 'No process of this machine computes it'}"
+        )
+
+
+@contextmanager
+def _progress() -> Iterator[Progress]:
+    """A bar in a terminal; elsewhere, as in the log of a cluster, a line from time to time."""
+    with progress_bar() as bar:
+        yield bar if sys.stderr.isatty() else _Lines()
+
+
+class _Lines:
+    """Progress as lines on stderr."""
+
+    def start(self, task: str, total: int | None = None) -> None:
+        """Begin the study."""
+        self._done, self._total, self._first = 0, total or 0, -1
+        self._begun = self._told = time.monotonic()
+
+    def advance(self, steps: int = 1) -> None:
+        """Tell how far it has come, if that was not done just now."""
+        self._done += steps
+        if self._first < 0:  # what was stored already, which took no time
+            self._first = self._done
+        now = time.monotonic()
+        if now - self._told >= _BETWEEN and self._done > self._first:
+            self._told = now
+            each = (now - self._begun) / (self._done - self._first)
+            rest = left(each * (self._total - self._done))
+            tell(", ".join(filter(None, [f"{counted(self._done, self._total)} members", rest])))
+
+    def finish(self) -> None:
+        """End it."""

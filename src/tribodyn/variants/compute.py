@@ -1,0 +1,198 @@
+"""What is computed of the members of a chunk, and what of it is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.errors import Problem, TribodynError, quiet
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+    from tribodyn.study.case.case import Case
+
+Columns = Mapping[str, list[Any]]
+
+#: Words for verdicts by their number.
+VERDICTS = ("none", "physical", "step-limited", "undecided")
+#: What the machine lacks is no fault of a member.
+_MACHINE = (ImportError, MemoryError, OSError)
+
+
+class Part(NamedTuple):
+    """What came of some members, in their order."""
+
+    figures: dict[str, Array]  #: in SI; NaN where there is none
+    failed: list[str]  #: why a member has none; empty where it has
+    warned: list[str]  #: codes of warnings of the models, with blanks between
+
+
+class Job(NamedTuple):
+    """What is sent to whoever computes a chunk."""
+
+    kind: str
+    case: Case
+    keep: tuple[str, ...]  #: figures to keep; all that occur where it is empty
+    columns: Columns
+
+    def compute(self, progress: Progress = SILENT) -> Part:
+        """Compute the members; it depends on nothing but them."""
+        with quiet():
+            part = _each(partial(KINDS[self.kind].compute, self.case), self.columns, progress)
+        names = self.keep or tuple(
+            name for name in KINDS[self.kind].figures if name in part.figures
+        )
+        absent = np.full(len(part.failed), np.nan)
+        return part._replace(figures={name: part.figures.get(name, absent) for name in names})
+
+    def dataset(self, part: Part) -> xarray.Dataset:
+        """Result as it is stored."""
+        import xarray
+
+        known, text = KINDS[self.kind].figures, partial(np.array, dtype=object)
+        data: dict[str, Any] = {
+            key: ("member", text(column) if isinstance(column[0], str) else np.array(column))
+            for key, column in self.columns.items()
+        }
+        data |= {"failed": ("member", text(part.failed)), "warnings": ("member", text(part.warned))}
+        if part.figures:
+            data["value"] = ("member", "figure"), np.stack([*part.figures.values()], axis=1)
+            data["figure"] = "figure", text([*part.figures])
+            data["units"] = "figure", text([known[name][0] for name in part.figures])
+        return xarray.Dataset(data)
+
+
+def _each(compute: Callable[..., Part], columns: Columns, progress: Progress) -> Part:
+    """Compute members together; where that fails, in halves, down to those that are to blame."""
+    count = len(next(iter(columns.values())))
+    try:
+        return compute(columns, progress)
+    except _MACHINE:
+        raise
+    except Exception as error:
+        if count == 1:
+            progress.advance()
+            return Part({}, [_reason(error)], [""])
+    halves = [
+        _each(compute, {key: values[half] for key, values in columns.items()}, progress)
+        for half in (slice(count // 2), slice(count // 2, None))
+    ]
+    names = dict.fromkeys(name for half in halves for name in half.figures)
+    blank = [np.full(len(half.failed), np.nan) for half in halves]
+    figures = {
+        name: np.concatenate(
+            [half.figures.get(name, nan) for half, nan in zip(halves, blank, strict=True)]
+        )
+        for name in names
+    }
+    (one, other) = halves
+    return Part(figures, one.failed + other.failed, one.warned + other.warned)
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, TribodynError):
+        return str(error.problems[0])
+    told = f"unexpected {type(error).__name__}: {error}"
+    return str(Problem(told, why="This is a fault of tribodyn, not of the input"))
+
+
+def _summaries(case: Case, columns: Columns, progress: Progress) -> Part:
+    """Every figure of the summary of each member."""
+    from tribodyn.study.studies.sweep import points_under
+
+    rows = zip(*columns.values(), strict=True)
+    points = points_under(case, [dict(zip(columns, row, strict=True)) for row in rows], progress)
+    names = [name for name in SUMMARY if any(name in point.figures for point in points)]
+    figures = {
+        name: np.array([point.figures.get(name, np.nan) for point in points], dtype=float)
+        for name in names
+    }
+    warned = [" ".join(dict.fromkeys(point.warned)) for point in points]
+    return Part(figures, [point.failed for point in points], warned)
+
+
+def _motions(case: Case, columns: Columns, progress: Progress) -> Part:
+    """Period, size and verdict of the steady motion of each member, marched side by side."""
+    # Lanes differ in real numbers; what has another number of teeth or another law is a new case.
+    fixed = [key for key, values in columns.items() if not isinstance(values[0], float)]
+    rows = list(zip(*(columns[key] for key in fixed), strict=True))
+    rows = rows or [()] * len(next(iter(columns.values())))
+    figures = {name: np.full(len(rows), np.nan) for name in _MOTION}
+    for row in dict.fromkeys(rows):
+        index = [n for n, each in enumerate(rows) if each == row]
+        changed = case.replace(dict(zip(fixed, row, strict=True))) if row else case
+        real = {
+            key: np.array([values[n] for n in index])
+            for key, values in columns.items()
+            if key not in fixed
+        }
+        for name, values in _marched(changed, real, len(index), progress).items():
+            figures[name][index] = values
+    lost = "the motion grew beyond all bounds. Add damping, or take another load."
+    failed = ["" if np.isfinite(each) else lost for each in figures["rms"]]
+    return Part(figures, failed, [""] * len(rows))
+
+
+def _marched(
+    case: Case, values: Mapping[str, Array], count: int, progress: Progress
+) -> dict[str, Array]:
+    from tribodyn.nonlinear.parameter_map import SCALES, map_survey, stepped, surveyed
+    from tribodyn.study.uncertain.lanes import lanes_of
+
+    lanes = lanes_of(case, values or {SCALES[0]: np.ones(count)})
+    systems = [member.system for member in lanes.members]
+    points, number = stepped(systems, lanes.mesh_frequency, lanes.factors)
+    outcomes, words = surveyed(points, number, map_survey())
+    progress.advance(count)
+    return {
+        "period": np.where(np.isfinite(outcomes.rms), outcomes.period, np.nan),
+        "rms": outcomes.rms,
+        "contact_loss_share": outcomes.contact_loss_share,
+        "steps_per_mesh_cycle": points.steps.astype(float),
+        "omega_max_dt": number,
+        "verdict": np.array([VERDICTS.index(word or "none") for word in words], dtype=float),
+    }
+
+
+_MOTION = {
+    "period": ("1", "mesh cycles after which the motion repeats; 0 if it does not"),
+    "rms": ("m", "alternating rms of the compression of the mesh"),
+    "contact_loss_share": ("1", SUMMARY["contact_loss_share"].meaning),
+    "steps_per_mesh_cycle": ("1", "steps per mesh cycle"),
+    "omega_max_dt": ("1", "fastest motion times step"),
+    "verdict": ("1", "judged by half the step: 1 physical, 2 step-limited, 3 undecided"),
+}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What can be computed of a member."""
+
+    meaning: str
+    compute: Callable[[Any, Columns, Progress], Part]
+    figures: Mapping[str, tuple[str, str]]  #: unit and meaning by name
+    chunk: int  #: members of a chunk, where none are given
+
+
+KINDS = {
+    "summary": Kind(
+        "every figure of the summary, each member as tribodyn run computes it",
+        _summaries,
+        {name: (figure.unit or "1", figure.meaning) for name, figure in SUMMARY.items()},
+        200,
+    ),
+    "motions": Kind(
+        "period, alternating rms and contact loss of the mesh and a verdict by half the step",
+        _motions,
+        _MOTION,
+        5000,
+    ),
+}

@@ -1,0 +1,171 @@
+"""Run a study: chunk by chunk into its store, here or on the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import tribodyn
+from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.interrupt import alone
+from tribodyn.progress import SILENT, Progress
+from tribodyn.variants.compute import Job, Part
+from tribodyn.variants.members import Chunk
+from tribodyn.variants.store import Store, StudyState
+from tribodyn.variants.study_file import Study, load_study
+
+Jobs = Iterable[tuple[Chunk, Job]]
+Results = Iterator[tuple[Chunk, Part | Exception]]
+
+#: Chunks that fail as a whole before any is finished, after which nothing else is tried.
+_HOPELESS = 3
+
+
+def run_study(
+    study: Study | str | os.PathLike[str],
+    store: str | os.PathLike[str],
+    *,
+    scheduler: str = "",
+    force: bool = False,
+    progress: Progress = SILENT,
+) -> StudyState:
+    """Compute what a store lacks of a study.
+
+    Parameters
+    ----------
+    study : Study, str or path
+        From :func:`load_study`, or the path of a study file.
+    store : str or path
+        Directory; it is made, or the study goes on where it was left, with the members that it
+        got since.
+    scheduler : str
+        Address of a Dask scheduler whose workers compute; by default the processors of this
+        machine do.
+    force : bool
+        Replace another study in that place.
+    progress : Progress
+        Told how many members are done; silent by default.
+
+    Returns
+    -------
+    StudyState
+        How many members are done and failed, and why. A member that fails is stored with its
+        reason, and the study goes on.
+
+    Raises
+    ------
+    InputError
+        If the study file has faults, another study or process has the place, or no scheduler
+        answers.
+    ComputationError
+        If the place cannot be written to any more, or nothing can be computed at all. What is
+        finished is stored.
+    """
+    ready = study if isinstance(study, Study) else load_study(study)
+    missing: dict[str, str] = {}
+    with Store(ready, Path(store), force) as place:
+        left = place.left()
+        total = ready.layout.count
+        progress.start("Members", total)
+        progress.advance(total - sum(chunk.end - chunk.begin for chunk in left))
+        jobs = ((chunk, place.job(chunk)) for chunk in left)
+        results = _on_dask(scheduler, jobs, progress) if scheduler else _here(jobs, progress)
+        for chunk, part in results:
+            if isinstance(part, Part):
+                place.put(chunk, part)
+            else:
+                missing[chunk.name] = f"{type(part).__name__}: {part}"
+                _give_up(missing, len(place.left()) == len(left))
+        progress.finish()
+        return place.state(missing)
+
+
+def _give_up(missing: dict[str, str], none_done: bool) -> None:
+    """End what cannot succeed."""
+    if none_done and len(missing) >= _HOPELESS:
+        what = f"none of the first {len(missing)} chunks can be computed"
+        why = next(iter(missing.values()))
+        remedy = "Mend it on the machines that compute; the same command goes on"
+        raise ComputationError(Problem(what, "", why, remedy))
+
+
+def _here(jobs: Jobs, progress: Progress) -> Results:
+    """Compute one chunk after the other, each with all processors."""
+    for chunk, job in jobs:
+        try:
+            yield chunk, job.compute(_Within(progress))
+        except (ImportError, MemoryError, OSError) as error:
+            yield chunk, error
+
+
+class _Within:
+    """Progress of a chunk within that of the study."""
+
+    def __init__(self, whole: Progress) -> None:
+        self.advance = whole.advance
+
+    def start(self, task: str, total: int | None = None) -> None:
+        """Begin nothing: the study has begun."""
+
+    def finish(self) -> None:
+        """End nothing."""
+
+
+def compute_alone(version: str, job: Job) -> Part:
+    """Compute a chunk in one thread of a worker."""
+    if version != tribodyn.__version__:
+        what = f"a worker has version {tribodyn.__version__} of tribodyn, the study {version}"
+        raise InputError(Problem(what, "", "", "Install the same version on all machines"))
+    with alone():
+        return job.compute()
+
+
+def _on_dask(address: str, jobs: Jobs, progress: Progress) -> Results:
+    """Let the workers of a cluster compute, a few chunks ahead of what they can do at once."""
+    try:
+        from distributed import Client, as_completed
+    except ImportError:
+        remedy = 'Install it: pip install "tribodyn[cluster]"'
+        raise InputError(Problem("Dask is not installed", "--scheduler", "", remedy)) from None
+    try:
+        client = Client(address, timeout="10s", set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        why, remedy = str(error).strip(), "Start one with: dask scheduler; it tells its address"
+        raise InputError(
+            Problem(f"no Dask scheduler answers at {address}", "", why, remedy)
+        ) from None
+    with client:
+        waiting, token = iter(jobs), os.urandom(4).hex()
+        running: dict[Any, Chunk] = {}
+        ended = as_completed([], loop=client.loop)
+
+        def fill() -> None:
+            ahead = 2 * sum(client.nthreads().values()) + 2
+            while len(running) < ahead and (task := next(waiting, None)) is not None:
+                chunk, job = task
+                future = client.submit(
+                    compute_alone, tribodyn.__version__, job, key=f"{chunk.name}-{token}"
+                )
+                running[future] = chunk
+                ended.add(future)
+
+        fill()
+        for future in ended:
+            chunk = running.pop(future)
+            try:
+                part: Part | Exception = future.result()
+                progress.advance(chunk.end - chunk.begin)
+            except Exception as error:
+                if client.status != "running":
+                    raise _lost(address, error) from None
+                part = error
+            yield chunk, part
+            fill()
+
+
+def _lost(address: str, error: Exception) -> ComputationError:
+    what = f"the Dask scheduler at {address} is gone"
+    remedy = "What is finished is stored; start a scheduler, and the same command goes on"
+    return ComputationError(Problem(what, "", f"{type(error).__name__}: {error}", remedy))

@@ -1,0 +1,284 @@
+"""The store of a study: a manifest, and one netCDF file for each chunk of its members.
+
+The manifest ``members.jsonl`` has one line for each fact, with a checksum before it: which study it
+is, the members it has (again when it grows), and every chunk that is whole on the disk. A chunk is
+written beside its place and moved there; its line follows. A process that is killed at any moment
+leaves what is told by these lines, and whoever goes on computes the rest.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import time
+import zlib
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.errors import Argument, InputError, OutputExistsError, Problem, quiet
+from tribodyn.files import lock, whole
+from tribodyn.members import NAME, Members, read_lines
+from tribodyn.stored import read_bytes, write_dataset
+from tribodyn.study.studies.grid import identity
+from tribodyn.variants.compute import Job, Part
+from tribodyn.variants.members import Chunk, Plan, layout_of
+
+if TYPE_CHECKING:
+    from tribodyn.variants.study_file import Study
+
+#: Chunks of one folder, reasons that are told, and chunks from which the time left is judged.
+_FOLDER, _REASONS, _RECENT = 1000, 20, 50
+
+
+@dataclass(frozen=True)
+class StudyState:
+    """How far a study has come.
+
+    Parameters
+    ----------
+    title : str
+        Title of the study.
+    members, done, failed : int
+        Number of members, of those that are stored, and of those among them that failed.
+    reasons : dict of str to int
+        Why members failed, and how many, the most frequent first.
+    running : bool
+        Whether a process of this machine computes it.
+    seconds_left : float or None
+        Estimate from the chunks that came last [s]; None where nothing tells.
+    damaged : tuple of str
+        Chunks that were found damaged, and were to be computed anew.
+    missing : dict of str to str
+        Chunks that could not be computed this time, and why.
+    """
+
+    title: str
+    members: int
+    done: int
+    failed: int
+    reasons: Mapping[str, int]
+    running: bool = False
+    seconds_left: float | None = None
+    damaged: tuple[str, ...] = ()
+    missing: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every member is stored."""
+        return self.done == self.members
+
+
+def chunk_path(folder: Path, name: str) -> Path:
+    """File of a chunk."""
+    stage, number = name.split("/")
+    return folder / f"{stage}-{int(number) // _FOLDER:03d}" / f"{int(number):06d}.nc"
+
+
+def read_chunk(folder: Path, name: str, facts: Mapping[str, Any]) -> bytes | None:
+    """Content of a chunk as it was written; None where it is gone or changed."""
+    with suppress(OSError):
+        content = read_bytes(chunk_path(folder, name), "netcdf")
+        if zlib.crc32(content) == facts["crc"]:
+            return content
+    return None
+
+
+class Manifest:
+    """What a store tells, for those who read it."""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.folder = Path(path)
+        try:
+            lines, _ = read_lines(self.folder / NAME)
+        except OSError as error:
+            what = f"{path} cannot be read: {error.strerror}"
+            raise InputError(Problem(what, Argument("path"))) from None
+        self.lines = lines[1:]
+        values = {line["name"]: line["value"] for line in self.lines}
+        if not str(lines[0].get("study", "") if lines else "").startswith("study ") or (
+            "stage 0" not in values
+        ):
+            what, why = f"{path} is no store of a study", f"It has no {NAME} of one"
+            remedy = "Give the directory that tribodyn study wrote"
+            raise InputError(Problem(what, Argument("path"), why, remedy))
+        self.kind = str(lines[0]["study"]).removeprefix("study ")
+        self.facts: Mapping[str, Any] = values["facts"]
+        self.stages = stages_in(values)
+        self.plan = Plan(layout_of(self.stages[-1]), self.stages)
+        known = {chunk.name for chunk in self.plan.chunks}
+        self.chunks = {name: value for name, value in values.items() if name in known}
+
+    def state(self) -> StudyState:
+        """How far the study has come."""
+        held = lock(self.folder)
+        if held is not None and held >= 0:
+            os.close(held)
+        done = sum(facts["members"] for facts in self.chunks.values())
+        left = self.plan.layout.count - done
+        return StudyState(
+            str(self.facts["title"]),
+            self.plan.layout.count,
+            done,
+            *reasons(self.chunks.values()),
+            running=held is None,
+            seconds_left=self._seconds(left) if left and held is None else None,
+        )
+
+    def _seconds(self, left: int) -> float | None:
+        begun = max(n for n, line in enumerate(self.lines) if line["name"] == "begun")
+        recent = [line["value"] for line in self.lines[begun:]][-_RECENT:]
+        count = sum(facts["members"] for facts in recent[1:])
+        return left * float(recent[-1]["time"] - recent[0]["time"]) / count if count else None
+
+
+def study_state(path: str | os.PathLike[str]) -> StudyState:
+    """Tell how far the study of a store has come, while it is computed or not.
+
+    Parameters
+    ----------
+    path : str or path
+        Directory that :func:`run_study` or ``tribodyn study`` wrote, or writes at the moment.
+
+    Returns
+    -------
+    StudyState
+
+    Raises
+    ------
+    InputError
+        If it is no store.
+    """
+    return Manifest(path).state()
+
+
+def stages_in(values: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Members of a study each time that they were told."""
+    count = sum(name.startswith("stage ") for name in values)
+    return [values[f"stage {number}"] for number in range(count)]
+
+
+def reasons(chunks: Iterable[Mapping[str, Any]]) -> tuple[int, dict[str, int]]:
+    """How many members failed, and why."""
+    failed, told = 0, dict[str, int]()
+    for facts in chunks:
+        failed += facts["failed"]
+        for reason, count in facts["reasons"].items():
+            told[reason] = told.get(reason, 0) + count
+    return failed, dict(sorted(told.items(), key=lambda item: -item[1])[:_REASONS])
+
+
+class Store:
+    """A store that this process writes, alone."""
+
+    def __init__(self, study: Study, folder: Path, force: bool = False) -> None:
+        self.study, self.folder = study, folder
+        _check_place(folder)
+        self.members = Members(folder, force, inside=True)
+
+    def __enter__(self) -> Store:
+        """Take the place, and find out what is there."""
+        members, study = self.members.begin(self._identity()), self.study
+        try:
+            values = members.all()
+            if "facts" not in values:
+                facts: dict[str, Any] = {
+                    "title": study.title,
+                    "case": study.case.to_toml(),
+                    "keep": study.keep,
+                }
+                members.keep("facts", facts)
+            stages = stages_in(values)
+            layout = study.layout.after(stages[-1], study.place) if stages else study.layout
+            self.study = replace(study, layout=layout)
+            facts = {**layout.facts(), "chunk": study.chunk}
+            if not stages or {**stages[-1], "chunk": study.chunk} != _plain(facts):
+                members.keep(f"stage {len(stages)}", facts)
+                stages.append(_plain(facts))
+            self.plan = Plan(layout, stages)
+            self.chunks = {c.name: values[c.name] for c in self.plan.chunks if c.name in values}
+            self.damaged = tuple(self._damaged())
+            members.keep("begun", {"time": time.time(), "members": 0})
+        except BaseException:
+            members.close()
+            raise
+        return self
+
+    def _identity(self) -> dict[str, Any]:
+        """What tells the study from others; the number of its members does not."""
+        study = self.study
+        return identity(f"study {study.compute}", study.case, study.told, keep=list(study.keep))
+
+    def job(self, chunk: Chunk) -> Job:
+        """What is sent to whoever computes a chunk."""
+        study = self.study
+        columns = study.layout.columns(self.plan.members(chunk))
+        return Job(study.compute, study.case, study.keep, columns)
+
+    def __exit__(self, *told: object) -> None:
+        """Let another process go on."""
+        self.members.__exit__(*told)
+
+    def _damaged(self) -> Iterator[str]:
+        """Forget chunks that are not as they were written."""
+        for name, facts in list(self.chunks.items()):
+            if read_chunk(self.folder, name, facts) is None:
+                del self.chunks[name]
+                yield name
+
+    def left(self) -> list[Chunk]:
+        """Chunks that are to be computed."""
+        return [chunk for chunk in self.plan.chunks if chunk.name not in self.chunks]
+
+    def put(self, chunk: Chunk, part: Part) -> None:
+        """Write a chunk, then tell that it is there."""
+        path = chunk_path(self.folder, chunk.name)
+        with quiet("leftover"):
+            with suppress(OSError):  # whole() tells what is wrong
+                path.parent.mkdir(exist_ok=True)
+            with whole(path) as partial:
+                write_dataset(self.job(chunk).dataset(part), partial)
+                crc = zlib.crc32(partial.read_bytes())
+        told: dict[str, int] = {}
+        for reason in filter(None, part.failed):
+            told[reason] = told.get(reason, 0) + 1
+        facts = {
+            "members": len(part.failed),
+            "failed": sum(told.values()),
+            "reasons": dict(sorted(told.items(), key=lambda item: -item[1])[:_REASONS]),
+            "figures": list(part.figures),
+            "crc": crc,
+            "time": time.time(),
+        }
+        self.members.keep(chunk.name, facts)
+        self.chunks[chunk.name] = facts
+
+    def state(self, missing: Mapping[str, str]) -> StudyState:
+        """How far the study has come."""
+        done = sum(facts["members"] for facts in self.chunks.values())
+        failed = reasons(self.chunks.values())
+        title, count = self.study.title, self.study.layout.count
+        damaged = self.damaged
+        return StudyState(title, count, done, *failed, damaged=damaged, missing=missing)
+
+
+def _plain(facts: Mapping[str, Any]) -> Any:
+    """Facts as they come back from the manifest."""
+    return json.loads(json.dumps(facts))
+
+
+def _check_place(folder: Path) -> None:
+    """Refuse a place that is taken by something else, which nothing here may touch."""
+    known = re.compile(rf"{re.escape(NAME)}|\d+-\d{{3,}}")
+    if folder.is_dir():
+        strange = next((e.name for e in folder.iterdir() if not known.fullmatch(e.name)), "")
+        there = f"It is no store of a study: it holds {strange}" if strange else ""
+    else:
+        there = "It is no directory" if folder.exists() or folder.is_symlink() else ""
+    if there:
+        raise OutputExistsError(
+            Problem("this exists already", str(folder), there, "Choose another")
+        )

@@ -1,0 +1,446 @@
+"""A study file: the case, what varies, and what is computed and kept of every member."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tribodyn.cases.catalogue import case_files
+from tribodyn.cases.load import load_case
+from tribodyn.errors import InputError, Problem
+from tribodyn.model import REQUIRED, Option, choice, integer, number, text
+from tribodyn.nonlinear.parameter_map import SCALES
+from tribodyn.stored import read_bytes
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.given import Source, unsound
+from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.case.read import key_lines, parse_toml, read_text
+from tribodyn.study.case.values import FaultError, read_value, written
+from tribodyn.study.studies.axes import Axis, member_value, read_axis
+from tribodyn.study.studies.range_words import UnreadError, read_values, toml_value
+from tribodyn.study.uncertain.lanes import draw
+from tribodyn.variants.compute import KINDS
+from tribodyn.variants.members import MOST, Grid, Layout, listed
+
+_MEANINGS = {name: kind.meaning for name, kind in KINDS.items()}
+#: Keys at the top of a study file.
+TOP: Mapping[str, Option] = {
+    "title": text(None, meaning="one line that names the study", example='"Speed and torque"'),
+    "case": text(
+        REQUIRED,
+        meaning="built-in case, or path of a case file from where the study file is",
+        example='"fzg-roughness"',
+    ),
+    "compute": choice("summary", _MEANINGS, meaning="what is computed of each member"),
+    "chunk": integer(
+        None,
+        1,
+        10**6,
+        "the members that are computed, stored and perhaps lost together",
+        meaning="members of a chunk",
+        example="200",
+    ),
+    "table": text(None, meaning="CSV file with one member in each line", example='"cases.csv"'),
+}
+#: Keys of ``[samples]``.
+SAMPLES: Mapping[str, Option] = {
+    "size": integer(REQUIRED, 1, MOST, "beyond it nothing ends", meaning="members", example="1024"),
+    "seed": integer(
+        REQUIRED, 0, 10**9, "any will do", meaning="the same gives the same members", example="1"
+    ),
+    "method": choice(
+        "sobol", ("sobol", "monte-carlo", "latin-hypercube"), meaning="how values are drawn"
+    ),
+}
+_FACTOR: Option = number(
+    1.0, 0.0, 1e6, "a factor of what the case has", meaning="factor", example="1.0"
+)
+_VARIES = ("axes", "samples", "cases", "table")
+_EXAMPLE = 'Write for example [axes] with operation.speed = "400..3500 rpm:60"'
+_SPREAD = 'Write for example operation.speed = "400 rpm .. 3500 rpm"'
+#: Tables that hold keys of the case.
+_KEYED = ("set", "axes", "samples.over")
+
+
+@dataclass(frozen=True)
+class Study:
+    """Many members of one case; made by :func:`load_study`.
+
+    Parameters
+    ----------
+    title : str
+        One line.
+    case : Case
+        With the values that all members share.
+    compute : str
+        What is computed: ``"summary"`` or ``"motions"``.
+    keep : tuple of str
+        Figures that are kept; all where it is empty.
+    chunk : int
+        Members that are computed and stored together.
+    layout : Grid or Listed
+        The members; ``layout.count`` is their number.
+    told : dict
+        How they were asked for.
+    place : str
+        The file, for messages.
+    """
+
+    title: str
+    case: Case
+    compute: str
+    keep: tuple[str, ...]
+    chunk: int
+    layout: Layout
+    told: Mapping[str, Any]
+    place: str = "study"
+
+
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study file.
+
+    Parameters
+    ----------
+    path : str or path
+        TOML file; what it may hold is told on the page on scale of the documentation.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, listing every fault of the file.
+    """
+    return read_study(read_text(Path(path)), os.fspath(path))
+
+
+def read_study(content: str, name: str = "study.toml") -> Study:
+    r"""Check the text of a study file.
+
+    Parameters
+    ----------
+    content : str
+        TOML text.
+    name : str
+        Path of the file, for messages; files that it names are looked for beside it.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        Listing every fault of the file.
+
+    Examples
+    --------
+    >>> study = read_study('case = "fzg-roughness"\naxes.operation.speed = "400..900 rpm:3"')
+    >>> study.layout.count, study.compute
+    (3, 'summary')
+    """
+    data = parse_toml(content, name)
+    source = Source(name, partial(key_lines, content))
+    if faults := list(unsound({key: each for key, each in data.items() if key != "cases"})):
+        raise InputError(source.place(faults))
+    reader = _Reader(data, Path(name).parent)
+    study = reader.study(name)
+    if reader.found or study is None:
+        raise InputError(source.place(reader.found))
+    return study
+
+
+class _Reader:
+    """Reads the parts of a study file; every fault is put with its key."""
+
+    def __init__(self, data: dict[str, Any], folder: Path) -> None:
+        self.data, self.folder = data, folder
+        self.found: list[tuple[str, Problem]] = []
+
+    def put(self, key: str, problem: Problem) -> None:
+        """Keep a fault of a key."""
+        self.found.append((key, problem))
+
+    def study(self, name: str) -> Study | None:
+        """The whole, or None where a fault was put."""
+        top = self._values(self.data, TOP, "", (*TOP, "keep", "set", *_VARIES[:3]))
+        kind = top.get("compute", "summary")
+        keep = self._keep(kind)
+        varies = [key for key in _VARIES if key in self.data]
+        if len(varies) != 1:
+            what = f"{' and '.join(varies)} are given" if varies else "nothing varies"
+            why = f"One of {', '.join(_VARIES)} tells what varies"
+            self.put("".join(varies[-1:]), Problem(what, "", why, _EXAMPLE))
+        case = self._case(top.get("case"))
+        if self.found or case is None:
+            return None
+        layout, told = self._layout(case, kind, varies[0], top)
+        if layout is None:
+            return None
+        chunk = top["chunk"] or KINDS[kind].chunk
+        title = top["title"] or case.title
+        return Study(title, case, kind, keep, chunk, layout, told, name)
+
+    def _values(
+        self, data: Mapping[str, Any], options: Mapping[str, Option], path: str, known: Any
+    ) -> dict[str, Any]:
+        """Values of a table, and what is wrong with it."""
+        values: dict[str, Any] = {}
+        for key in (key for key in data if key not in known):
+            near = get_close_matches(key, known, n=1, cutoff=0.6)
+            remedy = f'Did you mean "{near[0]}"?' if near else "Remove it"
+            place = f"[{path[:-1]}]" if path else "the top of the file"
+            why = f"{place} has: {', '.join(known)}"
+            self.put(path + key, Problem(f"{key}: unknown key", "", why, remedy))
+        for key, option in options.items():
+            if key not in data:
+                if option.required:
+                    remedy = f"Add for example {key} = {option.example}"
+                    self.put(path + key, Problem(f"{key} is missing", "", option.meaning, remedy))
+                values[key] = None if option.required else option.default
+                continue
+            try:
+                values[key] = read_value(option, key, data[key])
+            except FaultError as fault:
+                self.put(path + key, fault.problem)
+        return values
+
+    def _keep(self, kind: str) -> tuple[str, ...]:
+        names, known = self.data.get("keep", []), KINDS[kind].figures
+        if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+            remedy = f'Write for example keep = ["{next(iter(known))}"]'
+            self.put("keep", Problem(f"keep = {written(names)}", "", "It is a list", remedy))
+            return ()
+        for name in (name for name in names if name not in known):
+            near = get_close_matches(name, known, n=1)
+            remedy = f'Did you mean "{near[0]}"?' if near else "Leave it out"
+            why = f'compute = "{kind}" gives {", ".join(known)}'
+            self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
+        return tuple(name for name in known if name in names)
+
+    def _case(self, name: str | None) -> Case | None:
+        """The case with the values that all members share."""
+        if name is None:
+            return None
+        try:
+            case = load_case(name if name in case_files() else self.folder / name)
+            changes = self._keys("set", self.data)
+            return case.replace(changes, by="set") if changes else case
+        except InputError as error:
+            for problem in error.problems:
+                self._tell("case", problem)
+        except (OSError, ValueError) as error:
+            self.put("case", Problem(f"{written(name)} cannot be read: {error}"))
+        return None
+
+    def _tell(self, key: str, problem: Problem) -> None:
+        """Put a fault of a value of the case where the study file has it, if it has."""
+        table, _, inner = str(problem.where).partition(" ")
+        if table in _KEYED and inner:
+            self.put(f"{table}.{inner}", replace(problem, where=""))
+        else:
+            what = f"{problem.where}: {problem.what}" if problem.where else problem.what
+            self.put(key, replace(problem, what=what, where=""))
+
+    def _keys(self, name: str, data: Mapping[str, Any]) -> dict[str, Any]:
+        """Values of a table by dotted key of the case."""
+        table = data.get(name.rpartition(".")[2], {})
+        if not isinstance(table, dict):
+            self.put(name, Problem(f"{written(table)}", "", "It is a table", f"Write [{name}]"))
+            return {}
+        try:
+            return _flat(table)
+        except InputError as error:
+            self.put(name, error.problems[0])
+        return {}
+
+    def _layout(
+        self, case: Case, kind: str, varies: str, top: Mapping[str, Any]
+    ) -> tuple[Layout | None, Mapping[str, Any]]:
+        """The members, and how they were asked for."""
+        free = SCALES if kind == "motions" else ()
+        if varies == "axes":
+            return self._grid(case, free)
+        if varies == "samples":
+            return self._drawn(case)
+        return self._listed(case, top["table"], free)
+
+    def _grid(self, case: Case, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
+        axes: list[Axis] = []
+        wrong = bool(self.found)
+        for key, given in self._keys("axes", self.data).items():
+            try:
+                given = read_values(given) if isinstance(given, str) else given
+                if not isinstance(given, tuple | list):
+                    raise UnreadError("It is text with a range, or a list of values")
+                axes.append(_factors(key, given) if key in free else _axis(case, key, given))
+            except UnreadError as fault:
+                what = f"cannot read {written(given)}"
+                self.put(f"axes.{key}", Problem(what, "", str(fault), _EXAMPLE))
+                wrong = True
+            except InputError as error:
+                for problem in error.problems:
+                    self.put(f"axes.{key}", replace(problem, where=""))
+                wrong = True
+        wrong = wrong or bool(self.found)
+        if not axes and not wrong:
+            self.put("axes", Problem("nothing varies", "", "", _EXAMPLE))
+        elif (count := math.prod(len(axis.values) for axis in axes)) > MOST:
+            why = f"At most {MOST:g} are taken"
+            self.put("axes", Problem(f"{count:g} members", "", why, "Take fewer values"))
+            wrong = True
+        grid = Grid(tuple(axes))
+        return (grid if axes and not wrong else None), {"axes": [axis.key for axis in axes]}
+
+    def _drawn(self, case: Case) -> tuple[Layout | None, Mapping[str, Any]]:
+        table = self.data["samples"]
+        if not isinstance(table, dict):
+            self.put("samples", Problem(written(table), "", "It is a table", "Write [samples]"))
+            return None, {}
+        values = self._values(table, SAMPLES, "samples.", (*SAMPLES, "over"))
+        over = self._keys("samples.over", table)
+        if not over and not self.found:
+            self.put("samples.over", Problem("nothing varies", "", "", _SPREAD))
+        if self.found:
+            return None, {}
+        options = {"method": values["method"], "seed": values["seed"]}
+        try:
+            drawn = draw(case, over, values["size"], **options)
+        except InputError as error:
+            for problem in error.problems:
+                key = str(problem.where).removeprefix("distributions ")
+                self.put(f"samples.over.{key}", replace(problem, where=""))
+            return None, {}
+        floats = {key: column.tolist() for key, column in drawn.items()}
+        units = {key: _unit(case, key) for key in drawn}
+        told = {"over": {key: str(each) for key, each in over.items()}, **options}
+        return listed(floats, units), told
+
+    def _listed(
+        self, case: Case, path: str | None, free: Any
+    ) -> tuple[Layout | None, Mapping[str, Any]]:
+        key = "table" if path is not None else "cases"
+        try:
+            rows = _read_csv(self.folder / path) if path is not None else _rows(self.data["cases"])
+        except InputError as error:
+            for problem in error.problems:
+                self._tell(key, problem)
+            return None, {}
+        values: dict[str, list[Any]] = {name: [] for name in rows[0][1]}
+        wrong = False
+        for place, row in rows:
+            for name, given in row.items():
+                try:
+                    value = _factor(name, given) if name in free else _value(case, name, given)
+                    values[name].append(value)
+                except InputError as error:
+                    wrong = True
+                    for problem in error.problems:
+                        told = replace(problem, where="", what=f"{place}: {problem.what}")
+                        self.put(key, told)
+        units = {name: _unit(case, name) for name in values}
+        return (None if wrong else listed(values, units)), {"cases": sorted(values)}
+
+
+def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Values by dotted key, which may be written as tables inside each other."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        inner = (
+            _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+        )
+        if twice := flat.keys() & inner.keys():
+            raise InputError(Problem(f"{min(twice)} is given twice", "", "", "Keep one of them"))
+        flat |= inner
+    return flat
+
+
+def _axis(case: Case, key: str, given: Any) -> Axis:
+    return read_axis(case, key, given, "axes")
+
+
+def _value(case: Case, key: str, given: Any) -> Any:
+    return member_value(case, key, given, "cases")
+
+
+def _unit(case: Case, key: str) -> str:
+    spec = None if key in SCALES else spec_of(case, key)
+    return spec.unit if spec else ""
+
+
+def _factor(key: str, given: Any) -> float:
+    try:
+        return float(read_value(_FACTOR, key, given))
+    except FaultError as fault:
+        raise InputError(fault.problem) from None
+
+
+def _factors(key: str, given: Any) -> Axis:
+    """Values of a factor."""
+    values = [_factor(key, each) for each in (given[:2] if isinstance(given, tuple) else given)]
+    if isinstance(given, tuple) and not (values[0] < values[1] and 2 <= given[2] <= MOST):
+        what, why = f"{key} has {given[2]} points", "A range rises, and has at least two"
+        raise InputError(Problem(f"{what} from {values[0]} to {values[1]}", "", why, _EXAMPLE))
+    if isinstance(given, tuple):
+        values = np.linspace(values[0], values[1], given[2]).tolist()
+    return Axis(key, tuple(values))
+
+
+def _rows(given: Any) -> list[tuple[str, dict[str, Any]]]:
+    """Members that stand in the study file itself."""
+    if not isinstance(given, list) or not given or not all(isinstance(row, dict) for row in given):
+        what = f"cases = {written(given)}"
+        raise InputError(Problem(what, "", "It has one table for each member", "Write [[cases]]"))
+    rows = [(f"member {number}", _flat(row)) for number, row in enumerate(given, 1)]
+    _check_rows(rows)
+    return rows
+
+
+def _read_csv(path: Path) -> list[tuple[str, dict[str, Any]]]:
+    """Members of a file with their line; its first line has keys with units in brackets."""
+    remedy = "Its first line reads: operation.speed [rpm], operation.torque [N*m]"
+    try:
+        lines = read_bytes(path, "table").decode("utf-8-sig").splitlines()
+        table = [row for row in enumerate(csv.reader(lines), 1) if any(map(str.strip, row[1]))]
+    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Problem(f"{path} cannot be read: {reason}", "", "", remedy)) from None
+    if len(table) < 2:
+        raise InputError(Problem(f"{path} has no members", "", "", remedy))
+    heads = [[part.strip() for part in head.rstrip("] ").split("[")] for head in table[0][1]]
+    keys, units = [head[0] for head in heads], [" ".join(head[1:]) for head in heads]
+    if not all(keys) or len(set(keys)) < len(keys):
+        raise InputError(
+            Problem(f"{path}:{table[0][0]}: keys are missing or twice", "", "", remedy)
+        )
+    rows = []
+    for line, cells in table[1:]:
+        if len(cells) != len(keys):
+            what = f"{path}:{line}: {len(cells)} values under {len(keys)} keys"
+            raise InputError(Problem(what, "", "", "Give every member one value of each key"))
+        row = {
+            key: f"{cell.strip()} {unit}" if unit else toml_value(cell.strip())
+            for key, unit, cell in zip(keys, units, cells, strict=True)
+        }
+        rows.append((f"{path}:{line}", row))
+    return rows
+
+
+def _check_rows(rows: list[tuple[str, dict[str, Any]]]) -> None:
+    keys = set(rows[0][1])
+    for place, row in rows:
+        if not row or set(row) != keys:
+            odd = ", ".join(sorted(set(row) ^ keys)) or "no key"
+            why = "All members have the same keys"
+            raise InputError(Problem(f"{place}: {odd}", "", why, "Give every member each key"))

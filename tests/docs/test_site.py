@@ -1,0 +1,44 @@
+"""What the documentation site is made of; Sphinx itself runs in the gate."""
+
+import re
+
+from _site.gallery import entries, written
+from _site.names import homes
+from _site.pages import contents
+from gallery import EXAMPLES, GALLERY, masked
+from generated import packages
+from pages import ROOT
+
+INDEX = (ROOT / "docs" / "index.md").read_text("utf-8")
+
+
+def test_every_page_of_the_index_is_in_the_contents() -> None:
+    pages = set(re.findall(r"\]\(([\w-]+)\.md\)", INDEX))
+    assert len(pages) > 25
+    assert pages <= set(contents(INDEX).split())
+
+
+def test_every_example_has_a_page_with_its_picture_and_what_it_prints() -> None:
+    assert [name for _, name, _ in entries()] == [path.stem for path in EXAMPLES]
+    pages = written()
+    for path in EXAMPLES:
+        page = pages[f"examples/{path.stem}.md"]
+        assert f"({'../' * 2}gallery/{path.stem}.png)" in page
+        assert (GALLERY / f"{path.stem}.txt").read_text("utf-8") in page
+
+
+def test_no_picture_is_left_of_an_example_that_is_gone() -> None:
+    assert {path.stem for path in GALLERY.iterdir()} == {path.stem for path in EXAMPLES}
+
+
+def test_every_public_name_is_explained_once() -> None:
+    names = [(name, n) for name, package in packages().items() for n in package.__all__]
+    assert set(homes()) == set(names)
+    assert homes()["tribodyn.study", "Case"] == homes()["tribodyn", "Case"] == "tribodyn.Case"
+    assert homes()["tribodyn.analysis", "rms"] == "tribodyn.analysis.rms"
+
+
+def test_texts_are_compared_without_numbers_and_places() -> None:
+    here = masked("rms  3.2e-05 N\nfiles in here/report: a.html\n")
+    assert here == masked("rms 4 N\nfiles in elsewhere/report: a.html")
+    assert here != masked("rms 4 m\nfiles in elsewhere/report: a.html")

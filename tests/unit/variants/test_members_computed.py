@@ -1,0 +1,76 @@
+"""What a study stores of a member is what the functions for one case give, whoever computes it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tribodyn.analysis import parameter_map
+from tribodyn.errors import quiet
+from tribodyn.interrupt import alone
+from tribodyn.study.pipeline.run import computed
+from tribodyn.study.studies.grid import built
+from tribodyn.variants import open_study, read_study, run_study
+from tribodyn.variants.compute import VERDICTS
+
+QUICK = """
+[set]
+stiffness.model = "iso6336"
+film.model = "none"
+friction.law = "constant"
+friction.coefficient = 0.05
+"""
+
+
+def test_summaries_are_those_of_a_run(tmp_path: Path) -> None:
+    text = f"""
+case = "fzg-roughness"
+chunk = 3
+{QUICK}
+[axes]
+operation.speed = "900,1500 rpm"
+friction.law = ["none", "xu-2007"]
+"""
+    study = read_study(text)
+    run_study(study, tmp_path / "s")
+    data = open_study(tmp_path / "s").load()
+    member = {"operation.speed": 1, "friction.law": 1}
+    changes = {"operation.speed": "1500 rpm", "friction.law": "xu-2007"}
+    with quiet():
+        wanted = computed(study.case.replace(changes)).summary()
+    for name, value in wanted.items():
+        assert float(data[name].isel(member)) == pytest.approx(value, rel=1e-9), name
+
+
+def test_motions_are_those_of_a_map_and_of_one_thread(tmp_path: Path) -> None:
+    text = f"""
+case = "fzg-roughness"
+compute = "motions"
+chunk = 7
+{QUICK}
+dynamics.mesh_damping_ratio = 0.02
+dynamics.backlash = "60 um"
+[axes]
+operation.speed = "3000..9000 rpm:4"
+force_scale = "0.05,0.3,1"
+"""
+    study = read_study(text)
+    run_study(study, tmp_path / "s")
+    data = open_study(tmp_path / "s").load()
+    member = built(study.case)
+    frequency = study.case.gears.pinion.teeth * data["operation.speed"].values / (2.0 * np.pi)
+    over = (("mesh_frequency", frequency), ("force_scale", data["force_scale"].values))
+    found = parameter_map(member.system, over=over)
+    np.testing.assert_array_equal(data["period"], found.period)
+    np.testing.assert_allclose(data["rms"], found.rms, rtol=2e-4)
+    np.testing.assert_allclose(data["contact_loss_share"], found.contact_loss_share, atol=1e-5)
+    words = np.array(VERDICTS)[data["verdict"].values.astype(int)]
+    np.testing.assert_array_equal(words, found.verdict)
+    assert float(data["contact_loss_share"].max()) > 0.0
+    with alone():
+        run_study(study, tmp_path / "alone")
+    for path in (tmp_path / "s").rglob("*.nc"):
+        other = tmp_path / "alone" / path.relative_to(tmp_path / "s")
+        assert path.read_bytes() == other.read_bytes()
