@@ -146,7 +146,8 @@ def _instance(kind: type, strict: bool) -> Wanted:
 def _items(hint: Any, origin: type, sized: bool, strict: bool) -> Wanted:
     """Lists, tuples and mappings of what is wanted."""
     kinds = [kind for kind in typing.get_args(hint) if kind is not ...]
-    wanted = [_wanted(kind, sized, strict) for kind in kinds]
+    # Entries may be NaN, for what is not there, as those of arrays may.
+    wanted = [_wanted(kind, False, strict) for kind in kinds]
     fixed = origin is tuple and bool(wanted) and ... not in typing.get_args(hint)
 
     def read(value: Any) -> Any:
@@ -156,7 +157,11 @@ def _items(hint: Any, origin: type, sized: bool, strict: bool) -> Wanted:
                 for item in items:
                     one.read(item)
             return value
-        _require(isinstance(value, Iterable) and not isinstance(value, str | bytes | Mapping))
+        if wanted and not strict and not isinstance(value, Iterable):
+            return wanted[0].read(value)  # one alone, which some functions take too
+        texts = isinstance(value, str) and kinds == [str]
+        _require(isinstance(value, Iterable) and not isinstance(value, bytes | Mapping))
+        _require(texts or not isinstance(value, str))
         if not isinstance(value, Sequence | np.ndarray):
             _require(not issubclass(origin, Sequence))
             return value
@@ -410,7 +415,9 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
                 args, named = reader.read(args, named)
             return function(*args, **named)
         except Exception as error:
-            if type(error).__module__.startswith("tribodyn") or isinstance(error, Warning):
+            if type(error).__module__.startswith("tribodyn") or isinstance(
+                error, Warning | ImportError
+            ):
                 raise
             told = reader.told(error, args, named)
             if told is error:

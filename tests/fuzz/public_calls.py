@@ -35,8 +35,7 @@ from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
 
 #: What tells faults and the state of a job is called by programs, with texts of their own.
-#: Networks are not guarded yet.
-NO_PAGES = {"tribodyn.errors", "tribodyn.progress", "tribodyn.surrogate"}
+NO_PAGES = {"tribodyn.errors", "tribodyn.progress"}
 
 #: Names of types for annotations, and what changes the registries of all that follows.
 NO_CALLS = {
@@ -58,7 +57,8 @@ plot.continuation plot.flank_modification plot.friction_claims
 plot.friction_effect plot.friction_harmonics plot.hypoid_contact plot.surrogate
 plot.tip_relief_map stiffness.TipReliefOptimum stiffness.optimize_tip_relief study.DataSet
 study.bifurcation study.friction_experiment study.load_data study.operating_data
-study.optimize_tip_relief study.speed_sweep study.vibration_data
+study.optimize_tip_relief study.speed_sweep study.vibration_data variants.StudyState
+variants.load_study variants.open_study variants.run_study variants.study_state
 """
 SLOW = set(_SLOW.split())
 
@@ -128,7 +128,7 @@ def results() -> list[Any]:
 def methods(kind: type) -> list[str]:
     """Public methods of a class that neither show nor open anything."""
     names = [name for name in dir(kind) if not name.startswith("_") or name == "__call__"]
-    left = {"show", "open", "write_image"}
+    left = {"show", "open", "write_image"}.union(dir(tuple))
     return [name for name in names if callable(getattr(kind, name)) and name not in left]
 
 
