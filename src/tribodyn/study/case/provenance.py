@@ -158,8 +158,7 @@ def settled(
     said = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
     kept = {key: value for key, value in marks.items() if key not in stale}
     if stated.base and case.origin in (None, stated.base.get("origin")):
-        recorded = {key: value for key, value in said.items() if key in stated.marks}
-        return Stated(kept, stated.base | recorded | stated.base), stale
+        return Stated(kept, stated.base | said | stated.base), stale
     base = {
         key: values[key]
         for key in given.typed

@@ -143,9 +143,9 @@ def _assumed_lines(case: Case, marks: dict[str, str]) -> list[str]:
 
 
 def _base_lines(case: Case) -> list[str]:
-    """Values of the document that the case began with; without a document there are none."""
+    """What the case began with; without a document and a change nothing is told of it."""
     base = case.stated.base
-    if base.get("origin") is None:
+    if base.get("origin") is None and not changed_keys(case):
         return []
     lines = [
         f"{_quoted(key)} = {_recorded(case, key, value)}"
