@@ -42,6 +42,8 @@ _PLAIN = {"builtins", "numpy", "datetime", "decimal", "fractions", "pathlib"}
 _PATHS = sysconfig.get_paths()
 #: Where the frames of a traceback lie that are not the user's.
 _HOMES = (str(Path(__file__).parent), _PATHS["stdlib"], _PATHS["purelib"], _PATHS["platlib"], "<")
+#: Parameters of functions that leave files behind.
+_WRITES = {"path", "directory", "folder", "place", "force"}
 _SIZED = f"Wanted: a finite number, zero or between {_TINY:g} and {ENDLESS:g} in size"
 
 
@@ -94,7 +96,7 @@ def _array(value: Any, kinds: str) -> Any:
     return array
 
 
-def _number(value: Any, sized: bool, whole: bool = False) -> Any:
+def _number(value: Any, sized: int, whole: bool = False) -> Any:
     number = _array(value, "fiu")
     _require(number.ndim == 0)
     value = number.item()
@@ -106,7 +108,7 @@ def _number(value: Any, sized: bool, whole: bool = False) -> Any:
     return value
 
 
-def _numbers(kinds: str, sized: bool, as_given: bool) -> Wanted:
+def _numbers(kinds: str, sized: int, as_given: bool) -> Wanted:
     """Arrays; ``as_given`` leaves the conversion to the function."""
 
     def read(value: Any) -> Any:
@@ -143,7 +145,7 @@ def _instance(kind: type, strict: bool) -> Wanted:
     return _that(f"{'an' if name[:1] in 'AEIO' else 'a'} {name}", holds, kind)
 
 
-def _items(hint: Any, origin: type, sized: bool, strict: bool) -> Wanted:
+def _items(hint: Any, origin: type, sized: int, strict: bool) -> Wanted:
     """Lists, tuples and mappings of what is wanted."""
     kinds = [kind for kind in typing.get_args(hint) if kind is not ...]
     # Entries may be NaN, for what is not there, as those of arrays may.
@@ -175,7 +177,7 @@ def _items(hint: Any, origin: type, sized: bool, strict: bool) -> Wanted:
     return Wanted(f"{words} of {', '.join(inner)}" if inner else words, read)
 
 
-def _any_of(hints: Iterable[Any], sized: bool, strict: bool) -> Wanted:
+def _any_of(hints: Iterable[Any], sized: int, strict: bool) -> Wanted:
     several = [_wanted(hint, sized, strict) for hint in hints]
     calls = any(one.words.startswith("a function") for one in several)
 
@@ -225,8 +227,11 @@ _SIMPLE = {
 _ITEMS = {np.float64: "fiu", np.int64: "iu", np.bool_: "b", np.complex128: "fiuc"}
 
 
-def _wanted(hint: Any, sized: bool, strict: bool = False) -> Wanted:
-    """What an annotation asks for; ``strict`` for a closer look, after something went wrong."""
+def _wanted(hint: Any, sized: int, strict: bool = False) -> Wanted:
+    """What an annotation asks for; ``strict`` for a closer look, after something went wrong.
+
+    ``sized`` is 0 for records, whose numbers may be NaN, 1 for methods, and 2 for functions.
+    """
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     every, kind = set(typing.get_args(ArrayLike)), origin or hint
     if hint in (float, int):
@@ -246,7 +251,7 @@ def _wanted(hint: Any, sized: bool, strict: bool = False) -> Wanted:
     if origin is np.ndarray:
         item = typing.get_args(args[1])[0]
         # Methods and records also serve the package itself, for complex and logical arrays too.
-        kinds = _ITEMS.get(item, "") + "cb" * (not sized)
+        kinds = _ITEMS.get(item, "") + "cb" * (sized < 2)
         return _numbers(kinds, sized, as_given=False) if item in _ITEMS else _ANYTHING
     if origin is typing.Literal:
         words = ", ".join(f'"{v}"' if isinstance(v, str) else str(v) for v in args)
@@ -292,8 +297,13 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
         # Records may hold what is not there; functions take what a quantity may be, unless their
         # default or their documentation speaks of more.
         default, entry = parameter.default, _entry(function, name)
+        makes = getattr(function, "__name__", "") in ("__init__", "__new__")
         ends = not (isinstance(default, float) and not np.isfinite(default))
-        sized = owner is None and ends and "infinit" not in entry and "NaN" not in entry
+        sized = (
+            (not makes)
+            * (1 + (owner is None))
+            * (ends and "infinit" not in entry and "NaN" not in entry)
+        )
         none = hint is inspect.Parameter.empty
         wanted[name] = _ANYTHING if none else _wanted(hint, sized, strict)
     return wanted
@@ -333,6 +343,11 @@ def _shown(value: Any) -> str:
         return f"an object of the class {type(value).__name__}"
 
 
+def _is_own(error: Exception) -> bool:
+    """Whether an error is one of the package, or a warning that is asked to be an error."""
+    return type(error).__module__.startswith("tribodyn") or isinstance(error, Warning | ImportError)
+
+
 class _Reader:
     """What one function is given, read by its annotations, and what it stumbles over."""
 
@@ -356,8 +371,17 @@ class _Reader:
             first = [wanted[name].read(value) for name, value in self.given(args, {})]
             rest = {k: wanted[k].read(v) if k in wanted else v for k, v in named.items()}
         except (TypeError, ValueError, OverflowError):
-            raise InputError(self.faults(args, named, wanted)) from None
-        return (*first, *args[len(first) :]), rest
+            refused = InputError(self.faults(args, named, wanted))
+        else:
+            return (*first, *args[len(first) :]), rest
+        # What the function itself says of it knows more; what writes is not begun.
+        if not _WRITES & set(wanted):
+            try:
+                self.function(*args, **named)
+            except Exception as error:
+                if _is_own(error):
+                    raise
+        raise refused
 
     def faults(
         self, args: Any, named: dict[str, Any], wanted: Mapping[str, Wanted]
@@ -415,9 +439,7 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
                 args, named = reader.read(args, named)
             return function(*args, **named)
         except Exception as error:
-            if type(error).__module__.startswith("tribodyn") or isinstance(
-                error, Warning | ImportError
-            ):
+            if _is_own(error):
                 raise
             told = reader.told(error, args, named)
             if told is error:

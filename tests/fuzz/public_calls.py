@@ -58,6 +58,7 @@ plot.friction_effect plot.friction_harmonics plot.hypoid_contact plot.surrogate
 plot.tip_relief_map stiffness.TipReliefOptimum stiffness.optimize_tip_relief study.DataSet
 study.bifurcation study.friction_experiment study.load_data study.operating_data
 study.optimize_tip_relief study.speed_sweep study.vibration_data variants.StudyState
+surrogate.Squares surrogate.Training surrogate.bpnn_pl surrogate.load
 variants.load_study variants.open_study variants.run_study variants.study_state
 """
 SLOW = set(_SLOW.split())

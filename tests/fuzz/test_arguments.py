@@ -156,7 +156,7 @@ def test_methods_of_results_with_arguments_of_wrong_kinds(calls, draws, tmp_path
     monkeypatch.chdir(tmp_path)
     every = [(one, name) for one in results() for name in methods(type(one))]
     failed = []
-    for drawn in draws(300):
+    for drawn in draws(150):
         one, name = drawn.choice(every)
         method = getattr(one, name)
         wanted = [each for each in parameters(method) if each.default is each.empty]

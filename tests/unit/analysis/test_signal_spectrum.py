@@ -116,7 +116,7 @@ def test_rms_of_a_spectrogram_is_exact_for_any_signal(length):
         ({"signal": ["1 mm"] * 20}, "real numbers"),
         ({"signal": np.zeros((9, 2))}, "shape"),
         ({"sampling_rate": 0.0}, "sampling_rate"),
-        ({"scaling": "decibel"}, "scaling"),
+        ({"scaling": "decibel"}, "no scaling"),
         ({"window": "door"}, "no window"),
         ({"block_length": 2000}, "block_length"),
         ({"overlap": 1.0}, "overlap"),

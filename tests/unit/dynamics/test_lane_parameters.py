@@ -238,7 +238,7 @@ def _other(**change):
          "coefficients"),
         (lambda: _other(contacts=[Contact([1.0, 0, 0], 1.0), *_build().contacts[1:]]),
          "contact 0 has a dead zone in lane 0 and none in lane 1"),
-        (lambda: "system", "argument system"),
+        (lambda: "system", "argument systems"),
     ],
 )  # fmt: skip
 def test_systems_that_do_not_go_together(other, part):

@@ -22,7 +22,7 @@ def oscillator(**changes: object) -> System:
         (([0.0, 1.0], [0.0, 10.0]), "standing gear"),
         (([0.0, 0.0], [1.0, 10.0]), "do not rise"),
         (([0.0], [1.0]), "at least two corners"),
-        (5.0, "Wanted: a SpeedProfile"),
+        (5.0, "not a pair"),
         (lambda t: 1.0 + t, "duration"),
     ],
 )

@@ -83,7 +83,7 @@ def test_beyond_the_edge_is_as_at_the_edge() -> None:
         (((1.0, 2.0), (0.0, 0.0), ((0.0, 0.0),) * 2), "face_position of profile_map"),
         (((1.0, 2.0), (0.0,), ((0.0,), (math.nan,))), "deviation of profile_map is nan um"),
         (((1.0, 2.0), (0.0,), ((0.0,), (5.0,))), "deviation of profile_map is 5e+06 um"),
-        (((1.0, 2.0), (0.0,), (0.0, 1.0)), "lists of numbers"),
+        (((1.0, 2.0), (0.0,), (0.0, 1.0)), "made of lists of numbers"),
     ],
 )
 def test_wrong_maps_are_refused(values: Any, says: str) -> None:

@@ -114,7 +114,7 @@ def test_bad_shafts_and_boxes():
     with pytest.raises(InputError, match=r"oil_volume is missing.*1\.2 litres"):
         Gearbox(wheel=ShaftParts(immersion=1e-2))
     for gear in (np.ones(3), -1.0, math.nan):
-        with pytest.raises(InputError, match=r"gear (has the shape|= nan)"):
+        with pytest.raises(InputError, match="gear has the shape"):
             stage(gear=gear)
 
 

@@ -335,6 +335,15 @@ def test_a_reason_tells_that_its_ground_has_changed() -> None:
     assert provenance(read_case(case.to_toml())) == provenance(case)
 
 
+@pytest.mark.parametrize("origin", ['origin = "Another"', 'title = "x"'])
+@pytest.mark.parametrize("of_file", [True, False])
+def test_a_base_of_another_origin_reads_back_equal(origin: str, of_file: bool) -> None:
+    text = Path(case_files()["fzg-12dof"]).read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if of_file or not line.startswith("origin")]
+    case = read_case("\n".join([*lines, "[based_on]", origin, '"gears.pinion.teeth" = 20']))
+    assert read_case(case.to_toml()) == case
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
