@@ -27,14 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import (
-    ENDLESS,
-    Argument,
-    ComputationError,
-    InputError,
-    Problem,
-    shortened,
-)
+from tribodyn.errors import ENDLESS, Argument, ComputationError, InputError, Problem, shortened
 
 _TINY, _NONE = 1.0 / ENDLESS, frozenset[type]()
 #: Classes of these modules stand for no object of a mechanism.
@@ -365,6 +358,16 @@ class _Reader:
         names = [*self.names, *self.names[-1:] * more]
         return chain(zip(names, args, strict=False), named.items())
 
+    def fitting(self, args: Any, named: dict[str, Any]) -> bool:
+        """Whether a quick look finds the kinds that are wanted."""
+        if self.several:
+            return False
+        for quick, value in zip(self.first, args, strict=False):
+            if not quick(value):
+                return False
+        fits = self.fits
+        return all(fits[name](value) for name, value in named.items() if name in fits)
+
     def read(self, args: Any, named: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         wanted = self.wanted
         try:
@@ -426,16 +429,7 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
             made.append(_Reader(function, owner))
         reader = made[0]
         try:
-            fits = not reader.several
-            for quick, value in zip(reader.first, args, strict=False):
-                if not quick(value):
-                    fits = False
-                    break
-            for name, value in named.items():
-                if name in reader.fits and not reader.fits[name](value):
-                    fits = False
-                    break
-            if not fits:
+            if not reader.fitting(args, named):
                 args, named = reader.read(args, named)
             return function(*args, **named)
         except Exception as error:
@@ -450,7 +444,20 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
 
 
 def guarded(thing: Any, page: str) -> Any:
-    """Have one public function or class read its arguments; anything else is left as it is."""
+    """Have one public function or class read its arguments; anything else is left as it is.
+
+    Parameters
+    ----------
+    thing : object
+        What a page names.
+    page : str
+        Name of its module.
+
+    Returns
+    -------
+    object
+        The function that reads its arguments first, or the same class.
+    """
     if isinstance(thing, _FUNCTIONS):
         if getattr(thing, "reads", False):
             return thing
@@ -477,7 +484,13 @@ def _guard_methods(owner: type) -> None:
 
 
 def guard(page: str) -> None:
-    """Have the public functions, constructors and methods of a page read their arguments."""
+    """Have the public functions, constructors and methods of a page read their arguments.
+
+    Parameters
+    ----------
+    page : str
+        Name of its module; its ``__all__`` says what is public.
+    """
     module = sys.modules[page]
     for name in module.__all__:
         setattr(module, name, guarded(getattr(module, name), page))

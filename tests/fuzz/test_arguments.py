@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from fuzz.public_calls import SLOW, methods, parameters, public, results, working_calls
 from registries import as_before
@@ -170,13 +171,26 @@ def test_methods_of_results_with_arguments_of_wrong_kinds(calls, draws, tmp_path
     assert not failed, "\n".join(failed)
 
 
+def documented_film(load_per_width: ArrayLike, effective_modulus: ArrayLike) -> Any:
+    """Film of a contact.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load per face width.
+    effective_modulus : float or array [Pa]
+        That of both bodies.
+    """
+    return np.asarray(load_per_width) * effective_modulus
+
+
 @pytest.mark.parametrize(("value", "part"), [
     ("1 N/mm", "not texts"), (math.nan, "NaN is none"), (True, "Wanted: numbers"),
     ([[1.0], [1.0, 2.0]], "even rows"), (2j, "Give load_per_width in N/m"),
 ])  # fmt: skip
 def test_what_is_wrong_is_told_with_the_unit_of_the_documentation(value, part):
     with pytest.raises(InputError) as refused:
-        dowson_1968_minimum(value, 8e-3, 3.0, 0.08, 2e-8, "2 GPa")
+        checked(documented_film)(value, "2 GPa")
     assert part in str(refused.value)
     places = [str(problem.where) for problem in refused.value.problems]
     assert places == ["argument load_per_width", "argument effective_modulus"]

@@ -206,7 +206,7 @@ def _refuse(measured: Any, channels: Any) -> None:
             Problem(
                 "no channels are compared",
                 Argument("channels"),
-                "",
+                "A comparison lays channels beside computed signals",
                 'Write {"acc": "acceleration_loa_pinion"}',
             )
         )
