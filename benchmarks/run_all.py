@@ -25,6 +25,7 @@ SCRIPTS = (
     "fe2d_speed",
     "stiffness_speed",
     "learning_speed",
+    "study_speed",
     "hypoid_speed",
     "cold_start",
 )

@@ -7,7 +7,7 @@ from _site.names import homes
 from _site.pages import contents
 from gallery import EXAMPLES, GALLERY, masked
 from generated import packages
-from pages import ROOT
+from pages import PAGES, ROOT
 
 INDEX = (ROOT / "docs" / "index.md").read_text("utf-8")
 
@@ -36,6 +36,14 @@ def test_every_public_name_is_explained_once() -> None:
     assert set(homes()) == set(names)
     assert homes()["tribodyn.study", "Case"] == homes()["tribodyn", "Case"] == "tribodyn.Case"
     assert homes()["tribodyn.analysis", "rms"] == "tribodyn.analysis.rms"
+
+
+def test_names_of_the_package_that_the_pages_mention_are_there() -> None:
+    import tribodyn as td
+
+    for page in PAGES:
+        for name in re.findall(r"`td\.(\w+)", page.read_text("utf-8")):
+            assert hasattr(td, name), f"{page.name}: td.{name}"
 
 
 def test_texts_are_compared_without_numbers_and_places() -> None:

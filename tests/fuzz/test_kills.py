@@ -6,13 +6,12 @@ import json
 import os
 import random
 import signal
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from threading import Timer
 
 import pytest
+from killed import started
 
 from tribodyn.stored import read_dataset
 
@@ -38,35 +37,6 @@ _COMMANDS = {
         "bifurcation.html",
     ),
 }  # fmt: skip
-#: Makes a command quick to start, and kills it at a call of the system that changes a place.
-_AIMED = """
-import os, signal, sys
-import tribodyn.files, tribodyn.members
-at = int(sys.argv.pop(1))
-def counted(function):
-    def call(*arguments, **options):
-        global at
-        at -= 1
-        if at == 0:
-            os.kill(os.getpid(), signal.SIGKILL)
-        found = function(*arguments, **options)
-        at -= 1
-        if at == 0:
-            os.kill(os.getpid(), signal.SIGKILL)
-        return found
-    return call
-for name in ("mkdir", "rename", "replace", "rmdir", "unlink", "fsync", "utime"):
-    setattr(os, name, counted(getattr(os, name)))
-tribodyn.files._exchange = counted(tribodyn.files._exchange)
-from tribodyn.cli import main
-main()
-"""
-
-
-def _start(folder: Path, words: list[str], at: int = 0) -> subprocess.Popen[str]:
-    code = [sys.executable, "-c", _AIMED, str(at)]
-    return subprocess.Popen([*code, *words], cwd=folder, text=True, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE)  # fmt: skip
 
 
 def _is_whole(place: Path, last: str) -> bool:
@@ -96,17 +66,17 @@ def test_kills_at_any_moment(draws: Draws, tmp_path: Path, command: str) -> None
         forced = [*words, "--force"] if there else words
         for _ in range(rng.choice((1, 2))):
             if rng.random() < 0.7:
-                process = _start(tmp_path, forced, rng.randrange(1, 90))
+                process = started(tmp_path, forced, rng.randrange(1, 90))
                 process.communicate(timeout=120)
             else:
-                process = _start(tmp_path, forced)
+                process = started(tmp_path, forced)
                 Timer(rng.uniform(0.5, 6.0), process.kill).start()
                 process.communicate(timeout=120)
             assert process.returncode in (0, -signal.SIGKILL)
             assert _is_whole(place, last) or not there
             there = _is_whole(place, last)
             forced = [*words, "--force"] if there else words
-        process = _start(tmp_path, forced)
+        process = started(tmp_path, forced)
         told = process.communicate(timeout=120)
         assert process.returncode == 0, told
         assert _is_whole(place, last)

@@ -138,6 +138,7 @@ def test_goals_are_judged(
         ("losses_speed", "loss map"),
         ("friction_speed", "plain formula"),
         ("learning_speed", "MINPACK"),
+        ("study_speed", "the store costs"),
     ],
 )
 def test_quick_run_prints_its_table(

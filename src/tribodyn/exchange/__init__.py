@@ -4,6 +4,7 @@
 |---|---|
 | ``rexs_file`` | what a REXS file holds, as XML, JSON or zip |
 | ``gearbox`` | which stages and loads there are, and what is odd about them |
+| ``flank_forms`` | which reliefs and crownings the flanks have |
 | ``to_case`` | the case of a spur stage, with what had to be assumed |
 | ``tables`` | tables and figures of a result as CSV and JSON |
 | ``write`` | a case as a REXS model, which reads back without loss |

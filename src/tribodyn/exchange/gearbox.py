@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
 
 from tribodyn.errors import InputError
+from tribodyn.exchange.flank_forms import forms_of
 from tribodyn.exchange.rexs_file import Component, RexsFile, kinds, read_file
 from tribodyn.gear.curves import involute
 
 _GEARS = ("cylindrical_gear", "ring_gear")
-#: Components that change a flank; a case has other forms of most of them.
-_MODIFICATIONS = (
-    "tip_relief", "root_relief", "profile_crowning", "profile_slope", "helix_crowning",
-    "helix_slope", "helix_deviation", "profile_deviation", "profile_twist",
-    "triangular_tip_relief", "triangular_root_relief", "end_relief_datum_face",
-    "end_relief_non_datum_face", "topographical_modification",
-)  # fmt: skip
 #: Stages that are no pair of cylindrical gears.
 _OTHER_STAGES = ("bevel_stage", "worm_stage")
 #: A tip circle is off the standard one by less than so many modules.
 _TIP_MODULES = 2.0
-
-
-#: What to do about a file that says too little.
-_EXPORT = "Correct it in the program that wrote the file, and export it again"
 
 
 @dataclass(frozen=True)
@@ -49,6 +39,8 @@ class StageGear:
         Of the flanks, over the normal module.
     face_width, tip_diameter, roughness_ra : float, optional [m]
         Width, tip circle and mean roughness of the flanks.
+    modification : dict of str to float [m]
+        Keys of the table ``modification`` of a case: reliefs and crownings.
     """
 
     id: int
@@ -61,6 +53,7 @@ class StageGear:
     face_width: float | None = None
     tip_diameter: float | None = None
     roughness_ra: float | None = None
+    modification: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -212,7 +205,7 @@ class GearboxModel:
         if not known:
             found = ", ".join(k for k in self.components if k.endswith("_stage")) or "none"
             why = f"Stages in the file: {found}; cylindrical pairs are computed"
-            raise InputError("there is no cylindrical stage", self.path, why, _EXPORT)
+            raise InputError("there is no cylindrical stage", self.path, why)
         if number is None and len(known) == 1:
             number = known[0]
         if number not in known:
@@ -277,23 +270,22 @@ class GearboxModel:
             numbers = [relation.of("gear_1"), relation.of("gear_2")]
             if None not in numbers:
                 one, two = (self._gear(self.file.components[n]) for n in numbers if n is not None)
-                distance = _needed(stage, "center_distance", "m")
+                # Some programs give internal stages a negative distance.
+                distance = abs(_needed(stage, "center_distance", "m"))
                 found = Stage(stage.id, one, two, distance, stage.id in self._planetary)
                 self._remark_on_stage(found)
                 return found
-        why = "A stage refers to its two gears"
-        raise InputError("no relation names both gears of the stage", str(stage), why, _EXPORT)
+        raise InputError("no relation names both gears of the stage", str(stage))
 
     def _gear(self, gear: Component) -> StageGear:
         if gear.kind not in _GEARS:
-            why = f"Read are: {', '.join(sorted(_GEARS))}"
-            raise InputError(f"a cylindrical stage has a {gear.kind}", str(gear), why, _EXPORT)
-        flank = self._flank(gear)
+            raise InputError(f"a cylindrical stage has a {gear.kind}", str(gear))
+        sides = self._flanks(gear)
+        flank = sides[0] if sides else gear
         teeth = _needed(gear, "number_of_teeth", "")
         if teeth != int(teeth) or not 1 <= abs(teeth) <= 10_000:
-            why = "Teeth are counted, up to 10000"
-            raise InputError(f"number_of_teeth = {teeth:g}", str(gear), why, _EXPORT)
-        sign = -1.0 if gear.kind == "ring_gear" else 1.0
+            raise InputError(f"number_of_teeth = {teeth:g}", str(gear), "It is no number of teeth")
+        sign = -1.0 if gear.kind == "ring_gear" or teeth < 0.0 else 1.0
         found = StageGear(
             gear.id,
             gear.name,
@@ -307,9 +299,21 @@ class GearboxModel:
             gear.number("arithmetic_average_roughness_flank", "m"),
         )
         _require_gear(found, gear)
-        return self._without_nonsense(found, gear)
+        return self._with_forms(self._without_nonsense(found, gear), gear, [s.id for s in sides])
 
-    def _flank(self, gear: Component) -> Component:
+    def _with_forms(self, found: StageGear, gear: Component, flanks: list[int]) -> StageGear:
+        """The gear with the forms of its flanks, which only external spur gears take."""
+        radii = None
+        if found.tip_diameter is not None and found.teeth > 0 and not found.helix_angle:
+            cosine = math.cos(found.normal_pressure_angle)
+            radii = (0.5 * found.teeth * found.normal_module * cosine, 0.5 * found.tip_diameter)
+        forms, remarks = forms_of(self.file, gear, flanks, radii)
+        for remark in remarks:
+            self._remark(remark)
+        return replace(found, modification=forms)
+
+    def _flanks(self, gear: Component) -> list[Component]:
+        """Left and right flank; none where the values stand with the gear itself."""
         for relation in self.file.related("flank", gear=gear.id):
             sides = [self.file.components[n] for r, n in relation.refs if r in ("left", "right")]
             if len(sides) == 2:
@@ -318,9 +322,8 @@ class GearboxModel:
                     if sides[0].number(name, unit) != sides[1].number(name, unit):
                         self._remark(f"{gear}: {name} of its flanks differs; the left one is read")
             if sides:
-                return sides[0]
-        why = "A gear refers to its flanks"
-        raise InputError("no relation names its flanks", str(gear), why, _EXPORT)
+                return sides
+        return []
 
     def _without_nonsense(self, found: StageGear, gear: Component) -> StageGear:
         if found.tip_diameter is None:
@@ -334,8 +337,7 @@ class GearboxModel:
             f"{gear}: tip_diameter = {found.tip_diameter * 1e3:g} mm cannot be that of the gear "
             f"(standard addendum: {abs(standard) * 1e3:.2f} mm); it is ignored"
         )
-        values = {**vars(found), "tip_diameter": None}
-        return StageGear(**values)
+        return replace(found, tip_diameter=None)
 
     def _load(self, number: int) -> Load:
         case = {**self.file.components}
@@ -396,10 +398,6 @@ class GearboxModel:
             )
 
     def _remark_on_rest(self) -> None:
-        changed = [k for k in self.components if k in _MODIFICATIONS]
-        if changed:
-            names = ", ".join(f"{self.components[k]} {k}" for k in changed)
-            self._remark(f"flank modifications are not read: {names}")
         for kind in _OTHER_STAGES:
             if kind in self.components:
                 self._remark(f"{self.components[kind]} {kind}: not computed, and not read")
@@ -445,7 +443,7 @@ def _require_gear(found: StageGear, gear: Component) -> None:
     for name, (value, low, high) in limits.items():
         if not low <= value <= high:
             why = f"Gears have {low:g} to {high:g} (SI, radians)"
-            raise InputError(f"{name} = {value:g}", str(gear), why, _EXPORT)
+            raise InputError(f"{name} = {value:g}", str(gear), why)
 
 
 def read_rexs(path: str | PathLike[str]) -> GearboxModel:

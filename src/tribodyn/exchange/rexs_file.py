@@ -161,7 +161,10 @@ def _unzipped(content: bytes, place: str) -> bytes:
     """The one model in a zip."""
     try:
         with zipfile.ZipFile(BytesIO(content)) as archive:
-            names = [n for n in archive.namelist() if n.lower().endswith((".rexs", ".rexsj"))]
+            # Macintosh computers add a folder with a second file for each.
+            inside = [n for n in archive.namelist() if not n.startswith("__MACOSX/")]
+            models = [n for n in inside if n.lower().endswith((".rexs", ".rexsj"))]
+            names = models or [n for n in inside if n.lower().endswith((".xml", ".json"))]
             if len(names) != 1:
                 what = f"the zip holds {len(names) or 'no'} REXS models"
                 why = "Wanted: one file that ends in .rexs or .rexsj"
@@ -187,6 +190,8 @@ class _NoDoctype(ElementTree.TreeBuilder):
 
 
 def _from_xml(root: ElementTree.Element, place: str) -> dict[str, Any]:
+    for element in root.iter():
+        element.tag = str(element.tag).rpartition("}")[2]  # some programs write a namespace
     if root.tag != "model":
         raise InputError(f"it is XML of a <{root.tag}>, not of a REXS model", place, "", _REMEDY)
     spectrum = root.find("load_spectrum")

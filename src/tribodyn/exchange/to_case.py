@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
+from tribodyn import units
 from tribodyn.errors import InputError
 from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear
 from tribodyn.exchange.rexs_file import model_of
@@ -22,13 +24,16 @@ _MODELS = {
     "dynamics.model": "spur-6dof",
     "dynamics.mesh_law": "force-law",
 }
+_OIL_TEMPERATURE = 333.15
 _ASSUMED = {
     "dynamics.bearing_stiffness": (500e6, "a usual stiffness of shaft and bearings together"),
     "dynamics.backlash": (0.1e-3, "a usual play"),
     "gears.driver": ("pinion", "the file says of no torque where it comes from"),
     "lubricant.name": ("ISO VG 220", "a usual gear oil"),
-    "lubricant.temperature": (333.15, "a usual temperature of gear oil"),
+    "lubricant.temperature": (_OIL_TEMPERATURE, "a usual temperature of gear oil"),
 }
+#: Density of mineral oil at 15 degC [kg/m^3].
+_DENSITY = 880.0
 _NOT_THERE = "not in the REXS file; "
 
 
@@ -67,7 +72,12 @@ def case_from_rexs(
 
 def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]) -> Case:
     _require_spur(model, stage)
+    if "lubricant.temperature" in changes:  # the viscosity of the file is that at a temperature
+        load = replace(load, oil_temperature=_kelvin(changes["lubricant.temperature"]))
     found, notes = _values(model, stage, load)
+    if "lubricant.name" in changes:  # another oil than that of the file
+        found = {key: v for key, v in found.items() if not key.startswith("lubricant.")}
+        notes = {key: note for key, note in notes.items() if not key.startswith("lubricant.")}
     for unit in model.file.of_kind("gear_unit"):
         if WHOLE_CASE in unit.values:
             known = read_case(str(unit.values[WHOLE_CASE].content), f"{model.path}: {WHOLE_CASE}")
@@ -92,6 +102,16 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
     kept = {key: note for key, note in notes.items() if key not in changes}
     return Case(title=title, origin=origin, **_nested(data), assumed=kept)
+
+
+def _kelvin(value: Any) -> float:
+    """Temperature as the user gives it."""
+    if not isinstance(value, str):
+        return float(value)
+    try:
+        return units.parse(value, "K")
+    except units.UnitProblemError as error:
+        raise InputError(f'lubricant.temperature = "{value}"', "", str(error)) from None
 
 
 def _require_spur(model: GearboxModel, stage: Stage) -> None:
@@ -136,6 +156,7 @@ def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, An
             )
             if (value := getattr(gear, key)) is not None
         }
+        data |= {f"gears.{name}.modification.{k}": v for k, v in gear.modification.items()}
     shaft = model.shaft_of(pinion.id)
     if shaft in load.speeds and shaft in load.torques:
         data["operation.speed"] = load.speeds[shaft]
@@ -201,10 +222,10 @@ def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str
     for part in model.file.of_kind("lubricant"):
         cold = part.number("viscosity_at_40_degree_celsius", "m^2/s")
         warm = part.number("viscosity_at_100_degree_celsius", "m^2/s")
-        density = part.number("density_at_15_degree_celsius", "kg/m^3")
-        temperature = load.oil_temperature
-        if not (cold and warm and density and temperature):
+        if not (cold and warm):
             continue
+        density = part.number("density_at_15_degree_celsius", "kg/m^3") or _DENSITY
+        temperature = load.oil_temperature or _OIL_TEMPERATURE
         oil = Lubricant.from_temperature(
             temperature, ((313.15, cold), (373.15, warm)), density, base_oil="mineral"
         )
@@ -218,6 +239,11 @@ def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str
         data = {f"lubricant.{key}": getattr(oil, key) for key in keys}
         estimate = "as of a mineral oil, from the viscosity by AGMA 925"
         notes = {"lubricant.pressure_viscosity_coefficient": _NOT_THERE + estimate}
+        if not load.oil_temperature:
+            reason = _ASSUMED["lubricant.temperature"][1]
+            notes["lubricant.temperature"] = _NOT_THERE + str(reason)
+        if "density_at_15_degree_celsius" not in part.values:
+            notes["lubricant.density"] = _NOT_THERE + "a usual one of mineral oil"
         return {key: value for key, value in data.items() if value is not None}, notes
     return {}, {}
 

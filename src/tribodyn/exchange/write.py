@@ -23,6 +23,19 @@ WHOLE_CASE = "custom_tribodyn_case"
 _UNIT, _CASING, _STAGE, _OIL, _MATERIAL, _LOAD = 1, 2, 3, 4, 5, 6
 _SHAFTS, _GEARS, _TOOL = (7, 8), (9, 10), 11
 _FLANKS = ((12, 13), (14, 15))
+#: Key of a modification -> kind of component and attributes that carry its amount, and its length.
+_FORMS: dict[str, tuple[str, tuple[str, ...], str]] = {
+    "tip_relief": ("tip_relief", ("tip_relief_depth",), "tip_relief_datum_length"),
+    "root_relief": ("root_relief", ("root_relief_depth",), "root_relief_datum_length"),
+    "profile_crowning": (
+        "profile_crowning", ("profile_crowning_at_root", "profile_crowning_at_tip"), "",
+    ),
+    "crowning": (
+        "helix_crowning",
+        ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
+        "",
+    ),
+}  # fmt: skip
 _TO_MM, _TO_DEG = 1e3, 180.0 / math.pi
 
 Attribute = tuple[str, str, Any]  # name, unit, value
@@ -110,12 +123,13 @@ def _parts(case: Case) -> dict[str, Any]:
             ("tip_radius_factor", "none", case.gears.rack_tip_radius_coefficient),
         ]),
         *(part for gear in gears for part in gear),
+        *(part for _, part in _forms(case)),
     ]  # fmt: skip
     return {
         "version": "1.4",
         "applicationId": "tribodyn",
         "applicationVersion": __version__,
-        "relations": _relations(_SHAFTS[driver], bool(case.lubricant)),
+        "relations": _relations(case, _SHAFTS[driver]),
         "components": components,
         "load_spectrum": {"id": 1, "load_cases": [{"id": 1, "components": load}]},
     }
@@ -150,7 +164,22 @@ def _oil(case: Case) -> dict[str, Any]:
                  (oil.density + 0.7 * ((oil.temperature or 288.15) - 288.15)) * 1e-3)])  # fmt: skip
 
 
-def _relations(loaded: int, oil: bool) -> list[dict[str, Any]]:
+def _forms(case: Case) -> list[tuple[tuple[int, int], dict[str, Any]]]:
+    """Reliefs and crownings, each with the flanks that it hangs on."""
+    found: list[tuple[tuple[int, int], dict[str, Any]]] = []
+    for flanks, gear in zip(_FLANKS, (case.gears.pinion, case.gears.wheel), strict=True):
+        for key, (kind, amounts, length) in _FORMS.items():
+            amount = getattr(gear.modification, key, 0.0)
+            if amount:
+                values = [(name, "mm", amount * _TO_MM) for name in amounts]
+                along = getattr(gear.modification, f"{key}_length", None)
+                values += [(length, "mm", along * _TO_MM)] if along else []
+                number = _FLANKS[-1][-1] + 1 + len(found)
+                found.append((flanks, _part(number, kind, "", values)))
+    return found
+
+
+def _relations(case: Case, loaded: int) -> list[dict[str, Any]]:
     links: list[tuple[str, dict[str, int]]] = [
         ("assembly", {"assembly": _UNIT, "part": n}) for n in (_CASING, _STAGE, *_SHAFTS)
     ]
@@ -163,7 +192,13 @@ def _relations(loaded: int, oil: bool) -> list[dict[str, Any]]:
             ("reference", {"origin": gear, "referenced": _MATERIAL}),
             ("ordered_reference", {"origin": gear, "referenced": _TOOL}),
         ]
-    links += [("reference", {"origin": _CASING, "referenced": _OIL})] if oil else []
+    if case.lubricant:
+        links += [("reference", {"origin": _CASING, "referenced": _OIL})]
+    links += [
+        ("reference", {"origin": flank, "referenced": part["id"]})
+        for flanks, part in _forms(case)
+        for flank in flanks
+    ]
     return [
         {
             "id": n,

@@ -106,7 +106,7 @@ def order_spectrum(
     max_order : float
         Highest order, in cycles per revolution [-].
     window : {"flattop", "hann", "boxcar"}
-        Window over the angle: ``"flattop"`` gives every amplitude within 0.01 %, ``"hann"`` parts
+        Window over the angle: ``"flattop"`` gives every amplitude within 0.05 %, ``"hann"`` parts
         close orders better.
     unit : str
         Unit of the signal, for display.
@@ -268,9 +268,11 @@ def _lines(
     for term, share in enumerate(WINDOWS[window]):
         weights += share * np.cos(2.0 * np.pi * term * inside)
     count = int(np.floor(2.0 * max_order * revolutions + 1e-9)) + 1
-    sums = _uneven_transform(values * weights * widths, 0.5 * inside, count)
+    weights *= widths
+    mean = float(values @ weights / weights.sum())  # a large offset would leak into orders
+    sums = _uneven_transform((values - mean) * weights, 0.5 * inside, count)
     lines = 2.0 * sums * np.exp(-1j * np.arange(count) * start / (2.0 * revolutions))
-    lines[0] *= 0.5
+    lines[0] = 0.5 * lines[0] + mean
     return np.asarray(lines)
 
 

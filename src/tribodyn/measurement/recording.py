@@ -12,15 +12,14 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import Argument, InputError, Problem, require_positive, shortened
-from tribodyn.measurement.readers.content import Content, equal_steps
+from tribodyn.measurement.readers.content import MEASURED, Content, rate_of
 from tribodyn.measurement.readers.recognised import content_of
 from tribodyn.record import Parts, Record, fact, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
 from tribodyn.units import convert
 
-#: What sensors measure, in SI; ``g`` after a stroke is the standard acceleration of fall.
-_MEASURED = ("m/s^2", "m/s", "m", "N", "N*m", "Pa", "rad", "rad/s", "K", "W", "A", "V")
+#: Standard acceleration of fall, which ``g`` after a stroke is.
 _FALL = 9.80665
 _SENSITIVITY = re.compile(r"\s*([0-9.eE+-]+)\s*([^/]+)/\s*(.+?)\s*")
 
@@ -224,11 +223,17 @@ def _chosen(channels: Iterable[str]) -> list[str]:
 def _rate(found: Content, names: list[str], given: float | None, path: Any) -> float:
     """Sampling rate of the chosen channels: of the file, or as given."""
     rates = {name: found.rates[name] for name in names if name in found.rates}
-    if found.time is not None:
-        rates["its times"] = equal_steps(found.time, path)
     if given is not None:
         require_positive("sample_rate", given, "Hz")
         rates["argument sample_rate"] = float(given)
+    clocks = {id(found.times[name]): name for name in names if name in found.times}
+    for name in clocks.values():
+        time, size = found.times[name], found.channels[name].size
+        if time.size != size:
+            what = f"channel {name} has {size} samples, its times are {time.size}"
+            why, remedy = "Each sample has its own time", "Correct the file, or leave the times out"
+            raise InputError(Problem(what, str(path), why, remedy))
+        rates[f"times of {name}"] = rate_of(time, path, given)
     if not rates:
         raise InputError(
             f"{path} tells no sampling rate",
@@ -269,7 +274,7 @@ def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:
         raise InputError(wrong)
     if below in ("g", "g_n", "g_0"):
         return _FALL / volts, "m/s^2"
-    for si in _MEASURED:
+    for si in MEASURED:
         try:
             return convert(1.0, below, si) / volts, si
         except InputError:

@@ -26,6 +26,12 @@ _HYSTERESIS = 0.25
 _MISSING = 3
 #: Pulses on either side of a gap that tell how long it should be.
 _NEIGHBOURS = 4
+#: Part of the height that a steep edge rises within one sample.
+_STEEP = 0.8
+#: Squared residual over that of unsure edges up to which a smoother curve will do.
+_ENOUGH = 1.05
+#: Times the longest gap that acceleration explains; from rest the first gap is 1.33 of it.
+_WIDER = 1.5
 #: Longer than so many gaps beside it is a rest, at which the angle is parted.
 _REST = 8.0
 #: Most pulses in one piece of the smoothing spline.
@@ -80,8 +86,9 @@ def shaft_angle(
     pulses are missing where a gap is two to four times as long as those on either side let
     expect. The angle over time is a cubic spline by least squares, whose pieces hold as many
     pulses as generalized cross validation finds best, so that jitter of single pulses is smoothed
-    and speed is not. Before the first pulse, after the last one and around a rest the shaft goes
-    on with its acceleration there until it stands.
+    and speed is not; of steep edges as many as leave a residual within the sampling step, whose
+    error repeats at a steady speed and is no speed. Before the first pulse, after the last one and
+    around a rest the shaft goes on with its acceleration there until it stands.
     G. Wahba, Spline Models for Observational Data, SIAM 1990, equation (4.3.1).
 
     Examples
@@ -96,14 +103,18 @@ def shaft_angle(
     require_positive("sample_rate", sample_rate, "Hz")
     each = 2.0 * np.pi / require_whole("pulses_per_revolution", pulses_per_revolution)
     require_one_of("edge", edge, ("rising", "falling"))
-    moments = edges(values if edge == "rising" else -values, threshold, edge) / sample_rate
-    count, moments = counted(moments)
+    moments, unsure = edges(values if edge == "rising" else -values, threshold, edge)
+    count, moments = counted(moments / sample_rate)
     time = np.arange(values.size) / sample_rate
-    return np.asarray(np.maximum.accumulate(each * _turned(moments, count, time)))
+    turned = _turned(moments, count, time, unsure / sample_rate)
+    return np.asarray(np.maximum.accumulate(each * turned))
 
 
-def edges(values: Array, threshold: float | None, edge: str = "rising") -> Array:
-    """Moments at which the signal rises through its threshold, in samples."""
+def edges(values: Array, threshold: float | None, edge: str = "rising") -> tuple[Array, float]:
+    """Moments at which the signal rises through its threshold, and how unsure they are [samples].
+
+    Of an edge that rises within one sample it is known between which two samples it lies.
+    """
     if threshold is None:
         level, height = _levels(values)
     else:
@@ -129,7 +140,8 @@ def edges(values: Array, threshold: float | None, edge: str = "rising") -> Array
             )
         )
     low, high = values[last], values[last + 1]
-    return np.asarray(last + (level - low) / (high - low))
+    steep = np.median(high - low) > _STEEP * height
+    return np.asarray(last + (level - low) / (high - low)), 1.0 / np.sqrt(12.0) if steep else 0.0
 
 
 def _levels(values: Array) -> tuple[float, float]:
@@ -158,7 +170,7 @@ def counted(moments: Array) -> tuple[Array, Array]:
     expected = _expected(gaps)
     steps = np.rint(gaps / expected)
     even = np.abs(gaps / expected - steps) < 0.25 * steps
-    missing = (steps > 1) & (steps <= 1 + _MISSING) & even & (gaps > 1.3 * _longest(gaps))
+    missing = (steps > 1) & (steps <= 1 + _MISSING) & even & (gaps > _WIDER * _longest(gaps))
     number = np.concatenate(([0.0], np.cumsum(np.where(missing, steps, 1.0))))
     lost = int(np.sum(steps[missing] - 1.0))
     if double or lost:
@@ -212,7 +224,8 @@ def _without_double(moments: Array) -> tuple[Array, int]:
         if not spare.any():
             break
         # Of neighbours that both look spare only the one with the shorter gap is.
-        beside = np.minimum(np.append(either[1:], np.inf), np.append(np.inf, either[:-1]))
+        shortest = np.where(spare, either, np.inf)
+        beside = np.minimum(np.append(shortest[1:], np.inf), np.append(np.inf, shortest[:-1]))
         worst = spare & (either <= beside)
         places = 1 + np.flatnonzero(worst)
         places = places[np.append(True, np.diff(places) > 1)]
@@ -221,7 +234,7 @@ def _without_double(moments: Array) -> tuple[Array, int]:
     return moments, dropped
 
 
-def _turned(moments: Array, count: Array, time: Array) -> Array:
+def _turned(moments: Array, count: Array, time: Array, unsure: float) -> Array:
     """Pulses passed at each time; between two rests the shaft turns on a curve of its own."""
     gaps = np.diff(moments)
     beside = np.maximum(np.append(gaps[1:], gaps[-2]), np.append(gaps[1], gaps[:-1]))
@@ -233,11 +246,11 @@ def _turned(moments: Array, count: Array, time: Array) -> Array:
         begin = 0.5 * (moments[first - 1] + moments[first]) if first else -np.inf
         end = 0.5 * (moments[last - 1] + moments[last]) if last < moments.size else np.inf
         here = (time >= begin) & (time < end)
-        turned[here] = _on_curve(moments[part], count[part], time[here])
+        turned[here] = _on_curve(moments[part], count[part], time[here], unsure)
     return turned
 
 
-def _on_curve(moments: Array, count: Array, time: Array) -> Array:
+def _on_curve(moments: Array, count: Array, time: Array, unsure: float) -> Array:
     """Pulses passed, by a spline through their moments that is as smooth as they need."""
     from scipy.interpolate import BSpline, make_interp_spline
     from scipy.sparse.linalg import spsolve
@@ -257,9 +270,11 @@ def _on_curve(moments: Array, count: Array, time: Array) -> Array:
         basis = BSpline.design_matrix(moments, knots, 3)
         fit = BSpline(knots, spsolve((basis.T @ basis).tocsc(), basis.T @ count), 3)
         left = 1.0 - (knots.size - 4) / moments.size
-        score = float(np.mean((fit(moments) - count) ** 2)) / left**2
-        if score < best:
-            best, spline = score, fit
+        residual = float(np.mean((fit(moments) - count) ** 2))
+        score = residual / left**2
+        known = _ENOUGH * float(np.mean((unsure * fit(moments, 1)) ** 2))
+        if score < best or residual < known:
+            best, spline = min(score, best), fit
         pulses *= 2
     return _beyond(spline, moments, time)
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+import socket
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,8 @@ Results = Iterator[tuple[Chunk, Part | Exception]]
 
 #: Chunks that fail as a whole before any is finished, after which nothing else is tried.
 _HOPELESS = 3
+#: Time for a scheduler to answer [s].
+_PATIENCE = 10.0
 
 
 def run_study(
@@ -65,14 +69,14 @@ def run_study(
     """
     ready = study if isinstance(study, Study) else load_study(study)
     missing: dict[str, str] = {}
-    with Store(ready, Path(store), force) as place:
+    engine = _cluster(scheduler) if scheduler else nullcontext(_here)
+    with engine as compute, Store(ready, Path(store), force) as place:
         left = place.left()
         total = ready.layout.count
         progress.start("Members", total)
         progress.advance(total - sum(chunk.end - chunk.begin for chunk in left))
         jobs = ((chunk, place.job(chunk)) for chunk in left)
-        results = _on_dask(scheduler, jobs, progress) if scheduler else _here(jobs, progress)
-        for chunk, part in results:
+        for chunk, part in compute(jobs, progress):
             if isinstance(part, Part):
                 place.put(chunk, part)
             else:
@@ -122,50 +126,64 @@ def compute_alone(version: str, job: Job) -> Part:
         return job.compute()
 
 
-def _on_dask(address: str, jobs: Jobs, progress: Progress) -> Results:
-    """Let the workers of a cluster compute, a few chunks ahead of what they can do at once."""
+@contextmanager
+def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
+    """Workers of a cluster, which are there before anything is written."""
     try:
-        from distributed import Client, as_completed
+        from distributed import Client
+        from distributed.comm.addressing import parse_host_port
     except ImportError:
         remedy = 'Install it: pip install "tribodyn[cluster]"'
         raise InputError(Problem("Dask is not installed", "--scheduler", "", remedy)) from None
     try:
-        client = Client(address, timeout="10s", set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
-        why, remedy = str(error).strip(), "Start one with: dask scheduler; it tells its address"
-        raise InputError(
-            Problem(f"no Dask scheduler answers at {address}", "", why, remedy)
-        ) from None
+        # A client that finds nobody takes long to tell it.
+        socket.create_connection(parse_host_port(address.split("://")[-1]), _PATIENCE).close()
+        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TypeError, OverflowError) as error:
+        what, why = f"no Dask scheduler answers at {address}", str(error).strip()
+        remedy = "Start one with: dask scheduler; it tells its address"
+        raise InputError(Problem(what, "--scheduler", why, remedy)) from None
+
+    def compute(jobs: Jobs, progress: Progress) -> Results:
+        try:
+            yield from _on_workers(client, jobs, progress)
+        except Exception:
+            if client.status == "running":
+                raise
+            what, why = f"the Dask scheduler at {address} is gone", "What is finished is stored"
+            remedy = "Start a scheduler; the same command goes on with it"
+            raise ComputationError(Problem(what, "--scheduler", why, remedy)) from None
+
     with client:
-        waiting, token = iter(jobs), os.urandom(4).hex()
-        running: dict[Any, Chunk] = {}
-        ended = as_completed([], loop=client.loop)
+        yield compute
 
-        def fill() -> None:
-            ahead = 2 * sum(client.nthreads().values()) + 2
-            while len(running) < ahead and (task := next(waiting, None)) is not None:
-                chunk, job = task
-                future = client.submit(
-                    compute_alone, tribodyn.__version__, job, key=f"{chunk.name}-{token}"
-                )
-                running[future] = chunk
-                ended.add(future)
 
+def _on_workers(client: Any, jobs: Jobs, progress: Progress) -> Results:
+    """Let the workers compute, a few chunks ahead of what they can do at once."""
+    from distributed import as_completed
+
+    waiting, token = iter(jobs), os.urandom(4).hex()
+    running: dict[Any, Chunk] = {}
+    ended = as_completed([], loop=client.loop)
+
+    def fill() -> None:
+        ahead = 2 * sum(client.nthreads().values()) + 2
+        while len(running) < ahead and (task := next(waiting, None)) is not None:
+            chunk, job = task
+            key = f"{chunk.name}-{token}"
+            future = client.submit(compute_alone, tribodyn.__version__, job, key=key)
+            running[future] = chunk
+            ended.add(future)
+
+    fill()
+    for future in ended:
+        chunk = running.pop(future)
+        try:
+            part: Part | Exception = future.result()
+            progress.advance(chunk.end - chunk.begin)
+        except Exception as error:
+            if client.status != "running":
+                raise
+            part = error
+        yield chunk, part
         fill()
-        for future in ended:
-            chunk = running.pop(future)
-            try:
-                part: Part | Exception = future.result()
-                progress.advance(chunk.end - chunk.begin)
-            except Exception as error:
-                if client.status != "running":
-                    raise _lost(address, error) from None
-                part = error
-            yield chunk, part
-            fill()
-
-
-def _lost(address: str, error: Exception) -> ComputationError:
-    what = f"the Dask scheduler at {address} is gone"
-    remedy = "What is finished is stored; start a scheduler, and the same command goes on"
-    return ComputationError(Problem(what, "", f"{type(error).__name__}: {error}", remedy))

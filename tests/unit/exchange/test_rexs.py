@@ -148,7 +148,15 @@ def test_what_the_file_lacks_is_asked_for(tree, tmp_path) -> None:
     changes = {"operation.speed": "1500 rpm", "operation.torque": "100 N*m"}
     case = case_from_rexs(model, 19, changes=changes)
     assert case.operation.torque == 100.0
-    assert case.lubricant.name == "ISO VG 220"
+    points = ((313.15, 100e-6), (373.15, 11e-6))
+    for kelvin, more in ((333.15, {}), (363.15, {"lubricant.temperature": "90 degC"})):
+        oil = Lubricant.from_temperature(kelvin, points, 880.0, base_oil="mineral")
+        found = case_from_rexs(model, 19, changes={**changes, **more}).lubricant_properties
+        assert found.temperature == pytest.approx(kelvin)
+        assert found.dynamic_viscosity == pytest.approx(oil.dynamic_viscosity)
+    assert "temperature" in case.to_toml().partition("[assumed]")[2]
+    other = case_from_rexs(model, 19, changes={**changes, "lubricant.name": "ISO VG 220"})
+    assert other.lubricant.name == "ISO VG 220"
     with pytest.raises(InputError, match="Stages: 19, 20"):
         case_from_rexs(model)
     with pytest.raises(InputError, match="there is no load case 7"):
@@ -174,6 +182,139 @@ def test_a_case_reads_back_without_loss(name: str, tmp_path: Path) -> None:
         model = read_rexs(path)
         assert model.remarks == []
         assert case_from_rexs(model) == case
+
+
+def hang(tree: dict[str, Any], flanks: tuple[int, ...], kind: str, **values: float) -> None:
+    """Put a flank modification on flanks; values in millimetres."""
+    model, number = tree["model"], 9000 + len(tree["model"]["relations"])
+    attributes = [{"id": k, "unit": "mm", "floating_point": v} for k, v in values.items()]
+    model["components"].append({"id": number, "type": kind, "attributes": attributes})
+    model["relations"] += [
+        {"type": "reference", "refs": [{"role": "origin", "id": flank},
+                                       {"role": "referenced", "id": number}]}
+        for flank in flanks
+    ]  # fmt: skip
+
+
+def flanks_of(tree: dict[str, Any], gear: int) -> tuple[int, ...]:
+    (relation,) = (
+        r
+        for r in tree["model"]["relations"]
+        if r["type"] == "flank" and gear in [ref["id"] for ref in r["refs"]]
+    )
+    return tuple(ref["id"] for ref in relation["refs"] if ref["id"] != gear)
+
+
+def test_reliefs_and_crownings_of_the_flanks_are_read(tree, tmp_path) -> None:
+    both = flanks_of(tree, 15)
+    hang(tree, both, "tip_relief", tip_relief_depth=0.02, tip_relief_datum_length=3.5)
+    hang(tree, both, "root_relief", root_relief_depth=0.01)
+    hang(tree, both, "helix_crowning", helix_crowning_amount_datum_face=0.005,
+         helix_crowning_amount_non_datum_face=0.005)  # fmt: skip
+    case = case_from_rexs(read_rexs(stored(tree, tmp_path)), 19)
+    modified = case.gears.pinion.modification
+    assert modified.tip_relief == pytest.approx(20e-6)
+    assert modified.tip_relief_length == pytest.approx(3.5e-3)
+    assert modified.root_relief == pytest.approx(10e-6)
+    assert modified.root_relief_length is None
+    assert modified.crowning == pytest.approx(5e-6)
+    assert case.gears.wheel.modification is None
+
+
+def test_a_relief_from_a_diameter_on_is_as_long_as_the_involute_rolls(tmp_path: Path) -> None:
+    case = td.load_case("fzg-roughness").replace({"gears.pinion.modification.tip_relief": 1e-5})
+    pinion = case.gear_pair.pinion
+    write_rexs(case, tmp_path / "case.rexsj")
+    held = json.loads((tmp_path / "case.rexsj").read_text(encoding="utf-8"))
+    (part,) = (p for p in held["model"]["components"] if p["type"] == "tip_relief")
+    start = 0.5 * pinion.tip_diameter - 1e-3
+    part["attributes"].append(
+        {"id": "tip_relief_datum_diameter", "unit": "mm", "floating_point": 2e3 * start}
+    )
+    found = read_rexs(stored(held, tmp_path)).stages[0].gear_1.modification["tip_relief_length"]
+    tip, base = 0.5 * pinion.tip_diameter, pinion.base_radius
+    # by the angles of the involute instead of by Pythagoras
+    roll = base * (math.tan(math.acos(base / tip)) - math.tan(math.acos(base / start)))
+    assert found == pytest.approx(roll, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "told"),
+    [
+        ("profile_slope", {"profile_slope": 0.01}, "no agreed sign"),
+        ("tip_relief", {"tip_relief_depth": 0.02,
+                        "tip_relief_length_of_tangential_transition_start": 1.0}, "has no place"),
+        ("tip_relief", {}, "it has no depth"),
+        ("profile_crowning", {"profile_crowning_at_tip": 0.01, "profile_crowning_at_root": 0.02},
+         "at both ends differ"),
+        ("tip_relief", {"tip_relief_depth": 0.02, "tip_relief_datum_diameter": 900.0},
+         "is not on the flank"),
+    ],
+)  # fmt: skip
+def test_a_form_that_a_case_has_not_is_told_and_left_out(tree, tmp_path, kind, values, told):
+    hang(tree, flanks_of(tree, 15), kind, **values)
+    model = read_rexs(stored(tree, tmp_path))
+    assert any(kind in remark and told in remark for remark in model.remarks)
+    assert case_from_rexs(model, 19).gears.pinion.modification is None
+
+
+def test_flanks_of_different_forms_are_told(tree, tmp_path) -> None:
+    left, _ = flanks_of(tree, 15)
+    hang(tree, (left,), "tip_relief", tip_relief_depth=0.02)
+    model = read_rexs(stored(tree, tmp_path))
+    assert any("tip_relief of its flanks differs" in remark for remark in model.remarks)
+    assert model.stages[0].gear_1.modification == {"tip_relief": pytest.approx(20e-6)}
+
+
+def test_modifications_are_written_for_other_programs(tmp_path: Path) -> None:
+    keys = {"tip_relief": 2e-5, "tip_relief_length": 2e-3, "crowning": 4e-6}
+    changes = {f"gears.wheel.modification.{key}": value for key, value in keys.items()}
+    case, path = td.load_case("fzg-roughness").replace(changes), tmp_path / "case.rexs"
+    write_rexs(case, path)
+    text = path.read_text(encoding="utf-8")
+    (stage,) = read_rexs(path).stages
+    assert stage.gear_1.modification == {}
+    assert stage.gear_2.modification == pytest.approx(keys)
+    assert case_from_rexs(read_rexs(path)) == case
+    # without the case beside it, and with another depth
+    path.write_text(text.replace(">0.02<", ">0.03<"), encoding="utf-8")
+    model = read_rexs(path)
+    assert case_from_rexs(model).gears.wheel.modification.tip_relief == pytest.approx(3e-5)
+    assert "modification.tip_relief was changed" in model.remarks[0]
+
+
+def test_spellings_of_other_programs_are_read(tree, tmp_path) -> None:
+    text = (MODELS / "two_stages.rexs").read_text(encoding="utf-8-sig")
+    known = read_rexs(MODELS / "two_stages.rexs")
+    path = tmp_path / "model.rexs"
+    path.write_text(text.replace("<model ", '<model xmlns="urn:any" ', 1), encoding="utf-8")
+    assert read_rexs(path).stages == known.stages
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("folder/inside/model.rexs", text)
+        archive.writestr("__MACOSX/folder/inside/._model.rexs", b"\x00")
+        archive.writestr("folder/part.fe", b"mesh")
+    assert read_rexs(path).stages == known.stages
+    # values at the gear instead of at flanks, as in a model of part of a gearbox
+    model = tree["model"]
+    model["relations"] = [r for r in model["relations"] if r["type"] != "flank"]
+    for part in model["components"]:
+        if part["type"] == "cylindrical_gear":
+            part["attributes"].append(
+                {"id": "normal_pressure_angle", "unit": "deg", "floating_point": 20.0}
+            )
+    assert read_rexs(stored(tree, tmp_path)).stages[0].gear_1.teeth == 27
+
+
+def test_negative_teeth_are_those_of_a_ring(tree, tmp_path) -> None:
+    gear = read_rexs(stored(tree, tmp_path)).stages[0].gear_2
+    found = attribute(tree, gear.id, "number_of_teeth")
+    found[next(key for key in found if key in ("integer", "floating_point"))] = -gear.teeth
+    attribute(tree, 19, "center_distance")["floating_point"] = -54.0
+    model = read_rexs(stored(tree, tmp_path))
+    assert model.stages[0].ratio < 0.0
+    assert model.stages[0].center_distance == pytest.approx(54e-3)
+    with pytest.raises(InputError, match="stage 19 has a ring gear"):
+        case_from_rexs(model, 19)
 
 
 def test_what_another_program_changed_is_taken_and_told(tmp_path: Path) -> None:

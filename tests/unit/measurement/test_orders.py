@@ -116,6 +116,35 @@ def test_jitter_is_smoothed_and_speed_is_not() -> None:
     assert np.std(away) < 0.25 * 0.05 * 2.0 * np.pi / 60.0
 
 
+@pytest.mark.parametrize(
+    ("speeds", "per"), [((1500.0, 1500.0), 60), ((0.0, 0.0, 3000.0, 3000.0, 0.0, 0.0), 60),
+                        (UP_AND_DOWN, 60)]
+)  # fmt: skip
+def test_steep_edges_that_repeat_with_the_samples_are_no_speed(speeds, per: int) -> None:
+    """Square pulses, known only to a sample, at speeds that go into the sampling rate or rest."""
+    turn = 1.0 if speeds is UP_AND_DOWN else np.pi / 30.0
+    run = synthetic_run_up({}, np.array(speeds) * turn, duration=10.0, sample_rate=25600.0)
+    angle, orders = run["angle"], {1: 1.0, 14.5: 0.3, 40: 0.5}
+    pulses = 5.0 * (np.sin(per * angle) > 0.0)
+    signal = 100.0 + sum(size * np.cos(order * angle) for order, size in orders.items())
+    found = order_spectrum(signal, shaft_angle(pulses, run.sample_rate, per), 50)
+    for order, size in orders.items():
+        assert found.amplitude(order) == pytest.approx(size, rel=1e-3)
+    assert found.amplitude(0) == pytest.approx(100.0, rel=1e-3)
+
+
+def test_pulses_in_noise_are_counted_or_refused() -> None:
+    """Noise at a slow speed parts gaps in every way; what parts none is left alone."""
+    run = synthetic_run_up({}, UP_AND_DOWN, duration=8.0, seed=2)
+    speed = np.gradient(run["angle"], run.time) / UP_AND_DOWN[1]
+    noise = np.random.default_rng(0).normal(0.0, 0.01, speed.size)
+    pickup = speed * np.sin(60.0 * run["angle"]) + noise
+    with pytest.warns(ModelWarning, match="tacho-repaired"):
+        found = shaft_angle(pickup, run.sample_rate, 60)
+    inner = (run.time > 1.0) & (run.time < 7.0)
+    assert np.ptp((found - run["angle"])[inner]) < 0.01
+
+
 def test_the_filter_solves_its_equations() -> None:
     count, rate, width = 60, 100.0, 10.0
     signal = np.random.default_rng(0).normal(size=count)

@@ -42,6 +42,37 @@ def test_columns_of_text_in_any_dialect(tmp_path: Path, head, separator, point) 
     assert found.units["acc"] == ("" if "#" in head else "m/s^2")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "5000,2\ntime,acc\n0,1\n.001,2\n.002,3\n",
+        "Rig 3,Mr. Smith\nacc,Time\nm/s^2,ms\n1,0\n2,1\n3,2\n",
+        'Time/s,"acc, m/s^2"\n0,1\n.001,2\n.002,3\n',
+        'time,acc\n"0,000","1,0"\n"0,001","2,0"\n"0,002","3,0"\n',
+        "TIME [MS];acc;\n0;1;\n1;2;\n2;3;\n",
+        "time,acc\n2024-02-28 23:59:59.999,1\n2024-02-29 00:00:00.000,2\n"
+        "2024-02-29 00:00:00.001,3\n",
+    ],
+)
+def test_columns_as_loggers_write_them(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "run.csv"
+    file.write_text(text, "utf-16")
+    found = read(file)
+    assert found.sample_rate == pytest.approx(1000.0, rel=1e-7)
+    np.testing.assert_array_equal(found["acc"], [1.0, 2.0, 3.0])
+    assert found.units["acc"] == ("m/s^2" if "m/s" in text else "")
+
+
+def test_rounded_times_need_the_rate(tmp_path: Path) -> None:
+    file = tmp_path / "run.csv"
+    file.write_text("time,acc\n" + "\n".join(f"{n / 25600:.4f},{n}" for n in range(999)) + "\n")
+    with pytest.raises(InputError, match=r"rounded to 0\.0001 s"):
+        read(file)
+    assert read(file, sample_rate=25600.0).sample_rate == 25600.0
+    with pytest.raises(InputError, match="rounded"):
+        read(file, sample_rate=25000.0)
+
+
 def test_compressed_text_and_milliseconds(tmp_path: Path) -> None:
     file = tmp_path / "run.csv.gz"
     text = "\n".join(f"{1e3 * a:.3f},{b:.7f}" for a, b in zip(TIME, ACC, strict=True))
@@ -71,6 +102,86 @@ def test_mat_and_hdf5(tmp_path: Path) -> None:
     scaled = read(tmp_path / "a.h5", sensitivity={"rig/acc": "100 mV/g"})
     np.testing.assert_allclose(scaled["rig/acc"], 9.80665 * ACC)
     assert scaled.units["rig/acc"] == "m/s^2"
+
+
+def test_what_tells_a_rate_or_a_unit_belongs_to_what_it_stands_in(tmp_path: Path) -> None:
+    two = {"a": {"data": ACC, "fs": RATE, "unit": "g"}, "b": {"data": SOUND[:500], "dt": 4e-4}}
+    savemat(tmp_path / "two.mat", two)
+    with h5py.File(tmp_path / "two.h5", "w") as file:
+        for name, held in two.items():
+            file[f"{name}/data"] = held["data"]
+        file["a"].attrs["sample_rate"] = str(RATE)
+        file["a/data"].attrs["unit"] = "g"
+        file["b/time"] = 0.4 * np.arange(500)
+        file["b/time"].attrs["units"] = "ms"
+    for path, mark in ((tmp_path / "two.mat", "."), (tmp_path / "two.h5", "/")):
+        with pytest.raises(InputError, match="rates differ"):
+            read(path)
+        assert read(path, channels=f"a{mark}data") == Recording(
+            {f"a{mark}data": ACC}, RATE, {f"a{mark}data": "g"}
+        )
+        slow = read(path, channels=f"b{mark}data")
+        assert slow.sample_rate == pytest.approx(2500.0)
+        np.testing.assert_array_equal(slow[f"b{mark}data"], SOUND[:500])
+    savemat(tmp_path / "both.mat", {"acc": ACC, "fs": RATE, "dt": 1.0 / RATE, "Fs": 2.0 * RATE})
+    with pytest.raises(InputError, match="different sampling rates"):
+        read(tmp_path / "both.mat")
+
+
+def test_mat_of_every_version_cells_and_lists_of_structures(tmp_path: Path) -> None:
+    items = np.zeros(2, dtype=[("data", "O")])
+    items["data"] = [ACC, SOUND]
+    cells = np.empty(2, dtype=object)
+    cells[:] = [ACC, SOUND]
+    savemat(tmp_path / "four.mat", {"acc": ACC, "fs": RATE}, format="4")
+    savemat(tmp_path / "five.mat", {"s": items, "c": cells, "fs": RATE})
+    np.testing.assert_array_equal(read(tmp_path / "four.mat")["acc"], ACC)
+    five = read(tmp_path / "five.mat")
+    for name in ("s(2).data", "c{2}"):
+        np.testing.assert_array_equal(five[name], SOUND)
+    with h5py.File(tmp_path / "new.mat", "w", userblock_size=512) as file:
+        file["#refs#/a"] = SOUND
+        file["c"] = np.array([file["#refs#/a"].ref], dtype=h5py.ref_dtype)
+        file["count"] = np.arange(1000, dtype="i2")[:, None]
+        file["count"].attrs["MATLAB_class"] = np.bytes_(b"int16")
+        file["fs"] = [[RATE]]
+    with open(tmp_path / "new.mat", "r+b") as raw:
+        raw.write(b"MATLAB 7.3 MAT-file".ljust(128))
+    new = read(tmp_path / "new.mat")
+    np.testing.assert_array_equal(new["c{1}"], SOUND)
+    np.testing.assert_array_equal(new["count"], np.arange(1000))
+    with h5py.File(tmp_path / "new.mat", "r+") as file:
+        file["T"] = np.zeros(6, "u4")
+        file["T"].attrs["MATLAB_object_decode"] = 3
+        file["T"].attrs["MATLAB_class"] = np.bytes_(b"timetable")
+    with pytest.raises(InputError, match="table2struct"):
+        read(tmp_path / "new.mat")
+
+
+def test_whatever_a_recorder_adds_to_a_wav_file(tmp_path: Path) -> None:
+    wavfile.write(tmp_path / "a.wav", 5000, ACC)
+    raw = (tmp_path / "a.wav").read_bytes()
+    more = b"bext" + (602).to_bytes(4, "little") + bytes(602)
+    size = (len(raw) + len(more) - 8).to_bytes(4, "little")
+    (tmp_path / "a.wav").write_bytes(b"RIFF" + size + b"WAVE" + more + raw[12:])
+    np.testing.assert_array_equal(read(tmp_path / "a.wav")["channel 1"], ACC)
+
+
+def test_numbers_that_are_scaled_in_the_file(tmp_path: Path) -> None:
+    nptdms = pytest.importorskip("nptdms")
+    raw = np.round(1000.0 * ACC).astype("i2")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["acc"] = raw
+        file["acc"].attrs.update({"scale_factor": 1e-3, "add_offset": 2.0, "fs": RATE})
+    linear = {"Scale_Type": "Linear", "Linear_Slope": 1e-3, "Linear_Y_Intercept": 2.0,
+              "Linear_Input_Source": np.uint32(0xFFFFFFFF)}  # fmt: skip
+    told = {f"NI_Scale[0]_{name}": value for name, value in linear.items()}
+    told |= {"NI_Number_Of_Scales": np.int32(1), "NI_Scaling_Status": "unscaled"}
+    with nptdms.TdmsWriter(str(tmp_path / "a.tdms")) as out:
+        group = nptdms.GroupObject("rig", properties={"wf_increment": 1.0 / RATE})
+        out.write_segment([group, nptdms.ChannelObject("rig", "acc", raw, properties=told)])
+    for name in ("a.h5", "a.tdms"):
+        np.testing.assert_allclose(read(tmp_path / name)["acc"], 2.0 + 1e-3 * raw)
 
 
 def uff_set(samples: np.ndarray, name: str, binary: int, unit: str) -> dict:
@@ -134,6 +245,31 @@ def test_files_that_are_cut_short_are_refused(tmp_path: Path) -> None:
         with pytest.raises(InputError) as told:
             read(cut)
         assert "cut" in str(told.value), suffix
+
+
+def test_a_file_that_ends_between_its_datasets_is_refused(tmp_path: Path) -> None:
+    pyuff = pytest.importorskip("pyuff")
+    for name in ("a", "b", "c"):
+        pyuff.UFF(str(tmp_path / "a.uff")).write_sets(uff_set(ACC, name, 1, "g"), "add")
+    raw = (tmp_path / "a.uff").read_bytes()
+    text = ("time,acc\n" + "\n".join(f"{a},{b}" for a, b in zip(TIME, SOUND, strict=True))).encode()
+    fixed = ("time,acc\n" + rows(",")).encode()
+    kept = 0
+    for tenth in range(1, 10):
+        (tmp_path / "a.uff").write_bytes(raw[: len(raw) * tenth // 10])
+        with pytest.raises(InputError):
+            read(tmp_path / "a.uff")
+        for whole in (text, fixed):
+            (tmp_path / "a.csv").write_bytes(whole[: len(whole) * tenth // 10])
+            try:
+                found = read(tmp_path / "a.csv")["acc"]
+            except InputError:
+                continue
+            kept += 1
+            np.testing.assert_allclose(
+                found, (SOUND if whole is text else ACC)[: found.size], atol=1e-6
+            )
+    assert kept < 9
 
 
 def test_files_with_a_wrong_name_say_what_they_are(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 import time
 from collections.abc import Iterator
@@ -64,6 +65,7 @@ def study(
         state = study_state(study if out is None and Path(study).is_dir() else place)
         _show(state, json)
         return 0
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what counts is told below
     try:
         with quiet("leftover"), _progress() as progress:
             state = run_study(study, place, scheduler=scheduler, force=force, progress=progress)

@@ -10,18 +10,14 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.measurement.readers.content import (
-    Content,
-    equal_steps,
-    from_arrays,
-    in_seconds,
-    is_time,
-)
+from tribodyn.measurement.readers.content import Content, from_arrays, rate_of, tells
+from tribodyn.measurement.readers.matlab import refuse_table
 from tribodyn.stored import read_dataset
 from tribodyn.types import Array
 
-#: UFF 58: time histories among the kinds of function, and time among the abscissas.
-_GENERAL, _HISTORY, _TIME = 0, 1, (17, 0)
+#: UFF 58: time histories among the kinds of function, time among the abscissas; HDF5: deepest
+#: group that is read.
+_GENERAL, _HISTORY, _TIME, _DEEPEST = 0, 1, (0, 17), 8
 
 
 def wav(path: Path) -> Content:
@@ -29,7 +25,9 @@ def wav(path: Path) -> Content:
     from scipy.io import wavfile
 
     with warnings.catch_warnings():
+        # What a recorder adds to the samples is not needed; samples that are missing are told.
         warnings.simplefilter("error", wavfile.WavFileWarning)
+        warnings.filterwarnings("ignore", r"Chunk \(non-data\)", wavfile.WavFileWarning)
         rate, samples = wavfile.read(path)
     values = samples.astype(float)
     if samples.dtype == np.uint8:
@@ -46,6 +44,11 @@ def wav(path: Path) -> Content:
 def uff(path: Path) -> Content:
     """Time histories of a universal file, dataset 58, of text or binary."""
     pyuff = _library("pyuff", path)
+    with open(path, "rb") as file:
+        file.seek(-min(200, path.stat().st_size), 2)
+        if not file.read().rstrip(b"\0\r\n\t ").endswith(b"-1"):
+            why, remedy = "Its last dataset has no end", "Take it from the measuring system again"
+            raise InputError(Problem("is cut short", str(path), why, remedy))
     sets = pyuff.UFF(str(path))
     kinds = list(sets.get_set_types())
     channels: dict[str, Array] = {}
@@ -57,22 +60,18 @@ def uff(path: Path) -> Content:
             continue
         held = sets.read_sets(index)
         data = np.asarray(held["data"])
-        if held["func_type"] not in (_GENERAL, _HISTORY) or data.dtype.kind == "c":
+        over_time = held.get("abscissa_spec_data_type", 0) in _TIME
+        if held["func_type"] not in (_GENERAL, _HISTORY) or data.dtype.kind == "c" or not over_time:
             left_out.append(str(held["id1"]))
             continue
         if data.size != held["num_pts"]:
             what = f"holds {data.size} of {held['num_pts']} samples"
-            raise InputError(
-                what,
-                where=str(path),
-                why="The file is cut short",
-                remedy="Save the recording again",
-            )
+            raise InputError(what, where=str(path), why="The file is cut short")
         name = _uff_name(held, channels)
         channels[name] = data.astype(float)
         units[name] = _label(held["ordinate_axis_units_lab"])
         if held["abscissa_spacing"] != 1 or not held["abscissa_inc"] > 0.0:
-            rates[name] = equal_steps(np.asarray(held["x"], dtype=float), path)
+            rates[name] = rate_of(np.asarray(held["x"], dtype=float), path)
         else:
             rates[name] = 1.0 / float(held["abscissa_inc"])
     if not channels:
@@ -109,9 +108,6 @@ def tdms(path: Path) -> Content:
     """Channels of a TDMS file."""
     library = _library("nptdms", path)
     logging.getLogger("nptdms").addHandler(logging.NullHandler())  # what it says is told below
-    channels: dict[str, Array] = {}
-    units: dict[str, str] = {}
-    rates: dict[str, float] = {}
     held = library.TdmsFile.read(path)
     status = getattr(held, "file_status", None)
     if status is not None and status.incomplete_final_segment:
@@ -119,78 +115,68 @@ def tdms(path: Path) -> Content:
             "its last segment is incomplete",
             where=str(path),
             why="The file is cut short, or was still being written",
-            remedy="Save the recording again, once it has ended",
         )
-    several = len(held.groups()) > 1
-    for group in held.groups():
+    groups = held.groups()
+    named: dict[str, Any] = _properties("", held)
+    for group in groups:
+        before = f"{group.name}/" if len(groups) > 1 else ""
+        named |= _properties(before, group)
         for channel in group.channels():
             values = np.asarray(channel[:])
-            if values.dtype.kind not in "biuf" or not values.size:
-                continue
-            name = f"{group.name}/{channel.name}" if several else channel.name
-            channels[name] = values.astype(float)
-            units[name] = str(channel.properties.get("unit_string", ""))
-            if (step := float(channel.properties.get("wf_increment", 0.0))) > 0.0:
-                rates[name] = 1.0 / step
-    if not channels:
-        raise InputError(
-            "holds no channel of numbers",
-            where=str(path),
-            why="A recording is read by its channels of numbers",
-            remedy="Look into the file with the program that wrote it",
-        )
-    first = next(iter(channels))
-    time = None
-    if first not in rates and len(channels) > 1 and is_time(first.rsplit("/", 1)[-1], units[first]):
-        time = in_seconds(channels.pop(first), units.pop(first))
-    return Content(channels, units, rates, time)
+            if values.size:
+                named[before + channel.name] = values
+                named |= _properties(f"{before}{channel.name}/", channel)
+    return from_arrays(named, path)
+
+
+def _properties(before: str, holder: Any) -> dict[str, Any]:
+    return {before + name: value for name, value in holder.properties.items() if tells(name)}
 
 
 def hdf5(path: Path) -> Content:
-    """Vectors of an HDF5 or netCDF file, with the attributes units and sample_rate."""
+    """Vectors of an HDF5 or netCDF file, with attributes that tell rates and units."""
     import h5py
 
+    named: dict[str, Any] = {}
     if path.suffix.lower() == ".nc":  # with its checksum, where it has one
         data = read_dataset(path, str(path))
-        arrays = {str(name): each.values for name, each in data.variables.items()}
-        told = {
-            str(name): str(each.attrs.get("units", "")) for name, each in data.variables.items()
-        }
-        return from_arrays(_with_rate(arrays, data.attrs), path, told)
-    named: dict[str, Any] = {}
-    units: dict[str, str] = {}
+        for name, each in data.variables.items():
+            named[str(name)] = each.values
+            named |= {f"{name}/{key}": text for key, text in each.attrs.items() if tells(str(key))}
+        return from_arrays(named | {k: v for k, v in data.attrs.items() if tells(str(k))}, path)
+    mark = "." if path.suffix.lower() == ".mat" else "/"
+
+    def put(name: str, held: Any, depth: int = 0) -> None:
+        attributes, before = held.attrs, f"{name}{mark}" if name else ""
+        named.update({f"{before}{key}": attributes[key] for key in attributes if tells(key)})
+        if isinstance(held, h5py.Group):
+            for key in held:
+                if not key.startswith("#") and depth < _DEEPEST and held.get(key) is not None:
+                    put(f"{before}{key}", held[key], depth + 1)
+        elif "MATLAB_object_decode" in attributes:
+            refuse_table(attributes.get("MATLAB_class", ""), path)
+        elif h5py.check_ref_dtype(held.dtype) is not None:  # a cell, or a field of many structures
+            for number, place in enumerate(held[()].reshape(-1), 1):
+                if place and depth < _DEEPEST:
+                    put(f"{name}{{{number}}}", held.file[place], depth + 1)
+        elif not attributes.get("MATLAB_empty", 0):
+            named.update(_values(name, held, mark))
+
     with h5py.File(path, "r") as file:
-        attributes = dict(file.attrs)
-
-        def visit(name: str, found: Any) -> None:
-            if isinstance(found, h5py.Dataset) and not name.startswith("#"):
-                if found.attrs.get("MATLAB_class", b"") not in (b"", b"double", b"single"):
-                    return
-                named[name] = found[()]
-                units[name] = _text(found.attrs.get("units", b""))
-
-        file.visititems(visit)
-    return from_arrays(_with_rate(named, attributes), path, units)
+        put("", file)
+    return from_arrays(named, path)
 
 
-def _with_rate(named: dict[str, Any], attributes: Any) -> dict[str, Any]:
-    """Arrays with the sampling rate among the attributes of the file, if it is there."""
-    rates = (_number(attributes.get(key)) for key in ("sample_rate", "fs"))
-    rate = next((each for each in rates if each), None)
-    if rate is None:
-        return named
-    return {name: each for name, each in named.items() if name != "time"} | {"sample_rate": rate}
-
-
-def _number(value: Any) -> float | None:
-    array = np.asarray(value if value is not None else np.nan)
-    if array.size != 1 or array.dtype.kind not in "biuf" or not np.isfinite(array).all():
-        return None
-    return float(array.reshape(-1)[0])
-
-
-def _text(value: Any) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+def _values(name: str, held: Any, mark: str) -> dict[str, Any]:
+    """Values of one dataset of HDF5: numbers as they are scaled, characters as text."""
+    value, attributes = held[()], held.attrs
+    if attributes.get("MATLAB_class", b"") == b"char":
+        return {name: "".join(map(chr, np.asarray(value).reshape(-1)))}
+    if held.dtype.names:
+        return {f"{name}{mark}{each}": value[each] for each in held.dtype.names}
+    if held.dtype.kind in "iuf" and {"scale_factor", "add_offset"} & set(attributes):
+        value = value * attributes.get("scale_factor", 1.0) + attributes.get("add_offset", 0.0)
+    return {name: value}
 
 
 def _library(name: str, path: Path) -> Any:

@@ -60,7 +60,8 @@ def content_of(path: str | os.PathLike[str]) -> Content:
         raise
     # A damaged file makes the libraries that read it stumble in many ways.
     except Exception as error:
-        reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        told = f"{error}" if " " in f"{error}" else f"{type(error).__name__} {error}".strip()
+        reason = getattr(error, "strerror", None) or told
         raise InputError(
             Problem(
                 f"cannot be read as {found.name}",
@@ -101,7 +102,7 @@ def _format(place: Path, head: bytes) -> Format:
     suffix = place.suffix.lower()
     named = next((each for each in FORMATS if suffix in each.suffixes), None)
     found = next((each for each in FORMATS if each.begins(head)), None)
-    if found is _TEXT and suffix == ".mat":  # a MAT file of version 4 has no mark
+    if found in (None, _TEXT) and suffix == ".mat":  # a MAT file of version 4 has no mark
         return next(each for each in FORMATS if each.name == "MAT")
     free = suffix in (".txt", ".dat", ".asc")  # names that say nothing
     if found is None or (named is not None and named is not found and not free):

@@ -2,22 +2,43 @@
 
 from __future__ import annotations
 
+import csv
 import gzip
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import InputError
-from tribodyn.measurement.readers.content import Content, in_seconds, is_time
+from tribodyn.errors import InputError, Problem
+from tribodyn.measurement.readers.content import MEASURED, Content, in_seconds, is_time
 from tribodyn.stored import LARGEST
 from tribodyn.types import Array
+from tribodyn.units import UnitProblemError, convert
 
 _NUMBER = re.compile(r"[+-]?((\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?|nan|inf)", re.IGNORECASE)
+#: What loggers write where a sample is missing.
+_MISSING = {"", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
+_CLOCK = re.compile(r"(\d{4}-\d\d-\d\d)?[T ]?(\d\d?):(\d\d):(\d\d(?:[.,]\d*)?)Z?")
 _WITH_UNIT = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*")
-#: Lines of text that may come before the numbers.
-_HEAD = 200
+_BEFORE_UNIT = re.compile(r"(.*?)\s*[/,]\s*([^/,].*)")
+#: Lines of text that may come before the numbers; rows whose last cells are compared.
+_HEAD, _LOOK = 200, 100
+
+
+class _Layout(NamedTuple):
+    """How the numbers of a file stand in its lines."""
+
+    first: int  #: line
+    delimiter: str | None
+    width: int
+    ends: bool  #: whether every row ends with the delimiter
+
+    def cells(self, line: str) -> list[str]:
+        """Cells of a line as far as it holds numbers."""
+        found = _cells(line, self.delimiter)
+        return found[:-1] if self.ends and len(found) == self.width + 1 else found
 
 
 def looks_binary(head: bytes) -> bool:
@@ -27,23 +48,22 @@ def looks_binary(head: bytes) -> bool:
 
 def content(path: Path) -> Content:
     """Channels of a file of columns."""
-    lines = [line for line in _text(path).splitlines() if line.strip()]
-    first, delimiter, width = _first_row(lines, path)
-    names, units = _named(lines[:first], delimiter, width)
-    table = _numbers(lines, first, delimiter, width, path)
+    text = _text(path)
+    lines = [line for line in text.splitlines() if line.strip()]
+    layout = _layout(lines, path)
+    names, units = _named(lines[: layout.first], layout, path)
+    table = _numbers(lines, layout, path)
+    if not text.endswith(("\n", "\r")):
+        _refuse_cut(lines[layout.first :], layout, path)
     columns = dict(zip(names, table.T, strict=True))
     of = dict(zip(names, units, strict=True))
-    time = None
-    if is_time(names[0], units[0]):
-        time = in_seconds(columns.pop(names[0]), of.pop(names[0]))
+    clock = next((name for name in names if is_time(name, of[name])), None)
+    if clock is None:
+        return Content(columns, of)
+    time = in_seconds(columns.pop(clock), of.pop(clock), path)
     if not columns:
-        raise InputError(
-            "has times and nothing else",
-            where=str(path),
-            remedy="Add a column",
-            why="A recording has at least one signal",
-        )
-    return Content(columns, of, time=time)
+        raise InputError("has times and nothing else", where=str(path), remedy="Add a column")
+    return Content(columns, of, times=dict.fromkeys(columns, time))
 
 
 def _text(path: Path) -> str:
@@ -52,12 +72,7 @@ def _text(path: Path) -> str:
         with gzip.open(path) as file:
             raw = file.read(LARGEST["recording"] + 1)
         if len(raw) > LARGEST["recording"]:
-            raise InputError(
-                "is too large once it is unpacked",
-                where=str(path),
-                why="So large a table does not fit into the memory",
-                remedy="Cut the recording, or lower its sampling rate",
-            )
+            raise InputError("is too large once it is unpacked", where=str(path))
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return raw.decode("utf-16")
     try:
@@ -67,19 +82,52 @@ def _text(path: Path) -> str:
 
 
 def _cells(line: str, delimiter: str | None) -> list[str]:
-    cells = [cell.strip().strip('"').strip() for cell in line.split(delimiter)]
-    return cells[:-1] if delimiter and len(cells) > 1 and not cells[-1] else cells
+    if delimiter and '"' in line:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
+    return [cell.strip().strip('"').strip() for cell in line.split(delimiter)]
 
 
-def _first_row(lines: Sequence[str], path: Path) -> tuple[int, str | None, int]:
-    """First line of numbers, what parts its columns, and how many there are."""
-    for row, line in enumerate(lines[:_HEAD]):
-        for delimiter in (";", "\t", ",", None):
-            if delimiter is not None and delimiter not in line:
-                continue
-            cells = _cells(line, delimiter)
-            if all(_NUMBER.fullmatch(cell) for cell in cells):
-                return row, delimiter, len(cells)
+def _is_sample(cell: str) -> bool:
+    """Whether a cell holds a number, a time, or nothing where a number is missing."""
+    return bool(_NUMBER.fullmatch(cell) or cell.lower() in _MISSING or _CLOCK.fullmatch(cell))
+
+
+def _row(line: str) -> tuple[str | None, int, bool] | None:
+    """What parts a line of numbers, how many there are, and whether it ends open."""
+    for delimiter in (";", "\t", ",", None):
+        if delimiter is not None and delimiter not in line:
+            continue
+        cells = _cells(line, delimiter)
+        if all(map(_is_sample, cells)) and any(map(_NUMBER.fullmatch, cells)):
+            return delimiter, len(cells), not cells[-1]
+    return None
+
+
+def _layout(lines: Sequence[str], path: Path) -> _Layout:
+    """Where the numbers begin, what parts their columns, and how many there are.
+
+    Lines of numbers before the names of the columns are parted from the columns by a line of text.
+    """
+    found: list[_Layout] = []
+    after_text = True
+    for number, line in enumerate(lines[:_HEAD]):
+        row = _row(line)
+        if row is None:
+            words = re.split(r"[;,\t ]+", line)
+            after_text |= not any(map(_NUMBER.fullmatch, words))
+            continue
+        last = found[-1] if found else None
+        if last and (last.delimiter, last.width + last.ends) == row[:2]:
+            # One column alone has no names to be told from a sample that is none.
+            if after_text and last.width > 1 and number > last.first + 1:
+                found.append(_Layout(number, row[0], row[1] - row[2], row[2]))
+            elif last.ends and not row[2]:
+                found[-1] = last._replace(width=row[1], ends=False)
+        elif last is None or after_text:
+            found.append(_Layout(number, row[0], row[1] - row[2], row[2]))
+        after_text = False
+    if found:
+        return found[-1]
     raise InputError(
         "holds no line of numbers",
         where=str(path),
@@ -88,24 +136,47 @@ def _first_row(lines: Sequence[str], path: Path) -> tuple[int, str | None, int]:
     )
 
 
-def _named(head: Sequence[str], delimiter: str | None, width: int) -> tuple[list[str], list[str]]:
+def _named(head: Sequence[str], layout: _Layout, path: Path) -> tuple[list[str], list[str]]:
     """Names and units of the columns, from the last lines before the numbers."""
-    rows = [_cells(line.lstrip("#%").strip(), delimiter) for line in head]
+    width = layout.width
+    rows = [layout.cells(line.lstrip("#%").strip()) for line in head]
+    if rows and 2 * len(rows[-1]) == width and layout.delimiter == ",":
+        raise InputError(
+            f"has {len(rows[-1])} names and {width} columns of numbers",
+            where=str(path),
+            why="A comma parts its columns, and seems to be the decimal sign as well",
+            remedy="Export it with semicolons between the columns, or with decimal points",
+        )
     rows = [cells for cells in rows if len(cells) == width]
     units = [""] * width
-    if len(rows) > 1 and _are_units(rows[-1]):
+    if len(rows) > 1 and _are_units(rows[-1], rows[-2]):
         units = [cell.strip("[]() ") for cell in rows.pop()]
-    names = rows[-1] if rows else [f"column {1 + n}" for n in range(width)]
+    names = list(rows[-1]) if rows else [f"column {1 + n}" for n in range(width)]
     for place, name in enumerate(names):
         if match := _WITH_UNIT.fullmatch(name):
             names[place], units[place] = match[1] or f"column {1 + place}", match[2]
+        elif (match := _BEFORE_UNIT.fullmatch(name)) and match[1] and _is_unit(match[2]):
+            names[place], units[place] = match[1], match[2]
     return _distinct(names), units
 
 
-def _are_units(cells: Sequence[str]) -> bool:
-    """Whether a line below the names holds units: in brackets or empty, or one of time first."""
-    bracketed = all(not cell or cell[0] in "[(" for cell in cells) and any(cells)
-    return bracketed or cells[0].strip("[]() ") in ("s", "ms", "us", "µs", "min")
+def _are_units(cells: Sequence[str], above: Sequence[str]) -> bool:
+    """Whether a line below the names holds units: in brackets, empty, or known as such."""
+    if all(not cell or cell[0] in "[(" for cell in cells) and any(cells):
+        return True
+    named = all(cell and not _is_sample(cell) for cell in above)
+    told = [cell for cell in cells if cell not in ("", "-", "%")]
+    return named and bool(told) and not is_time(cells[0]) and all(map(_is_unit, told))
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a text is the unit of something that is measured, and no name."""
+    for si in (*MEASURED, "s", "Hz"):
+        try:
+            return text == "g" or bool(convert(1.0, text, si))
+        except UnitProblemError:
+            continue
+    return False
 
 
 def _distinct(names: Sequence[str]) -> list[str]:
@@ -116,36 +187,66 @@ def _distinct(names: Sequence[str]) -> list[str]:
     return found
 
 
-def _numbers(
-    lines: Sequence[str], first: int, delimiter: str | None, width: int, path: Path
-) -> Array:
+def _numbers(lines: Sequence[str], layout: _Layout, path: Path) -> Array:
     """All numbers (rows, columns); a line that is none is told by its number."""
-    rows = lines[first:]
-    comma = delimiter != ","
-    plain = [line.replace('"', "").rstrip().removesuffix(delimiter or " ") for line in rows]
-    if comma:
-        plain = [line.replace(",", ".") for line in plain]
+    rows, shape = lines[layout.first :], (len(lines) - layout.first, layout.width)
     try:
-        table = np.loadtxt(plain, delimiter=delimiter, ndmin=2, comments=None)
+        if '"' in rows[0] or ":" in rows[0]:
+            table = np.array([_values(layout.cells(row), layout.cells(rows[0])) for row in rows])
+        else:
+            plain = [row.rstrip().removesuffix(layout.delimiter or " ") for row in rows]
+            if layout.delimiter != ",":
+                plain = [row.replace(",", ".") for row in plain]
+            table = np.loadtxt(plain, delimiter=layout.delimiter, ndmin=2, comments=None)
     except ValueError:
         table = np.empty((0, 0))
-    if table.shape != (len(rows), width) or not np.all(np.isfinite(table)):
-        for row, line in enumerate(rows):
-            cells = _cells(line, delimiter)
-            bad = next((c for c in cells if not _NUMBER.fullmatch(c) or "n" in c.lower()), None)
-            if len(cells) != width or bad is not None:
-                what = f'"{bad}" is no number' if bad is not None else f"{len(cells)} columns"
-                raise InputError(
-                    f"{what} in row {1 + row} of the numbers: {line[:80]!r}",
-                    where=str(path),
-                    why=f"Every row holds {width} numbers",
-                    remedy="The file is cut short there, or a sample is missing: cut the row, or "
-                    "fill it by interpolation",
-                )
-        raise InputError(
-            "holds numbers that are not finite",
-            where=str(path),
-            why="Spectra and orders need every sample",
-            remedy="Fill the gaps, or cut the recording before them",
+    if table.shape == shape and np.all(np.isfinite(table)):
+        return table
+    for number, row in enumerate(rows, 1):
+        cells = layout.cells(row)
+        bad = [c for c in cells if not (_NUMBER.fullmatch(c) or _CLOCK.fullmatch(c))]
+        bad += [c for c in cells if c.lower().lstrip("+-") in ("nan", "inf")]
+        if len(cells) != layout.width or bad:
+            what = f'"{bad[0]}" is no number' if bad else f"{len(cells)} columns"
+            raise InputError(
+                f"{what} in row {number} of the numbers: {row[:80]!r}",
+                where=str(path),
+                why=f"Every row holds {layout.width} numbers",
+                remedy="The file is cut short there, or a sample is missing: cut the row, or "
+                "fill it by interpolation",
+            )
+    raise InputError("holds numbers that are not finite", where=str(path))
+
+
+def _values(cells: Sequence[str], first: Sequence[str]) -> list[float]:
+    """Numbers of a row; times of the day count from the first day, which keeps their digits."""
+    found = []
+    for cell, above in zip(cells, first, strict=True):
+        clock, start = _CLOCK.fullmatch(cell), _CLOCK.fullmatch(above)
+        if clock is None or start is None:
+            found.append(float(cell.replace(",", ".")))
+            continue
+        days = [np.datetime64(each[1] or "1970-01-01") for each in (clock, start)]
+        hours, minutes, seconds = (float(part.replace(",", ".")) for part in clock.groups()[1:])
+        found.append(
+            3600.0 * (24.0 * (days[0] - days[1]).astype(int) + hours) + 60.0 * minutes + seconds
         )
-    return table
+    return found
+
+
+def _refuse_cut(rows: Sequence[str], layout: _Layout, path: Path) -> None:
+    """Refuse a file whose last number has fewer digits than any before, and no end of line."""
+    places = [
+        len(re.split(r"[.,]", layout.cells(row)[-1].lower().partition("e")[0])[-1])
+        for row in rows[-_LOOK:]
+    ]
+    shorter = np.mean(np.array(places[:-1]) <= places[-1]) if len(places) > 20 else 1.0
+    if shorter == 0.0 or (shorter < 0.05 and places[-1] < 0.5 * np.median(places)):
+        raise InputError(
+            Problem(
+                f"seems to be cut short in its last row: {rows[-1][:80]!r}",
+                str(path),
+                "The number there has fewer digits than those above, and no line ends after it",
+                "Take the file from the measuring system again, or end its last line",
+            )
+        )

@@ -1,0 +1,98 @@
+"""Flank modifications of a REXS model in the terms of a case, as far as a case has them.
+
+REXS hangs components such as ``tip_relief`` on the flanks of a gear (1.2 and later). Amounts are
+material that is taken away. A form that a case cannot express is left out whole, and told.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from tribodyn.exchange.rexs_file import Component, RexsFile
+
+#: Kind -> attributes that are understood; any other value but zero leaves the form out.
+_READ = {
+    "tip_relief": ("tip_relief_depth", "tip_relief_datum_length", "tip_relief_datum_diameter"),
+    "root_relief": ("root_relief_depth", "root_relief_datum_length"),
+    "profile_crowning": ("profile_crowning_at_root", "profile_crowning_at_tip"),
+    "helix_crowning": (
+        "helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face",
+    ),
+}  # fmt: skip
+#: Forms that a case has not, or whose sign other programs do not agree upon.
+_NOT_READ = (
+    "profile_slope", "helix_slope", "helix_deviation", "profile_deviation", "profile_twist",
+    "triangular_tip_relief", "triangular_root_relief", "end_relief_datum_face",
+    "end_relief_non_datum_face", "topographical_modification",
+)  # fmt: skip
+_KINDS = (*_READ, *_NOT_READ)
+
+
+def forms_of(
+    file: RexsFile, gear: Component, flanks: list[int], radii: tuple[float, float] | None
+) -> tuple[dict[str, float], list[str]]:
+    """Keys of a gear's modification table in SI, and remarks; radii of base and tip circle [m]."""
+    found, remarks = {}, []
+    for kind in _KINDS:
+        sides = [_on(file, number, kind) for number in flanks or [gear.id]]
+        parts = {part.id: part for part in (*_on(file, gear.id, kind), *(sides[0] or sides[-1]))}
+        if len(parts) > 1:
+            remarks.append(f"{gear}: there are {len(parts)} {kind} on one flank; none is read")
+            continue
+        for part in parts.values():
+            keys, why = _read(part, radii)
+            if why:
+                remarks.append(f"{gear}: {part} is not read: {why}")
+            elif any(_values(side) != _values(sides[0]) for side in sides):
+                remarks.append(f"{gear}: {kind} of its flanks differs; the left one is read")
+            found.update(keys)
+    return found, remarks
+
+
+def _on(file: RexsFile, number: int, kind: str) -> list[Component]:
+    """Components of a kind that hang on a flank or a gear."""
+    linked = {
+        other: file.components[other]
+        for relation in file.relations
+        if relation.kind in ("reference", "ordered_reference", "assembly")
+        and number in (ids := [n for _, n in relation.refs])
+        for other in ids
+    }
+    return [part for part in linked.values() if part.kind == kind]
+
+
+def _values(parts: list[Component]) -> list[dict[str, object]]:
+    return [{name: v for name, v in part.values.items() if v.content} for part in parts]
+
+
+def _read(part: Component, radii: tuple[float, float] | None) -> tuple[dict[str, float], str]:
+    """Keys of one form, or why there are none."""
+    if part.kind not in _READ:
+        return {}, "a case has no such form, or no agreed sign for it"
+    odd = [name for name in _odd(part) if name not in _READ[part.kind]]
+    if odd:
+        return {}, f"{odd[0]} has no place in a case"
+    amounts = [part.number(name, "m") for name in _READ[part.kind]]
+    if part.kind.endswith("crowning"):
+        given = [amount for amount in amounts if amount is not None]
+        if len(set(given)) != 1:
+            return {}, "its amounts at both ends differ" if given else "it has no amount"
+        return {"crowning" if part.kind == "helix_crowning" else part.kind: given[0]}, ""
+    amount, length, *diameter = amounts
+    if amount is None:
+        return {}, "it has no depth"
+    if length is None and diameter and diameter[0] is not None:
+        if radii is None or not radii[0] < 0.5 * diameter[0] < radii[1]:
+            return {}, "its diameter is not on the flank of the gear"
+        length = _roll(radii[1], radii[0]) - _roll(0.5 * diameter[0], radii[0])
+    return {part.kind: amount} | ({f"{part.kind}_length": length} if length else {}), ""
+
+
+def _odd(part: Component) -> Iterator[str]:
+    """Attributes that say something, whether understood or not."""
+    return (name for name, v in part.values.items() if v.content not in (None, "", 0.0, False))
+
+
+def _roll(radius: float, base: float) -> float:
+    return math.sqrt(radius**2 - base**2)

@@ -1,0 +1,74 @@
+"""``tribodyn study``: what it says, how far it has come, and Ctrl-C that keeps what is done."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tribodyn.cli import call
+from tribodyn.cli.commands import study_command
+from tribodyn.variants import store
+
+_STUDY = """
+case = "fzg-roughness"
+chunk = 2
+keep = ["rms_mesh_force"]
+[set]
+stiffness.model = "iso6336"
+friction.law = "none"
+film.model = "none"
+[axes]
+operation.speed = "900..1500 rpm:2"
+gears.wheel.teeth = [24, 90]
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(_STUDY)
+    return tmp_path
+
+
+def test_a_study_is_computed_and_told(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupts, write = iter((False, True)), store.write_dataset
+
+    def interrupted(*words: object) -> None:
+        if next(interrupts, False):
+            raise KeyboardInterrupt
+        write(*words)
+
+    monkeypatch.setattr(store, "write_dataset", interrupted)
+    assert call(["study", "s.toml"]) == 130
+    told = capsys.readouterr()
+    assert "2 of 4 members are done (50 %)" in told.out
+    assert "the same command goes on from there" in told.err
+    monkeypatch.setattr(study_command, "_BETWEEN", 0.0)
+    assert call(["study", "s.toml"]) == 0
+    told = capsys.readouterr()
+    assert "4 of 4 members are done (100 %)\n  2 of them failed:\n         2  " in told.out
+    assert "the centre distance must be at least 240" in told.out
+    assert "4 of 4 members" in told.err
+    assert "Store: s-study" in told.err
+    assert call(["study", "s-study", "--status", "--json"]) == 0
+    state = json.loads(capsys.readouterr().out)
+    assert state["complete"]
+    assert not state["running"]
+    assert list(state["reasons"].values()) == [2]
+    (next(folder.glob("s-study/0-000/*.nc"))).unlink()
+    assert call(["study", "s.toml"]) == 0
+    assert "was damaged or gone and was computed anew" in capsys.readouterr().err
+
+
+def test_faults_end_with_their_code(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "s.toml").write_text(_STUDY.replace("chunk = 2", "chunk = 0"))
+    assert call(["study", "s.toml", "--json"]) == 2
+    (problem,) = json.loads(capsys.readouterr().out)["error"]["problems"]
+    assert problem["where"] == "s.toml:3: chunk"
+    assert call(["study", "s.toml", "--status"]) == 2
+    assert "s-study" in capsys.readouterr().err
+    assert not (folder / "s-study").exists()
