@@ -18,7 +18,7 @@ import tribodyn as td
 from tribodyn import surrogate
 
 warnings.simplefilter("ignore", td.ModelWarning)  # the thin tip of this pair, rows far apart
-case = td.load_case("fzg-film").replace({"film.model": "none", "stiffness.model": "analytic"})
+case = td.load_case("fzg-film").replace({"film.model": "none"})
 targets = ["acceleration", "mesh_force"]
 
 
@@ -41,7 +41,7 @@ tell(f"published, {published.rows} rows,", model, surrogate.baselines(published,
 honest = td.vibration_data(case, seed=1, trajectories=20, over="cycle", samples=64)
 inputs = ["cos_phase", "sin_phase", "stiffness_scale", "friction_scale"]
 asked = {"features": inputs, "targets": targets, "seed": 1, "groups": "trajectory"}
-model = surrogate.train(honest, **asked, training=surrogate.Training(epochs=100))
+model = surrogate.train(honest, **asked)
 tell(f"honest, {honest.rows} rows,", model, surrogate.baselines(honest, **asked))
 
 over = {

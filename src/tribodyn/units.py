@@ -97,6 +97,7 @@ _USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "rad": {"deg": (math.pi, 180)},
     "rad/s": {"rpm": (math.pi, 30)},
     "N": {"kN": (1e3, 1)},
+    "N^2": {"kN^2": (1e6, 1)},
     "W": {"kW": (1e3, 1)},
     "m/N": {"um/kN": (1, 1e9), "um/N": (1, 1e6)},
     "N*m": {"kN*m": (1e3, 1), "N*mm": (1, 1e3)},

@@ -9,7 +9,6 @@ import pytest
 
 from tribodyn.cli import call
 from tribodyn.cli.commands import study_command
-from tribodyn.variants import store
 
 _STUDY = """
 case = "fzg-roughness"
@@ -35,14 +34,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_study_is_computed_and_told(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    interrupts, write = iter((False, True)), store.write_dataset
+    interrupts, write = iter((False, True)), Path.write_bytes
 
-    def interrupted(*words: object) -> None:
+    def interrupted(path: Path, content: bytes) -> int:
         if next(interrupts, False):
             raise KeyboardInterrupt
-        write(*words)
+        return write(path, content)
 
-    monkeypatch.setattr(store, "write_dataset", interrupted)
+    monkeypatch.setattr(Path, "write_bytes", interrupted)
     assert call(["study", "s.toml"]) == 130
     told = capsys.readouterr()
     assert "2 of 4 members are done (50 %)" in told.out

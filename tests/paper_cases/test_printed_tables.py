@@ -7,8 +7,8 @@ import pytest
 from tribodyn.cases import cases, compare_with_paper
 from tribodyn.cases.papers.computations import COMPUTATIONS
 from tribodyn.cases.papers.jobs import Jobs
-from tribodyn.cases.papers.printed import NEITHER, VERDICTS, papers, printed_rows
-from tribodyn.cases.papers.verdict import course, signs
+from tribodyn.cases.papers.printed import NEITHER, VERDICTS, PrintedRow, papers, printed_rows
+from tribodyn.cases.papers.verdict import course, signs, verdicts
 
 
 @pytest.mark.parametrize("paper", papers())
@@ -37,3 +37,12 @@ def test_courses_of_figures() -> None:
     assert course([3.0, 1.0, 1.005, 2.0], 0.01) == "falls, then rises"
     assert course([1.0, 1.001], 0.01) == "stays"
     assert signs([4.7, 4.0, 4.1], 0.03) == [-1, 0]
+
+
+@pytest.mark.parametrize(
+    ("limit", "met"), [("", (0, 1, 0)), ("most", (1, 1, 0)), ("least", (0, 1, 1))]
+)
+def test_a_limit_is_met_by_what_is_better(limit: str, met: tuple[int, ...]) -> None:
+    row = PrintedRow("", "", "", 2.0, "value", "", limit=limit)
+    wanted = ["value" if each else NEITHER for each in met]
+    assert verdicts([row] * 3, [1.0, 2.01, 3.0]) == wanted

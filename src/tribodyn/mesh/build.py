@@ -263,16 +263,26 @@ def _teeth(
     return cycle, teeth
 
 
-@lru_cache(maxsize=4)
+#: Loads at which the teeth of a case are remembered: those of one axis of an operating map.
+_LOADS = 128
+
+
+@lru_cache(maxsize=_LOADS)
 def _known_teeth(*given: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]]:
     with collected() as told:
         return (*_loaded_teeth(*given[:-1]), told)
 
 
+@lru_cache(maxsize=8)
+def _cycle(pair: SpurPair, steps: int) -> MeshCycle:
+    """Pairs over the mesh cycle: the same object under every load."""
+    return mesh_cycle(path_of_contact(pair), steps)
+
+
 def _loaded_teeth(
     pair: SpurPair, model: ToothModel, torque: float, steps: int, loading: Array | None = None
 ) -> tuple[MeshCycle, Teeth]:
-    cycle = mesh_cycle(path_of_contact(pair), steps)
+    cycle = _cycle(pair, steps)
     places = (cycle.grid.phase, cycle.path, cycle.in_contact)
     over = 1.0 if loading is None else loading[:, None]
     return cycle, teeth_of(cycle.contact, places, model, torque / pair.pinion.base_radius, over)

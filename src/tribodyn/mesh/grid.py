@@ -18,6 +18,8 @@ from tribodyn.types import Array, Index
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
+#: Sets of phases whose knots are remembered, and their sizes.
+_KEPT, _FEWEST_KEPT, _MOST_KEPT = 8, 64, 65536
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +66,39 @@ class PhaseGrid:
         starts, counts = np.array(self.event_phases), np.array(self.intervals)
         return starts, counts, np.diff(starts, append=1.0), np.cumsum(counts + 1) - counts - 1
 
+    def _between(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
+        """First of the four knots about each phase, and the weights of their cubic."""
+        if not _FEWEST_KEPT <= phase.size <= _MOST_KEPT:
+            return self._located(phase)
+        # The tables of one case, and of all its operating points, are asked at the same phases.
+        key = phase.shape, phase.tobytes()
+        found = self._known.get(key)
+        if found is None:
+            if len(self._known) >= _KEPT:
+                self._known.clear()
+            found = self._known[key] = self._located(phase)
+        return found
+
+    @cached_property
+    def _known(self) -> dict[Any, tuple[Index, tuple[Array, ...]]]:
+        return {}
+
+    def _located(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
+        folded = np.mod(phase, 1.0)
+        starts, counts, widths, knots = self._layout
+        segment = np.searchsorted(starts, folded, side="right") - 1
+        count = counts[segment]
+        position = (folded - starts[segment]) / widths[segment] * count
+        left = np.minimum(np.maximum(position.astype(int) - 1, 0), count - 3)
+        u = position - left
+        weights = (
+            (1.0 - u) * (2.0 - u) * (3.0 - u) / 6.0,
+            u * (2.0 - u) * (3.0 - u) / 2.0,
+            u * (u - 1.0) * (3.0 - u) / 2.0,
+            u * (u - 1.0) * (u - 2.0) / 6.0,
+        )
+        return np.asarray(knots[segment] + left), weights
+
     def mean(self, values: Array) -> Array:
         """Mean over the cycle by Simpson's rule in each segment.
 
@@ -107,22 +142,9 @@ class PhaseFunction:
 
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
-        folded = np.mod(np.asarray(phase, dtype=float), 1.0)
-        starts, counts, widths, knots = self.grid._layout
-        segment = np.searchsorted(starts, folded, side="right") - 1
-        count = counts[segment]
-        position = (folded - starts[segment]) / widths[segment] * count
-        left = np.minimum(np.maximum(position.astype(int) - 1, 0), count - 3)
-        first = knots[segment] + left
-        u = position - left
-        weights = (
-            (1.0 - u) * (2.0 - u) * (3.0 - u) / 6.0,
-            u * (2.0 - u) * (3.0 - u) / 2.0,
-            u * (u - 1.0) * (3.0 - u) / 2.0,
-            u * (u - 1.0) * (u - 2.0) / 6.0,
-        )
+        first, weights = self.grid._between(np.asarray(phase, dtype=float))
         further = (1,) * (self.values.ndim - 1)
-        total = np.zeros(folded.shape + self.values.shape[1:])
+        total = np.zeros(first.shape + self.values.shape[1:])
         for knot, weight in enumerate(weights):
             total += weight.reshape(weight.shape + further) * self.values[first + knot]
         return total

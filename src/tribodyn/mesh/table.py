@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from os import PathLike
 from typing import ClassVar
 
@@ -149,6 +150,10 @@ class MeshTable(MeshColumns):
 
     def functions(self) -> MeshFunctions:
         """Hand over what a dynamic model reads, as functions of mesh phase."""
+        return self._functions
+
+    @cached_property
+    def _functions(self) -> MeshFunctions:
         return MeshFunctions(
             stiffness=PhaseFunction(self.grid, self.mesh_stiffness),
             friction_sum=PhaseFunction(self.grid, self.friction_sum),

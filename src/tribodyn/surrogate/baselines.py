@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -18,6 +19,8 @@ Fitter = Callable[[Array, Array, int], Callable[[Array], Array]]
 _PLACES = 64
 #: Rows that a Gaussian process is fitted to at most: its cost grows with their cube.
 _MOST_ROWS = 1500
+#: Length [range of a feature] and noise [variance of the target] that its fit begins with.
+_LENGTH, _NOISE = 0.3, 1e-4
 
 
 def _mean(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
@@ -43,12 +46,15 @@ def _table(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
 def _gaussian_process(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
     process = _learned("gaussian_process")
     kernels = process.kernels
-    kernel = (
-        kernels.ConstantKernel() * kernels.RBF(np.ones(inputs.shape[1])) + kernels.WhiteKernel()
-    )
+    # From a length of one the search takes a vibration for noise; without noise it needs little.
+    smooth = kernels.RBF(np.full(inputs.shape[1], _LENGTH), (1e-2, 1e4))
+    noise = kernels.WhiteKernel(_NOISE, (1e-12, 1.0))
+    kernel = kernels.ConstantKernel(1.0, (1e-4, 1e6)) * smooth + noise
     chosen = np.random.default_rng(seed).permutation(len(inputs))[:_MOST_ROWS]
     model = process.GaussianProcessRegressor(kernel, normalize_y=True, random_state=seed)
-    return model.fit(inputs[chosen], target[chosen]).predict  # type: ignore[no-any-return]
+    with warnings.catch_warnings():  # at the bounds of the search it warns; the errors tell all
+        warnings.simplefilter("ignore")
+        return model.fit(inputs[chosen], target[chosen]).predict  # type: ignore[no-any-return]
 
 
 def _boosted_trees(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -15,8 +16,6 @@ from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
-
     from tribodyn.study.case.case import Case
 
 Columns = Mapping[str, list[Any]]
@@ -53,21 +52,35 @@ class Job(NamedTuple):
         absent = np.full(len(part.failed), np.nan)
         return part._replace(figures={name: part.figures.get(name, absent) for name in names})
 
-    def dataset(self, part: Part) -> xarray.Dataset:
-        """Result as it is stored."""
-        import xarray
+    def encoded(self, part: Part) -> bytes:
+        """Result as netCDF; made in memory, since HDF5 takes a full disk badly."""
+        import h5netcdf
 
-        known, text = KINDS[self.kind].figures, partial(np.array, dtype=object)
-        data: dict[str, Any] = {
-            key: ("member", text(column) if isinstance(column[0], str) else np.array(column))
-            for key, column in self.columns.items()
-        }
-        data |= {"failed": ("member", text(part.failed)), "warnings": ("member", text(part.warned))}
-        if part.figures:
-            data["value"] = ("member", "figure"), np.stack([*part.figures.values()], axis=1)
-            data["figure"] = "figure", text([*part.figures])
-            data["units"] = "figure", text([known[name][0] for name in part.figures])
-        return xarray.Dataset(data)
+        known, count = KINDS[self.kind].figures, len(part.failed)
+        buffer = io.BytesIO()
+        with h5netcdf.File(buffer, "w") as file:
+            file.dimensions = {"member": count}
+            for key, column in self.columns.items():
+                _put(file, key, ("member",), column)
+            _put(file, "failed", ("member",), part.failed)
+            _put(file, "warnings", ("member",), part.warned)
+            if part.figures:
+                file.dimensions["figure"] = len(part.figures)
+                _put(file, "figure", ("figure",), [*part.figures])
+                _put(file, "units", ("figure",), [known[name][0] for name in part.figures])
+                _put(file, "value", ("member", "figure"), np.stack([*part.figures.values()], 1))
+        return buffer.getvalue()
+
+
+def _put(file: Any, name: str, dimensions: tuple[str, ...], values: Any) -> None:
+    """Write one variable; netCDF has no logical values."""
+    import h5py
+
+    words = isinstance(values[0], str)
+    data = np.array(values, dtype=object if words else None)
+    data = data.astype(np.int8) if data.dtype.kind == "b" else data
+    kind = h5py.string_dtype() if words else data.dtype
+    file.create_variable(name, dimensions, dtype=kind, data=data)
 
 
 def _each(compute: Callable[..., Part], columns: Columns, progress: Progress) -> Part:

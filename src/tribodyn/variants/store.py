@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import Argument, InputError, OutputExistsError, Problem, quiet
 from tribodyn.files import lock, whole
 from tribodyn.members import NAME, Members, read_lines
-from tribodyn.stored import read_bytes, write_dataset
+from tribodyn.stored import read_bytes
 from tribodyn.study.studies.grid import identity
 from tribodyn.variants.compute import Job, Part
 from tribodyn.variants.members import Chunk, Plan, layout_of
@@ -236,12 +236,12 @@ class Store:
     def put(self, chunk: Chunk, part: Part) -> None:
         """Write a chunk, then tell that it is there."""
         path = chunk_path(self.folder, chunk.name)
+        content = self.job(chunk).encoded(part)
         with quiet("leftover"):
             with suppress(OSError):  # whole() tells what is wrong
                 path.parent.mkdir(exist_ok=True)
             with whole(path) as partial:
-                write_dataset(self.job(chunk).dataset(part), partial)
-                crc = zlib.crc32(partial.read_bytes())
+                partial.write_bytes(content)
         told: dict[str, int] = {}
         for reason in filter(None, part.failed):
             told[reason] = told.get(reason, 0) + 1
@@ -250,7 +250,7 @@ class Store:
             "failed": sum(told.values()),
             "reasons": dict(sorted(told.items(), key=lambda item: -item[1])[:_REASONS]),
             "figures": list(part.figures),
-            "crc": crc,
+            "crc": zlib.crc32(content),
             "time": time.time(),
         }
         self.members.keep(chunk.name, facts)

@@ -122,6 +122,11 @@ def test_baselines_of_scikit_learn():
         return
     found = surrogate.baselines(DATA, **ASK, seed=1, kinds=kinds)
     assert all(each["z"].determination > 0.99 for each in found.values())
+    # what vibrates within the range of a feature is no noise to either of them
+    quick = {"a": DATA["a"], "y": np.sin(15.0 * DATA["a"])}
+    found = surrogate.baselines(quick, features=["a"], targets=["y"], seed=1, kinds=kinds)
+    assert found["gaussian-process"]["y"].determination > 0.999999
+    assert found["boosted-trees"]["y"].determination > 0.99
 
 
 @pytest.mark.parametrize(

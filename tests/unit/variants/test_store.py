@@ -11,7 +11,7 @@ import pytest
 
 from tribodyn.errors import ComputationError, InputError, OutputExistsError
 from tribodyn.members import NAME
-from tribodyn.variants import open_study, read_study, run_study, store, study_state
+from tribodyn.variants import open_study, read_study, run_study, study_state
 from tribodyn.variants.store import Store
 
 pytestmark = pytest.mark.usefixtures("cheap")
@@ -160,15 +160,15 @@ def test_a_full_disk_is_told_and_nothing_finished_is_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run_study(read_study(grid()), tmp_path / "whole")
-    place, write, left = tmp_path / "s", store.write_dataset, iter(range(3))
+    place, write, left = tmp_path / "s", Path.write_bytes, iter(range(3))
 
-    def full(data, path) -> None:
+    def full(path: Path, content: bytes) -> int:
         if next(left, None) is None:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
-        write(data, path)
+        return write(path, content)
 
     with monkeypatch.context() as patch:
-        patch.setattr(store, "write_dataset", full)
+        patch.setattr(Path, "write_bytes", full)
         with pytest.raises(ComputationError, match=r"no space left on device.*[Mm]ake room"):
             run_study(read_study(grid()), place)
     assert study_state(place).done == 12

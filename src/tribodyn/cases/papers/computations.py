@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -33,6 +33,8 @@ _GEARS = ("pinion", "wheel")
 #: A hair inside the path of contact [base pitches].
 _INSIDE = 1e-9
 _HARMONICS = 22
+#: Neurons that the source found best for each of its networks.
+_NEURONS = {"acceleration": 11, "mesh_force": 10}
 
 
 def loads_of(case: Case) -> str:
@@ -259,6 +261,40 @@ def _modes(case: Case, meshes: Meshes) -> Figures:
         "kinetic_share_of_gears": float(found.kinetic_share[near, gears].sum()),
         "strain_share_of_mesh": float(found.strain_share[near, -found.contacts :].sum()),
     }
+
+
+@COMPUTATIONS.register("networks")
+def _networks(
+    case: Case,
+    meshes: Meshes,
+    *,
+    over: Literal["time", "cycle"],
+    features: list[str],
+    targets: list[str],
+    trajectories: int = 100,
+    moving_average: int = 1,
+    starts: int = 1,
+) -> Figures:
+    """Errors of the networks of the source on its data set, and the rms that they predict."""
+    from dataclasses import replace
+
+    from tribodyn.study.uncertain.vibration_data import vibration_data
+    from tribodyn.surrogate import BPNN_PL, train
+
+    with collected():
+        data = vibration_data(case, seed=1, over=over, trajectories=trajectories)
+        data = data.where(data["time"] > 0.2) if over == "time" else data
+        groups = "trajectory" if moving_average > 1 else ""
+        figures = dict[str, float]()
+        for target in targets:
+            hidden = (_NEURONS[target],) * 2
+            options: Any = {"moving_average": moving_average, "starts": starts}
+            training = replace(BPNN_PL, hidden=hidden, **options)
+            asked: Any = {"features": features, "targets": [target], "groups": groups}
+            model = train(data, **asked, seed=1, training=training)
+            figures |= {f"{target}_{key}": v for key, v in vars(model.errors[target]).items()}
+            figures[f"predicted_{target}"] = float(np.std(model.predict(data.columns)[target]))
+    return figures
 
 
 @COMPUTATIONS.register("arithmetic")

@@ -28,6 +28,7 @@ class PrintedRow:
     reason: str
     unit: str = "1"
     tolerance: float = 0.01  #: relative deviation of a printed value that counts as none
+    limit: str = ""  #: "most" or "least": an error, say, that is less is met as well
     compute: str = ""  #: name of a computation; empty where nothing can be computed
     of: str = ""  #: its figure
     case: str = ""  #: case that is computed; that of the source by default

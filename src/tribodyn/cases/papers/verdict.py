@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from itertools import groupby
 
 import numpy as np
@@ -14,6 +15,8 @@ _WORDS = {1: "rises", -1: "falls"}
 _STEADY = "stays"
 #: Change that counts as none [%].
 _MARGINAL = 1.0
+#: How far a deviation is off: to either side, or only beyond what is printed as a limit.
+_SIDES: Mapping[str, Callable[[float], float]] = {"": abs, "most": float, "least": operator.neg}
 #: Relative rounding of a change of unit.
 _ROUNDING = 1e-12
 
@@ -84,7 +87,7 @@ def _verdict(row: PrintedRow, computed: float | str | None, alike: bool) -> str:
     if row.printed == 0 and computed is not None:
         return VALUE if abs(computed) <= row.level else NEITHER
     apart = deviation(row, computed)
-    if apart is not None and abs(apart) <= row.tolerance:
+    if apart is not None and _SIDES[row.limit](apart) <= row.tolerance:
         return VALUE
     single = row.against is not None and not row.series and isinstance(computed, float)
     if single and apart is not None:

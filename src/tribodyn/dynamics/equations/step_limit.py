@@ -8,13 +8,19 @@ is nothing but this. Steps are refused above 2.7.
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 
 import numpy as np
 
 from tribodyn.checks import require_number
-from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction, sampled
+from tribodyn.dynamics.equations.nodes import (
+    Nodes,
+    evaluate_nodes,
+    friction_tangent,
+    push_with_friction,
+)
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array, ComplexArray, Index
@@ -108,7 +114,15 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
 
 def rate_on_grid(system: System, steps: int = _FEWEST) -> float:
     """Largest modulus of an eigenvalue, looked up on a grid of as many steps."""
-    return largest_rate(system, sampled(system, steps)[1])
+    grid = build_grid(system_events(system), steps)
+    evaluator, total = RowEvaluator(grid, checks=False), np.zeros((grid.steps, 3))
+    for j, contact in enumerate(system.contacts):
+        total += evaluator.values(f"contacts[{j}].stiffness", contact.stiffness)[..., 0]
+    # All else is needed on the rows alone that are examined.
+    rows, stages = _stiffest_rows(total)
+    some = Grid(*(getattr(grid, field.name)[rows] for field in fields(Grid)))
+    nodes, every = evaluate_nodes(system, some), np.arange(rows.size)
+    return float(_rates(system, nodes, every, stages, np.array([_PLAIN])).max())
 
 
 def accurate_steps(rate: float, mesh_frequency: float) -> int:

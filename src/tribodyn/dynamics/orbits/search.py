@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from tribodyn.dynamics.equations.motion import compression, has_gap, sides
 from tribodyn.dynamics.equations.nodes import force_laws
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
 from tribodyn.types import Array, ComplexArray
@@ -149,12 +151,16 @@ class OrbitPoint:
     @property
     def correction(self) -> Array:
         """Newton step to the fixed point, (k,)."""
-        return newton_step(self.matrix, self.residual)[0]
+        return self._newton[0]
 
     @property
     def error(self) -> float:
         """Distance to the orbit over its size; at least the rounding of the map."""
-        return newton_step(self.matrix, self.residual)[1] / self.scale
+        return self._newton[1] / self.scale
+
+    @cached_property
+    def _newton(self) -> tuple[Array, float]:
+        return newton_step(self.matrix, self.residual)
 
     @property
     def attracts(self) -> bool:
@@ -169,12 +175,12 @@ def motion_size(mapping: OrbitMap, states: Array) -> float:
 
 
 def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> OrbitPoint:
-    """Evaluate the map and its matrix at a point; that of a linear map is the same everywhere."""
+    """Evaluate the map and its matrix at a point, that of a known one where it is the same."""
     image, states = mapping.follow(y)
     scale = motion_size(mapping, states)
-    if known is not None and mapping.affine:
-        matrix, slopes = known.matrix, known.slopes
-    elif mapping.affine:
+    if known is not None and _same_equations(mapping, known.states, states):
+        return replace(known, point=y, residual=image - y, scale=scale, states=states)
+    if mapping.affine:
         # Of a linear map any difference is exact, and a large one loses no digits.
         matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((0, *states.shape))
     else:
@@ -182,6 +188,20 @@ def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> Or
         images, motions = mapping.follow(y + step * np.eye(y.size))
         matrix, slopes = (images - image).T / step, (motions - states) / step
     return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix), states, slopes)
+
+
+def _same_equations(mapping: OrbitMap, one: Array, other: Array) -> bool:
+    """Whether two motions obey the same linear equations: contacts on the same sides all along."""
+    if mapping.affine:
+        return True
+    nodes, size = mapping.compiled.nodes, mapping.compiled.system.size
+    if nodes.friction_coefficients.shape[-1] > 1:
+        return False
+    gap, dead = nodes.gap[:, 0], has_gap(nodes)
+    rows = nodes._replace(direction=nodes.direction[:, 0], error=nodes.error[:, 0])
+    places = (part[:-1, :size].reshape(-1, len(gap), size) for part in (one, other))
+    first, second = (sides(compression(rows, q), gap, dead) for q in places)
+    return np.array_equal(first, second)
 
 
 def finish_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:

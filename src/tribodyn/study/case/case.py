@@ -18,6 +18,7 @@ from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.provenance import (
     Stated,
     effective_values,
+    keys_that_changed,
     provenance,
     read_stated,
     reason_faults,
@@ -189,6 +190,10 @@ class Case(Section, whole=True):
     @cached_property
     def _effective(self) -> dict[str, Any]:
         return effective_values(self)
+
+    @cached_property
+    def _changed(self) -> tuple[str, ...]:
+        return keys_that_changed(self)
 
     @property
     def uncertain(self) -> dict[str, str]:

@@ -351,6 +351,11 @@ def default_of(case: Case, key: str) -> Any:
 
 def changed_keys(case: Case) -> tuple[str, ...]:
     """Keys whose values differ from those that the case began with."""
+    return case._changed
+
+
+def keys_that_changed(case: Case) -> tuple[str, ...]:
+    """The same, found anew."""
     values, base, given = effective(case), case.stated.base, case.given
     if any(values.get(key) is None for key in base):
         derived = derived_values(case)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.gear import HypoidFlanks, SpurGear
+    from tribodyn.gear import HypoidFlanks, SpurGear, SpurPair
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
@@ -40,9 +41,17 @@ def geometry(case: Case) -> dict[str, float]:
         return _of_mesh_table(case, case.mesh_table)
     if case.hypoid_flanks is not None:
         return _of_hypoid(case, case.hypoid_flanks)
+    gears = case.gear_pair, case.density("pinion"), case.density("wheel"), case.backlash
+    return dict(_of_spur(*gears))
+
+
+@lru_cache(maxsize=8)
+def _of_spur(
+    pair: SpurPair, density_pinion: float, density_wheel: float, backlash: float
+) -> dict[str, float]:
+    """Geometry of a spur pair; a study asks for it at every operating point."""
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
-    pair = case.gear_pair
     values = {
         "transverse_contact_ratio": pair.transverse_contact_ratio,
         "gear_ratio": pair.ratio,
@@ -52,17 +61,19 @@ def geometry(case: Case) -> dict[str, float]:
         "base_pitch": pair.base_pitch,
         "line_of_action_length": pair.line_of_action_length,
         "common_face_width": pair.common_face_width,
-        "backlash": case.backlash,
+        "backlash": backlash,
         "gear_loss_factor": gear_loss_factor(pair),
     }
     for place, angle in path_of_contact(pair).roll_angles.items():
         values[f"roll_angle_{place}"] = angle
-    gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
-    bodies = {name: _body(case, name, gear) for name, gear in gears}
+    bodies = {
+        "pinion": _body(pair.pinion, density_pinion),
+        "wheel": _body(pair.wheel, density_wheel),
+    }
     for key in bodies["pinion"]:
         for name, body in bodies.items():
             values[f"{key}_{name}"] = body[key]
-    values |= _modifications(case)
+    values |= _modifications(pair)
     return {name: float(value) for name, value in values.items()}
 
 
@@ -118,10 +129,10 @@ def _of_hypoid(case: Case, flanks: HypoidFlanks) -> dict[str, float]:
     return {name: float(value) for name, value in values.items()}
 
 
-def _body(case: Case, name: str, gear: SpurGear) -> dict[str, float]:
+def _body(gear: SpurGear, density: float) -> dict[str, float]:
     from tribodyn.gear import mass_properties
 
-    solid = mass_properties(gear, case.density(name))
+    solid = mass_properties(gear, density)
     return {
         "reference_diameter": 2.0 * gear.reference_radius,
         "base_radius": gear.base_radius,
@@ -135,11 +146,10 @@ def _body(case: Case, name: str, gear: SpurGear) -> dict[str, float]:
     }
 
 
-def _modifications(case: Case) -> dict[str, float]:
+def _modifications(pair: SpurPair) -> dict[str, float]:
     """Amounts that are not zero, with the lengths of the reliefs in force."""
     from tribodyn.gear import default_relief_length, hunting_period
 
-    pair = case.gear_pair
     values = {"misalignment": pair.misalignment} if pair.misalignment else {}
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         given = gear.modification

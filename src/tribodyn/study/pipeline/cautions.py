@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -78,12 +79,13 @@ def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
         )
 
 
-def _solid(case: Case, name: str, gear: SpurGear) -> MassProperties:
+@lru_cache(maxsize=16)
+def _solid(gear: SpurGear, density: float) -> MassProperties:
     from tribodyn.gear import mass_properties
 
     with collected():  # What is odd about the shape has been said.
         bare = replace(gear, mass=None, moment_of_inertia=None)
-    return mass_properties(bare, case.density(name))
+        return mass_properties(bare, density)
 
 
 def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
@@ -94,7 +96,7 @@ def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]
         full, given = f"gears.{name}.{key}", getattr(gear, key)
         if not shape or given is None or base.get(full) is None or full in changed:
             continue
-        own = getattr(_solid(case, name, gear), key)
+        own = getattr(_solid(gear, case.density(name)), key)
         yield ModelWarning(
             "mass-of-other-gear",
             f"{name}: {key} = {given * factor:.4g} {unit} is that of the gear before "
@@ -105,7 +107,7 @@ def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]
 
 def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Compare given inertias with those of the solid: a wrong unit is far off."""
-    solid = _solid(case, name, gear)
+    solid = _solid(gear, case.density(name))
     for key, unit, factor in _INERTIAS:
         given, own = getattr(gear, key), getattr(solid, key)
         most = _OF_SOURCE if _is_stated(case, name, key) else _UNLIKELY

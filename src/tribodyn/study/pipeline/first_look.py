@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
+    from tribodyn.gear import SpurPair
     from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
@@ -113,6 +115,20 @@ def standard_figures(case: Case) -> dict[str, float]:
 
 
 def _body_share(case: Case, force: float) -> float:
+    from tribodyn.stiffness import MODELS
+
+    settings = loaded_settings(case)
+    options = tuple(sorted(settings.pop("options").items()))
+    given = case.gear_pair, tuple(settings.items()), options, force, MODELS.version
+    try:
+        hash(given)
+    except TypeError:  # an option is an array
+        return _share.__wrapped__(*given)
+    return _share(*given)
+
+
+@lru_cache(maxsize=256)
+def _share(pair: SpurPair, settings: Any, options: Any, force: float, _version: int) -> float:
     from tribodyn.stiffness import loaded_contact
 
     even: dict[str, Any] = {  # without what makes the teeth differ from each other
@@ -122,10 +138,9 @@ def _body_share(case: Case, force: float) -> float:
     }
     pinion, wheel = (
         replace(gear, modification=replace(gear.modification, **even))
-        for gear in (case.gear_pair.pinion, case.gear_pair.wheel)
+        for gear in (pair.pinion, pair.wheel)
     )
-    pair = replace(case.gear_pair, pinion=pinion, wheel=wheel)
-    settings = loaded_settings(case)
+    pair = replace(pair, pinion=pinion, wheel=wheel)
     torque = force * pair.pinion.base_radius
     with collected():
         whole, teeth = (
@@ -133,7 +148,8 @@ def _body_share(case: Case, force: float) -> float:
                 pair,
                 torque,
                 phases=_PHASES,
-                **{**settings, "options": {**settings["options"], "reference": reference}},
+                **dict(settings),
+                options={**dict(options), "reference": reference},
             ).deflection.mean()
             for reference in ("bore", "rim")
         )
