@@ -3,7 +3,8 @@
 The members are motions of the pair with backlash and a verdict, as in ``parameter_map.py``. The
 same chunks are computed without a store (the plain function), into a store by one thread, by all
 threads, and by workers that are processes of this machine. The overhead of a chunk is what one
-worker takes longer than one thread without a store, divided by the chunks.
+worker takes longer than one thread without a store, divided by the chunks, in processor time of
+all processes: wall clocks tell something on a quiet machine only.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def main(words: Sequence[str] | None = None) -> None:
     from distributed import Client, LocalCluster
 
     quick = arguments(__doc__, words).quick
-    speeds, loads, chunk = (4, 4, 8) if quick else (100, 100, 1000)
+    speeds, loads, chunk = (4, 4, 8) if quick else (100, 50, 100)
     study = read_study(STUDY.format(chunk=chunk, speeds=speeds, loads=loads))
     members, chunks = study.layout.count, -(-study.layout.count // chunk)
     plan = Plan(study.layout, [{**study.layout.facts(), "chunk": chunk}])
@@ -53,28 +54,30 @@ def main(words: Sequence[str] | None = None) -> None:
             columns = study.layout.columns(plan.members(each))
             Job(study.compute, study.case, study.keep, columns).compute()
 
-    def stored(address: str = "") -> float:
-        with tempfile.TemporaryDirectory() as folder:
-            return timed(lambda: run_study(study, Path(folder) / "s", scheduler=address))
+    def stored(address: str = "") -> Callable[[], object]:
+        place = Path(tempfile.mkdtemp(dir=folder)) / "s"
+        return lambda: run_study(study, place, scheduler=address)
 
-    with alone():
-        timed(plain)  # what is compiled once
-        bare = timed(plain)
-        told("one thread, no store", bare, members, bare)
-        single = stored()
-        told("one thread, into a store", single, members, bare)
-        print(f"    the store costs {(single - bare) / chunks * 1e3:.1f} ms a chunk")
-    told(f"all threads ({os.cpu_count()}), into a store", stored(), members, bare)
-    for count in () if quick else (1, 2):
-        with (
-            LocalCluster(count, threads_per_worker=1, dashboard_address=None) as cluster,
-            Client(cluster) as client,
-        ):
-            client.run(warm, STUDY.format(chunk=8, speeds=4, loads=2))
-            took = stored(cluster.scheduler_address)
-            told(f"Dask, workers: {count}", took, members, bare)
-            if count == 1:
-                print(f"    overhead of a chunk: {(took - bare) / chunks * 1e3:.1f} ms")
+    with tempfile.TemporaryDirectory() as folder:
+        with alone():
+            timed(plain)  # what is compiled once
+            bare = timed(plain)
+            told("one thread, no store", bare, members, bare)
+            single = timed(stored())
+            told("one thread, into a store", single, members, bare)
+            print(f"    the store costs {(single[1] - bare[1]) / chunks * 1e3:.1f} ms a chunk")
+        told(f"all threads ({os.cpu_count()}), into a store", timed(stored()), members, bare)
+        for count in () if quick else (1, 2):
+            with (
+                LocalCluster(count, threads_per_worker=1, dashboard_address=None) as cluster,
+                Client(cluster) as client,
+            ):
+                client.run(warm, STUDY.format(chunk=8, speeds=4, loads=2))
+                before = sum(client.run(time.process_time).values())
+                wall, used = timed(stored(cluster.scheduler_address))
+                used += sum(client.run(time.process_time).values()) - before
+                told(f"Dask, workers: {count}", (wall, used), members, bare)
+                print(f"    overhead of a chunk: {(used - bare[1]) / chunks * 1e3:.1f} ms")
 
 
 def warm(text: str) -> None:
@@ -83,16 +86,18 @@ def warm(text: str) -> None:
         run_study(read_study(text), Path(folder) / "s")
 
 
-def timed(work: Callable[[], object]) -> float:
-    """Wall seconds of a call."""
-    start = time.perf_counter()
+def timed(work: Callable[[], object]) -> tuple[float, float]:
+    """Wall and processor seconds of a call."""
+    start = time.perf_counter(), time.process_time()
     work()
-    return time.perf_counter() - start
+    return time.perf_counter() - start[0], time.process_time() - start[1]
 
 
-def told(words: str, seconds: float, members: int, bare: float) -> None:
-    """Print one line."""
-    print(f"{words:36} {seconds:8.2f} s {members / seconds:8.0f} members/s {bare / seconds:6.2f} x")
+def told(words: str, took: tuple[float, float], members: int, bare: tuple[float, float]) -> None:
+    """Print one line; the ratio is that of the wall clocks."""
+    wall, used = took
+    rates = f"{members / wall:8.0f} members/s {bare[0] / wall:6.2f} x"
+    print(f"{words:32} {wall:7.2f} s, of processors {used:7.2f} s {rates}", flush=True)
 
 
 if __name__ == "__main__":
