@@ -139,7 +139,7 @@ def test_arguments_of_wrong_kinds(calls, draws, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     every = [(name, each.name) for name, (f, _) in calls.items() for each in parameters(f)]
     failed = []
-    for drawn in draws(600):
+    for drawn in draws(400):
         name, first = drawn.choice(every)
         wrong = {first: drawn.choice(WRONG)}
         if drawn.random() < 0.2:
@@ -157,7 +157,7 @@ def test_methods_of_results_with_arguments_of_wrong_kinds(calls, draws, tmp_path
     monkeypatch.chdir(tmp_path)
     every = [(one, name) for one in results() for name in methods(type(one))]
     failed = []
-    for drawn in draws(150):
+    for drawn in draws(100):
         one, name = drawn.choice(every)
         method = getattr(one, name)
         wanted = [each for each in parameters(method) if each.default is each.empty]
