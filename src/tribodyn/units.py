@@ -16,6 +16,8 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
+from tribodyn.arguments import guard
+
 __all__ = [
     "SPELLINGS",
     "UnitProblemError",
@@ -382,3 +384,6 @@ def format_quantity(value: float, unit: str, display_unit: str | None = None) ->
     """
     shown = display_unit or unit
     return f"{convert(float(value), unit, shown):.10g} {shown}".strip()
+
+
+guard(__name__)

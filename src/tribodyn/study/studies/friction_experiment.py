@@ -224,7 +224,12 @@ class FrictionExperiment(Sweep):
             if one.law == law and all(getattr(one, k) == v for k, v in wanted.items()):
                 return place
         told = ", ".join(dict.fromkeys(one.law for one in self.rubbing))
-        raise InputError(f'friction "{law}" was not computed', "argument law", f"There is {told}")
+        raise InputError(
+            f'friction "{law}" was not computed',
+            "argument law",
+            f"There is {told}",
+            remedy="Choose one of these",
+        )
 
     def _parts(self) -> Parts:
         parts = super()._parts()
