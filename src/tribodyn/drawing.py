@@ -18,7 +18,7 @@ from inspect import cleandoc, signature
 from pathlib import Path
 from typing import Any, TypeVar
 
-from tribodyn.arguments import checked
+from tribodyn.arguments.reading import checked
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Registry
 

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from fuzz.public_calls import SLOW, methods, parameters, public, results, working_calls
 from registries import as_before
-from tribodyn.arguments import checked
+from tribodyn.arguments.reading import checked
 from tribodyn.ehl import dowson_1968_minimum
 from tribodyn.errors import ComputationError, InputError, ModelWarning, TribodynError
 from tribodyn.units import UnitProblemError

@@ -191,8 +191,8 @@ def read_case(text: str, name: str = "") -> Case:
     ...     read_case("title = 'x'", "my.toml")
     ... except InputError as error:
     ...     print(error.problems[0])
-    my.toml: gears: the table [gears] is missing. Add it with normal_module, \
-normal_pressure_angle, driver, pinion, wheel.
+    my.toml: gears: the table [gears] is missing. The case cannot be computed without it. \
+Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
     """
     data = parse_toml(text, name)
     if not data:
