@@ -63,6 +63,10 @@ variants.load_study variants.open_study variants.run_study variants.study_state
 """
 SLOW = set(_SLOW.split())
 
+#: Pages whose examples need no run, and no compiled solver: those of the draws in a hurry.
+_PAGES = "contact friction gear losses lubricant mesh stiffness surrogate uncertainty units"
+_HEAVY = {"mesh.hypoid_friction", "mesh.build", "mesh.comprehensive_stiffness", "surrogate.train"}
+
 REGISTRIES: list[Any] = [ENGINES, STRUCTURES, FILM_MODELS, LAWS, MODELS, FIGURES]
 _LOSSES = "speed [rpm], torque [N*m], torque_loss [N*m]\n1400, 50, 2.5\n"
 
@@ -93,10 +97,18 @@ def parameters(thing: Any) -> list[inspect.Parameter]:
     return [one for one in every if not one.kind.name.startswith("VAR")]
 
 
+def quick(name: str) -> bool:
+    """Whether a public name has an example that needs no time."""
+    slow = name in SLOW or name in _HEAVY
+    return not slow and (
+        name.partition(".")[0] in _PAGES.split() or "films" in name or "central" in name
+    )
+
+
 @functools.cache
-def working_calls(slow: bool = True) -> dict[str, Call]:
-    """Public callables, each with named arguments of a call that works; slow ones if wanted."""
-    things = {name: thing for name, thing in public().items() if slow or name not in SLOW}
+def working_calls(every: bool = True) -> dict[str, Call]:
+    """Public callables, each with named arguments of a call that works; all, or the quick ones."""
+    things = {name: thing for name, thing in public().items() if every or quick(name)}
     calls: dict[str, Call] = {}
     objects: dict[type, list[Any]] = {}
     _collect([dict(registry.all()) for registry in REGISTRIES], objects)
@@ -115,7 +127,7 @@ def working_calls(slow: bool = True) -> dict[str, Call]:
     _RESULTS[:] = [found[0] for kind, found in objects.items() if kind in kinds]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
-        return calls | _others(things, objects, calls)
+        return calls | _others(things, objects, calls) if every else calls
 
 
 _RESULTS: list[Any] = []
@@ -152,6 +164,7 @@ def _others(
     gearbox = things["exchange.read_rexs"](rexs)
     time = np.arange(4000) / 1000.0
     wave = np.sin(300.0 * time)
+    spread = {"operation.speed": "500 rpm +- 1 %"}
     study = {"case": case, "path": "study.html", "told": ["one line"], "head": ["a", "b"],
              "rows": [["1", "2"]]}  # fmt: skip
     given: dict[str, dict[str, Any]] = {
@@ -180,6 +193,7 @@ def _others(
         "mesh.MeshColumns": _taken(things["mesh.MeshColumns"], result.mesh),
         "mesh.MeshFunctions": _fields(functions),
         "mesh.PhaseFunction": _fields(functions.stiffness),
+        "plot.bands": {"result": things["study.ensemble"](case, spread, 2, seed=1)},
         "plot.coupling": {"result": run(case.replace({"solver.coupling": "static"}))},
         "plot.compare_line_contacts": {"solutions": [film], "labels": ["one"]},
         "plot.film_along_path": {"contacts": [film, film], "path": [0.0, 1e-3]},
