@@ -325,7 +325,7 @@ def convert(value: float, unit: str, to: str) -> float:
     Parameters
     ----------
     value : float
-        Value in ``unit``.
+        Value in ``unit``; any, NaN too.
     unit, to : str
         Unit of the value and unit wanted.
 
@@ -371,7 +371,7 @@ def format_quantity(value: float, unit: str, display_unit: str | None = None) ->
     Parameters
     ----------
     value : float
-        Value in ``unit``.
+        Value in ``unit``; any, NaN too.
     unit : str
         SI unit.
     display_unit : str, optional

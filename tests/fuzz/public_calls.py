@@ -64,8 +64,12 @@ variants.load_study variants.open_study variants.run_study variants.study_state
 SLOW = set(_SLOW.split())
 
 #: Pages whose examples need no run, and no compiled solver: those of the draws in a hurry.
-_PAGES = "contact friction gear losses lubricant mesh stiffness surrogate uncertainty units"
-_HEAVY = {"mesh.hypoid_friction", "mesh.build", "mesh.comprehensive_stiffness", "surrogate.train"}
+_PAGES = "contact ehl friction gear losses lubricant mesh stiffness surrogate uncertainty units"
+_HEAVY = """
+ehl.balanced_load_share ehl.solve_line_contact ehl.solve_line_contacts ehl.solve_line_contact_moes
+ehl.solve_transient_line_contact mesh.build mesh.comprehensive_stiffness mesh.hypoid_friction
+surrogate.train
+"""
 
 REGISTRIES: list[Any] = [ENGINES, STRUCTURES, FILM_MODELS, LAWS, MODELS, FIGURES]
 _LOSSES = "speed [rpm], torque [N*m], torque_loss [N*m]\n1400, 50, 2.5\n"
@@ -99,10 +103,8 @@ def parameters(thing: Any) -> list[inspect.Parameter]:
 
 def quick(name: str) -> bool:
     """Whether a public name has an example that needs no time."""
-    slow = name in SLOW or name in _HEAVY
-    return not slow and (
-        name.partition(".")[0] in _PAGES.split() or "films" in name or "central" in name
-    )
+    heavy = name in SLOW or name in _HEAVY.split()
+    return not heavy and name.partition(".")[0] in _PAGES.split()
 
 
 @functools.cache
