@@ -18,7 +18,7 @@ from tribodyn.types import Array, Index
 
 #: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
 #: stay in the first cache, which 64 lanes of a pair of gears overflow.
-_WIDTHS = (1, 16)
+WIDTH = 16
 #: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
 #: Fewer lanes than these march one by one.
 _OWN_ROWS = 4
@@ -42,7 +42,7 @@ class LaneBlock:
 def lane_blocks(lanes: int, width: int | None = None, *, own_rows: bool = False) -> list[LaneBlock]:
     """Divide lanes into blocks."""
     if width is None:
-        width = _WIDTHS[0] if lanes < _OWN_ROWS else _OWN_ROWS if own_rows else _WIDTHS[1]
+        width = 1 if lanes < _OWN_ROWS else _OWN_ROWS if own_rows else WIDTH
     return [
         LaneBlock(np.minimum(np.arange(first, first + width), lanes - 1), min(width, lanes - first))
         for first in range(0, lanes, width)
