@@ -203,7 +203,7 @@ class FilmModel(Model):
         equivalent_radius: ArrayLike,
         entrainment_speed: ArrayLike,
         lubricant: Lubricant,
-        effective_modulus: ArrayLike,
+        effective_modulus: float,
         *,
         length: float = 1.0,
         progress: Progress = SILENT,
@@ -216,7 +216,7 @@ class FilmModel(Model):
         load_per_width, equivalent_radius, entrainment_speed : float or array [N/m], [m], [m/s]
             Normal load per face width, reduced radius of curvature, HALF the sum of the surface
             speeds.
-        lubricant, effective_modulus : Lubricant, float or array [Pa]
+        lubricant, effective_modulus : Lubricant, float [Pa]
             Oil at working temperature; ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
         length : float [m]
             Length of the contact line, for the film stiffness.
