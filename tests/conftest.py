@@ -10,11 +10,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import pytest
 
 
-def pytest_configure() -> None:
-    """Share one folder among all workers."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Share one folder among all workers, and draw the same on every machine, slow or not."""
+    hypothesis.settings.register_profile("same", derandomize=True, deadline=None)
+    if not config.getoption("--hypothesis-profile"):
+        hypothesis.settings.load_profile("same")
     folder = Path(tempfile.gettempdir()) / "tribodyn-tests"
     os.environ.setdefault("TRIBODYN_CACHE_DIR", str(folder))
     # A job in the background of a shell may begin with Ctrl-C ignored, and so would all it starts.
@@ -24,10 +28,15 @@ def pytest_configure() -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Keep the tests of a file together: they share what they compute and compile."""
-    from xdist.scheduler import LoadFileScheduling
+    """Keep the tests of a file together, and all pages: they share what they compile."""
+    from xdist.scheduler import LoadScopeScheduling
 
-    return LoadFileScheduling(config, log) if config.getvalue("dist") == "load" else None
+    class Together(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.split("::", 1)[0]
+            return "tests/docs" if file.startswith("tests/docs/") else file
+
+    return Together(config, log) if config.getvalue("dist") == "load" else None
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from tribodyn.dynamics import Response, System
     from tribodyn.mesh import MeshFriction, MeshTable
-    from tribodyn.study.coupling import Coupling
+    from tribodyn.study.pipeline.computed import Coupling
 
 _REMEDY = "Give the directory that tribodyn run or Result.save wrote"
 #: Series without which a motion cannot be built again.
@@ -147,7 +147,7 @@ def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
 
 def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:
     """How a coupled result came to agree; earlier versions kept nothing of it."""
-    from tribodyn.study.coupling import Coupling
+    from tribodyn.study.pipeline.computed import Coupling
 
     if "coupling_loading" not in data:
         return None

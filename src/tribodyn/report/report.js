@@ -14,7 +14,9 @@ const legends = (layout) => Object.keys(layout).filter((key) => /^legend\d*$/.te
 const below = (figure, place) => {
   const { layout, data } = figure;
   const beside = legends(layout).every((key) => (layout[key].x ?? 1.02) > 1);
-  const several = data.filter((trace) => trace.showlegend ?? data.length > 1);
+  const several = data.filter(
+    (trace) => trace.showlegend ?? (data.length > 1 && trace.type !== "surface"),
+  );
   if (!beside || !several.length) return;
   const seen = new Set();
   for (const trace of several) {
@@ -36,10 +38,20 @@ const below = (figure, place) => {
   layout.height += room;
   place.style.height = layout.height + "px";
 };
+// Bodies in space are seen from further away where their width would not fit.
+const stepBack = ({ scene, margin }) => {
+  const eye = scene?.camera?.eye;
+  if (!eye) return;
+  for (const axis of "xyz") eye[axis] *= 1.6;
+  margin.l = margin.r;
+};
 for (const [name, figure] of Object.entries(figures)) {
   const place = document.getElementById("figure-" + name);
   figure.layout.modebar = { orientation: narrow ? "v" : "h" };
-  if (narrow) below(figure, place);
+  if (narrow) {
+    below(figure, place);
+    stepBack(figure.layout);
+  }
   Plotly.newPlot(place, figure.data, figure.layout, options);
 }
 const fit = () => {

@@ -14,7 +14,7 @@ from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     from tribodyn.cases.papers.comparison import PaperComparison
-    from tribodyn.study.studies.friction_experiment import FrictionExperiment
+    from tribodyn.study.studies.friction_claims import FrictionExperiment
 
 _EXPERIMENTS = ("friction",)
 

@@ -152,7 +152,7 @@ def hypoid_pair(flanks: HypoidFlanks) -> Any:
         f"offset {blank.offset * 1e3:g} mm, pinion {blank.hand_pinion}-handed"
     )
     # The teeth of the wheel face against its axis: they are seen from below.
-    scene = _scene((-1.4, 1.1, -1.25), x="x [mm]", y="y [mm]", z="z [mm]")
+    scene = _scene((-1.75, 1.4, -1.55), x="x [mm]", y="y [mm]", z="z [mm]")
     scene["camera"] |= {"up": {"x": 0.0, "y": 0.0, "z": -1.0}}
     layout = {"scene": {**scene, "aspectmode": "data"}, "height": 680, "hovermode": "closest"}
     return figure(title, traces, layout)
@@ -207,7 +207,7 @@ def ease_off(flanks: HypoidFlanks) -> Any:
     most = float(np.max(gap[inside], initial=0.0))
     title = f"The pinion lacks up to {most:.3g} µm on the {flanks.side} flank"
     scene = _scene(
-        (-1.3, -1.5, 0.9),
+        (-1.65, -1.9, 1.15),
         x="Along [mm]",
         y="Across [mm]",
         z="Gap [µm]",

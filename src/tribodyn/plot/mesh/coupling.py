@@ -11,7 +11,7 @@ from tribodyn.plot.look.panels import Panel, Row, stack_rows
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
 
 if TYPE_CHECKING:
-    from tribodyn.study.coupling import Coupling
+    from tribodyn.study.pipeline.computed import Coupling
 
 _WORDS = {
     "load_change": "load",

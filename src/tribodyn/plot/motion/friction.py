@@ -13,7 +13,7 @@ from tribodyn.study.pipeline.words import in_a_sentence
 from tribodyn.study.studies.friction_claims import DRIVING, HELD
 
 if TYPE_CHECKING:
-    from tribodyn.study.studies.friction_experiment import FrictionExperiment
+    from tribodyn.study.studies.friction_claims import FrictionExperiment
 
 _MADE = "Call tribodyn.friction_experiment(case) and its plot method."
 _SYMBOLS, _DASHES = ("circle", "square", "diamond"), ("solid", "dash", "dot")

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
-from tribodyn.study.case.gears import is_idle
+from tribodyn.study.case.gears import HYPOID_KEYS, heat_of_bodies, is_idle
 from tribodyn.study.case.given import Given
-from tribodyn.study.case.heat import heat_balance, heat_of_bodies
-from tribodyn.study.case.hypoid import HYPOID_KEYS
 from tribodyn.study.case.section import Choice, Known, choices, section_at
+from tribodyn.study.case.sections import heat_balance
 
 if TYPE_CHECKING:
     from tribodyn.ehl import FilmModel

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tribodyn.losses import Gearbox
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.data import CaseData
 
 
 def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:
@@ -146,7 +146,7 @@ def material(data: MaterialData) -> Material:
     return Material(data.youngs_modulus, data.poissons_ratio, data.density)
 
 
-def thermal_contact_coefficients(case: Case) -> tuple[float, float]:
+def thermal_contact_coefficients(case: CaseData) -> tuple[float, float]:
     """How much heat each flank takes up, ``sqrt(k rho c)``."""
     from tribodyn.friction import STEEL_BODIES
 
@@ -190,7 +190,7 @@ def gearbox(data: Losses) -> Gearbox:
     return Gearbox(**shafts, oil_volume=data.oil_volume, windage=data.windage)
 
 
-def _gearbox_losses(case: Case) -> object:
+def _gearbox_losses(case: CaseData) -> object:
     """Losses of the case without those of its teeth, to see whether they can be computed."""
     from tribodyn.losses import gearbox_losses
 
@@ -204,7 +204,7 @@ def _gearbox_losses(case: Case) -> object:
     )
 
 
-def mesh_law_of(case: Case) -> MeshForce:
+def mesh_law_of(case: CaseData) -> MeshForce:
     """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law."""
     from tribodyn.stiffness import MODELS
 
@@ -261,7 +261,7 @@ def _key(problem: Problem, section: str) -> str:
     return f"{section}.{place.gear}.{place.name}" if place.gear else f"{section}.{place.name}"
 
 
-def _key_in(case: Case, problem: Problem) -> str:
+def _key_in(case: CaseData, problem: Problem) -> str:
     """Key of the case that a problem of its computation is about; empty if it cannot be told."""
     place = problem.where
     if isinstance(place, ModelOption):
@@ -286,7 +286,7 @@ def _key_in(case: Case, problem: Problem) -> str:
 
 
 @contextmanager
-def placed(case: Case) -> Iterator[None]:
+def placed(case: CaseData) -> Iterator[None]:
     """Name file, line and key in the input errors that are raised inside the block."""
     try:
         yield
@@ -337,7 +337,7 @@ def no_gear_pair(kind: str) -> Problem:
     )
 
 
-def backlash(case: Case) -> float:
+def backlash(case: CaseData) -> float:
     """Play on the line of action that follows from the teeth [m]."""
     flanks = case.hypoid_flanks
     if flanks is not None:
@@ -347,7 +347,7 @@ def backlash(case: Case) -> float:
     return 0.0 if case.gears.kind == "table" else case.gear_pair.backlash
 
 
-def _table_problems(case: Case) -> list[tuple[str, Problem]]:
+def _table_problems(case: CaseData) -> list[tuple[str, Problem]]:
     """Find what is wrong with a mesh table, or with what the case asks of it."""
     found = _faults("gears.table", lambda: case.mesh_table)
     table = None if found else case.mesh_table
@@ -365,7 +365,7 @@ def _table_problems(case: Case) -> list[tuple[str, Problem]]:
     return found
 
 
-def _trial(case: Case, table: TableFile, coefficient: float | None) -> object:
+def _trial(case: CaseData, table: TableFile, coefficient: float | None) -> object:
     return table.table(
         teeth=case.gears.pinion.teeth,
         driver=case.gears.driver,
@@ -375,7 +375,7 @@ def _trial(case: Case, table: TableFile, coefficient: float | None) -> object:
     )
 
 
-def friction_of_table(case: Case) -> float | None:
+def friction_of_table(case: CaseData) -> float | None:
     """Coefficient that replaces those of a mesh table; None where they stay."""
     return case.friction.coefficient if case.friction.law == "constant" else None
 
@@ -391,7 +391,7 @@ def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
     return _faults("gears", lambda: gear_pair(gears))
 
 
-def case_problems(case: Case) -> list[tuple[str, Problem]]:
+def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
     """Find what makes a well-written case physically impossible."""
     if case.gears.kind == "table":
         return _table_problems(case)
@@ -404,7 +404,7 @@ def case_problems(case: Case) -> list[tuple[str, Problem]]:
     return found + _bores(case)
 
 
-def chosen_options(case: Case, section: str) -> dict[str, Any]:
+def chosen_options(case: CaseData, section: str) -> dict[str, Any]:
     """Options in force of the model that a table names, called as the model calls them."""
     model, values = getattr(case, section).chosen, case._effective
     found = {
@@ -415,7 +415,7 @@ def chosen_options(case: Case, section: str) -> dict[str, Any]:
     return {name: value for name, value in found.items() if value is not None}
 
 
-def _bores(case: Case) -> list[tuple[str, Problem]]:
+def _bores(case: CaseData) -> list[tuple[str, Problem]]:
     """A gear body without a bore has nothing that holds it."""
     model = case.stiffness.model
     if case.stiffness.reference != "bore":

@@ -1,13 +1,18 @@
-"""The table ``[gears]`` of the case file: the pair, both gears, and what their flanks have."""
+"""The table ``[gears]``: pairs of each kind, both gears, and what their flanks have."""
 
 from __future__ import annotations
 
+import inspect
 import math
+from collections.abc import Iterator
 from typing import Any
 
-from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
-from tribodyn.study.case.hypoid import ALSO_OF_HYPOID, HYPOID_KEYS
-from tribodyn.study.case.section import Section
+from tribodyn.errors import Problem
+from tribodyn.gear.hypoid.blank import HANDS, RANGES, hypoid_blank
+from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
+from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, numbers
+from tribodyn.study.case.given import Given
+from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 
 _GUARD = "guards against a wrong unit"
@@ -145,6 +150,136 @@ class Gear(Section):
         return self.roughness_rms
 
 
+_AMOUNT = 1e-3
+
+
+def _amount(meaning: str, low: float = 0.0) -> Any:
+    return number(
+        0.0, low, _AMOUNT, _GUARD, unit="m", display_unit="um", example='"10 um"', meaning=meaning
+    )
+
+
+def _shift(meaning: str, most: float = 2e-3, unit: str = "m", shown: str = "mm") -> Any:
+    return number(0.0, -most, most, "the gap is taken to first order", unit=unit,
+                  display_unit=shown, example=f'"0.1 {shown}"', meaning=meaning)  # fmt: skip
+
+
+class EaseOffData(Section):
+    """The ``[gears.ease_off]`` table: what the pinion's flank has less than the conjugate one."""
+
+    lengthwise_crowning: float = _amount("gap at toe and heel, as a parabola")
+    profile_crowning: float = _amount("gap at tip and root, as a parabola")
+    bias: float = _amount("gap added at heel and tip and at toe and root", -_AMOUNT)
+    tip_relief: float = _amount("gap at the tip of the wheel")
+    root_relief: float = _amount("gap at the lowest working depth of the wheel")
+    relief_length: float | None = number(
+        None,
+        1e-6,
+        0.1,
+        _GUARD,
+        unit="m",
+        display_unit="mm",
+        example='"3 mm"',
+        meaning="length of both reliefs",
+        basis="three tenths of the working depth",
+    )
+    center: tuple[float, ...] | None = numbers(
+        -1.0,
+        1.0,
+        _GUARD,
+        unit="m",
+        display_unit="mm",
+        example='"0 mm", "-2.2 mm"',
+        meaning="place of the centre along and across the wheel's pitch cone",
+        basis="the calculation point lengthwise, the middle of the working depth",
+    )
+
+
+class MountingData(Section):
+    """The ``[gears.mounting]`` table: where the gears are not where they should be."""
+
+    offset: float = _shift("by how much the offset is too large")
+    pinion_axial: float = _shift("way of the pinion along its axis, away from the crossing point")
+    wheel_axial: float = _shift("way of the wheel along its axis, away from the crossing point")
+    shaft_angle: float = _shift("by how much the shaft angle is too large", 0.02, "rad", "deg")
+
+
+#: Numbers of a blank as the case file has them.
+MEANINGS = {
+    "offset": "distance of the axes; negative makes the pinion smaller",
+    "outer_pitch_diameter_wheel": "outer pitch diameter of the wheel",
+    "face_width_wheel": "face width of the wheel along its pitch cone",
+    "mean_spiral_angle_pinion": "spiral angle of the pinion in the calculation point",
+    "cutter_radius": "mean radius of the face-mill cutter",
+    "pressure_angle_drive": "design pressure angle of the drive side",
+    "pressure_angle_coast": "design pressure angle of the coast side",
+    "limit_pressure_angle_factor": "part of the limit pressure angle that corrects both sides",
+    "addendum_factor_wheel": "mean addendum of the wheel over the working depth",
+    "depth_factor": "working depth over the mean normal module",
+    "clearance_factor": "clearance over the working depth",
+    "thickness_factor": "by how much the pinion's tooth is thicker than half the pitch, in modules",
+    "outer_backlash": "transverse backlash at the outer pitch diameter of the wheel",
+    "addendum_angle_wheel": "angle between tip and pitch cone of the wheel",
+    "dedendum_angle_wheel": "angle between pitch and root cone of the wheel",
+}
+_SHOWN = {"m": ("mm", '"30 mm"'), "rad": ("deg", '"45 deg"'), "": ("", "1.0")}
+_TAPER = "the standard taper"
+
+
+def _of_blank(name: str) -> Option:
+    default = inspect.signature(hypoid_blank).parameters[name].default
+    (low, high, unit), given = RANGES[name], default is not inspect.Parameter.empty
+    shown, example = _SHOWN[unit]
+    option: Option = number(
+        default if given else REQUIRED,
+        low,
+        high,
+        "designs in use lie well within",
+        unit=unit,
+        display_unit=shown,
+        example=example,
+        meaning=MEANINGS[name],
+        basis=_TAPER if default is None else "",
+    )
+    return option
+
+
+#: Keys of ``[gears]`` that only hypoid pairs have.
+HYPOID_KEYS: dict[str, Option | Table] = {
+    **{name: _of_blank(name) for name in MEANINGS},
+    "side": choice(
+        "drive",
+        {
+            "drive": "the concave flank of the pinion pushes",
+            "coast": "its convex flank pushes, and both gears turn the other way",
+        },
+        meaning="side of the teeth that carries",
+    ),
+    "hand_pinion": choice("left", HANDS, meaning="hand of the pinion; the wheel has the other one"),
+    "line_stiffness": number(
+        14e9,
+        1e8,
+        1e12,
+        _GUARD,
+        unit="N/m^2",
+        display_unit="N/(mm*um)",
+        example='"14 N/(mm*um)"',
+        meaning="stiffness of the teeth of a pair over the length of their contact line",
+    ),
+    "entrainment": choice(
+        "contact",
+        ENTRAINMENTS,
+        meaning="entrainment relative to the moving contact line, or in the fixed frame",
+    ),
+    "ease_off": inner_table(
+        EaseOffData, "what the pinion has less than the conjugate flank", "empty"
+    ),
+    "mounting": inner_table(MountingData, "displacements of the gears from their places", "empty"),
+}
+#: Keys that both kinds of gears with flanks have.
+_ALSO_OF_HYPOID = ("composite_roughness", "roughness_rms", "roughness_ra")
+
+
 class Gears(Section):
     """The ``[gears]`` table."""
 
@@ -197,7 +332,7 @@ _both = {name: Gears.fields.pop(name) for name in ("pinion", "wheel")}
 Gears.fields |= {**HYPOID_KEYS, **_both}
 #: Keys of ``[gears]`` that every kind of pair has, and those that other kinds than spur gears have.
 _OF_ALL = ("kind", "driver", "teeth", "mass", "moment_of_inertia")
-_OF = {"table": (*_OF_ALL, "table"), "hypoid": (*_OF_ALL, *ALSO_OF_HYPOID)}
+_OF = {"table": (*_OF_ALL, "table"), "hypoid": (*_OF_ALL, *_ALSO_OF_HYPOID)}
 #: Tables of a case that say nothing about such a pair.
 _IDLE = {"table": ("stiffness", "material", "film"), "hypoid": ("stiffness", "film")}
 _REQUIRED = {
@@ -223,3 +358,17 @@ def is_needed(key: str, kind: str | None) -> bool:
     return all(
         key not in keys or kind_of == (kind or "spur") for kind_of, keys in _REQUIRED.items()
     )
+
+
+def heat_of_bodies(given: Given) -> Iterator[tuple[str, Problem]]:
+    """Conductivity and specific heat of a gear tell only together how its flank warms."""
+    for gear in ("pinion", "wheel"):
+        keys = [f"gears.{gear}.{name}" for name in ("thermal_conductivity", "specific_heat")]
+        present = [key for key in keys if key in given]
+        if len(present) == 1:
+            absent = next(key for key in keys if key not in given)
+            name = absent.rpartition(".")[2]
+            why = f"{given.show(present[0])} of the {gear} needs its counterpart"
+            example = {"specific_heat": "460 J/kg/K", "thermal_conductivity": "47 W/m/K"}[name]
+            remedy = f'Add {name} = "{example}", that of steel, or remove both'
+            yield absent, Problem(f"{name} of the {gear} is missing", "", why, remedy)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.nomenclature import QUANTITIES
@@ -213,3 +213,12 @@ def _middle(key: str, text: str) -> str:
         raise InputError(str(error)) from None
     drawn = distribution(key, text, unit)
     return first if spread else f"{float(drawn.ppf(0.5))!r} {unit}".strip()
+
+
+class Stated(NamedTuple):
+    """Values in SI by dotted key, as they were when something was said about them."""
+
+    #: Values that the reasons in ``[assumed]`` belong to.
+    marks: dict[str, Any]
+    #: Values that the case began with, and the origin that stands for them.
+    base: dict[str, Any]

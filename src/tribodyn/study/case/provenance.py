@@ -9,20 +9,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Problem
 from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
-from tribodyn.study.case.given import Given
+from tribodyn.study.case.given import Given, Stated
 from tribodyn.study.case.hypoid import solid
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.values import FaultError, Plain, read_value, written
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.data import CaseData
 
 
 #: Equal to this, two ways of writing one value are the same.
@@ -32,15 +32,6 @@ _PARTS = {"value", "reason"}
 _TOLD = 50
 
 Found = list[tuple[str, Problem]]
-
-
-class Stated(NamedTuple):
-    """Values in SI by dotted key, as they were when something was said about them."""
-
-    #: Values that the reasons in ``[assumed]`` belong to.
-    marks: dict[str, Any]
-    #: Values that the case began with, and the origin that stands for them.
-    base: dict[str, Any]
 
 
 def differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> set[str]:
@@ -148,7 +139,7 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def settled(
-    case: Case, values: Mapping[str, Any], given: Given, stated: Stated
+    case: CaseData, values: Mapping[str, Any], given: Given, stated: Stated
 ) -> tuple[Stated, set[str]]:
     """What holds of values in force [SI], and the keys whose reason was that of another value."""
     # A reason without a recorded value belongs to the value that it came with.
@@ -286,7 +277,7 @@ class Assumption:
         return f"{self.key} = {self.value} ({self.kind}): {self.reason}"
 
 
-def spec_of(case: Case, key: str) -> Option | None:
+def spec_of(case: CaseData, key: str) -> Option | None:
     """Return the Option of a dotted key, or None if there is no such key or it is a table."""
     *path, name = key.split(".")
     section = section_at(tuple(path))
@@ -296,13 +287,13 @@ def spec_of(case: Case, key: str) -> Option | None:
     return (model.declared.get(name) if model else None) or section.spec(name)
 
 
-def _model_of(case: Case, path: list[str]) -> Model | None:
+def _model_of(case: CaseData, path: list[str]) -> Model | None:
     """The model that a table of the case names."""
     section = vars(case).get(path[0]) if len(path) == 1 else None
     return section.chosen if isinstance(section, Section) else None
 
 
-def _bored(case: Case, default: Any) -> Any:
+def _bored(case: CaseData, default: Any) -> Any:
     """Body against which deflection is measured; one without a bore has no shaft seat."""
     if case.gears.kind != "spur":
         return default
@@ -310,7 +301,7 @@ def _bored(case: Case, default: Any) -> Any:
     return "rim" if default == "bore" and not all(bores) else default
 
 
-def effective_values(case: Case) -> dict[str, Any]:
+def effective_values(case: CaseData) -> dict[str, Any]:
     """All values in force by dotted key, defaults of options and solver filled in."""
     values = in_force(case)
     kind = case.gears.kind
@@ -328,12 +319,12 @@ def effective_values(case: Case) -> dict[str, Any]:
     return values
 
 
-def effective(case: Case) -> dict[str, Any]:
+def effective(case: CaseData) -> dict[str, Any]:
     """Return all values in force by dotted key."""
     return dict(case._effective)
 
 
-def default_of(case: Case, key: str) -> Any:
+def default_of(case: CaseData, key: str) -> Any:
     """Value of a key where a case like this one does not give it; None if it is derived."""
     *path, name = key.split(".")
     section = section_at(tuple(path))
@@ -349,13 +340,14 @@ def default_of(case: Case, key: str) -> Any:
     return _bored(case, standard) if key == "stiffness.reference" else standard
 
 
-def changed_keys(case: Case) -> tuple[str, ...]:
+def changed_keys(case: CaseData) -> tuple[str, ...]:
     """Keys whose values differ from those that the case began with."""
+    if case._changed is None:
+        case._changed = _keys_that_changed(case)
     return case._changed
 
 
-def keys_that_changed(case: Case) -> tuple[str, ...]:
-    """The same, found anew."""
+def _keys_that_changed(case: CaseData) -> tuple[str, ...]:
     values, base, given = effective(case), case.stated.base, case.given
     if any(values.get(key) is None for key in base):
         derived = derived_values(case)
@@ -369,7 +361,7 @@ def keys_that_changed(case: Case) -> tuple[str, ...]:
     return tuple(key for key in dict.fromkeys((*values, *base)) if key in changed)
 
 
-def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:
+def _marked(case: CaseData, key: str, value: Any, changed: tuple[str, ...]) -> str:
     """Origin of a value with a mark in ``[assumed]``."""
     reason = case.assumed[key]
     if reason != DEFAULT_MARK:
@@ -384,12 +376,12 @@ def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:
     return f"assumed: marked as default in the file, while this version has {now} for this case"
 
 
-def _derived_from(case: Case, key: str) -> str:
+def _derived_from(case: CaseData, key: str) -> str:
     spec = spec_of(case, key)
     return spec.basis if spec else ""
 
 
-def _unused(case: Case, key: str) -> bool:
+def _unused(case: CaseData, key: str) -> bool:
     """Whether a key does nothing in this case: of another kind of gears, or of another model."""
     *path, name = key.split(".")
     model, section = _model_of(case, path), section_at(tuple(path))
@@ -397,7 +389,7 @@ def _unused(case: Case, key: str) -> bool:
     return is_idle(key, case.gears.kind) or not chosen
 
 
-def provenance(case: Case) -> dict[str, str]:
+def provenance(case: CaseData) -> dict[str, str]:
     """Tell the origin of every value in force."""
     origins, changed, given = {}, changed_keys(case), case.given
     for key, value in effective(case).items():
@@ -410,7 +402,7 @@ def provenance(case: Case) -> dict[str, str]:
     return origins
 
 
-def assumptions(case: Case) -> tuple[Assumption, ...]:
+def assumptions(case: CaseData) -> tuple[Assumption, ...]:
     """List everything that the user did not state: assumed values and defaults."""
     values, derived, rows = effective(case), derived_values(case), []
     for key, origin in provenance(case).items():
@@ -426,7 +418,7 @@ def assumptions(case: Case) -> tuple[Assumption, ...]:
     return (*rows, *_heights(case), *_oil_assumptions(case))
 
 
-def _heights(case: Case) -> Iterator[Assumption]:
+def _heights(case: CaseData) -> Iterator[Assumption]:
     """Rms roughness of flanks that the case gives as Ra."""
     for name, gear in (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)):
         key = f"gears.{name}.roughness_rms"
@@ -436,7 +428,7 @@ def _heights(case: Case) -> Iterator[Assumption]:
             yield Assumption(key, spec.show(gear.rms), "assumed", reason)
 
 
-def _oil_assumptions(case: Case) -> list[Assumption]:
+def _oil_assumptions(case: CaseData) -> list[Assumption]:
     """What the library assumes about the oil of a case."""
     oil = case.lubricant_properties
     if oil is None:
@@ -444,7 +436,7 @@ def _oil_assumptions(case: Case) -> list[Assumption]:
     return [Assumption("lubricant", oil.name, "assumed", reason) for reason in oil.assumptions]
 
 
-def derived_values(case: Case) -> dict[str, float]:
+def derived_values(case: CaseData) -> dict[str, float]:
     """All values that are derived because the case does not give them."""
     if case.gears.kind != "spur":
         values = _of_solid_cones(case) | {"dynamics.backlash": case.backlash}
@@ -465,7 +457,7 @@ def derived_values(case: Case) -> dict[str, float]:
     return _not_given(case, values)
 
 
-def _of_solid_cones(case: Case) -> dict[str, float]:
+def _of_solid_cones(case: CaseData) -> dict[str, float]:
     """Masses and inertias of a hypoid pair."""
     if case.hypoid_flanks is None:
         return {}
@@ -476,6 +468,6 @@ def _of_solid_cones(case: Case) -> dict[str, float]:
     }
 
 
-def _not_given(case: Case, values: dict[str, float]) -> dict[str, float]:
+def _not_given(case: CaseData, values: dict[str, float]) -> dict[str, float]:
     given = dict(case.values())
     return {key: value for key, value in values.items() if given.get(key, value) is None}

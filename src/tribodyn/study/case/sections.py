@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, choice, flag, integer, model_choice, number
+from tribodyn.study.case.given import Given
 from tribodyn.study.case.section import Section, table
 
 if TYPE_CHECKING:
@@ -332,3 +335,25 @@ class Losses(Section):
     windage: bool = flag(True, meaning="count the gears in air and oil mist")
     pinion: ShaftData = table(ShaftData, "shaft of the pinion", "empty")
     wheel: ShaftData = table(ShaftData, "shaft of the wheel", "empty")
+
+
+def heat_balance(given: Given) -> Iterator[tuple[str, Problem]]:
+    """A heat balance needs an oil that is known at every temperature, and gears that rub."""
+    key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
+    if key not in given:
+        if other in given:
+            why, remedy = "Without heat_transfer the oil keeps its temperature", "Remove it"
+            yield other, Problem(given.show(other), "", why, f"{remedy}, or add heat_transfer")
+        return
+    from tribodyn.lubricant import library, temperature_range
+
+    name, known = given.get("lubricant.name"), library()
+    grades = [each for each in known if len(set(temperature_range(each))) == 2]
+    if name not in grades:
+        what = f"{given.show(key)} with an oil that is known at one temperature"
+        why = "The balance asks for its viscosity at others"
+        remedy = f'Name another oil, for example name = "{grades[0]}", or remove heat_transfer'
+        yield key, Problem(what, "", why, remedy)
+    if given.get("gears.kind", "spur") != "spur":
+        why = "The losses at other temperatures are known of spur gears"
+        yield key, Problem(given.show(key), "", why, "Remove it")

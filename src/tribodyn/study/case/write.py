@@ -20,7 +20,7 @@ from tribodyn.study.case.provenance import (
 from tribodyn.study.case.section import Section, Table, section_at
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.data import CaseData
 
 
 def _quantity(spec: Option, value: float) -> str:
@@ -71,7 +71,7 @@ def _unset_example(spec: Option) -> str:
     return f'"{spec.names()[0]}"' if spec.names is not None else spec.example or '"..."'
 
 
-def _owners(case: Case, key: str) -> str:
+def _owners(case: CaseData, key: str) -> str:
     """The models that have an option which the model of the case has not."""
     table, _, name = key.rpartition(".")
     section = section_at((table,)) if "." not in table else None
@@ -84,7 +84,7 @@ def _owners(case: Case, key: str) -> str:
     return "not given" if here else f"belongs to {section.selector} = {names}"
 
 
-def case_toml(case: Case) -> str:
+def case_toml(case: CaseData) -> str:
     """Write the complete commented case file."""
     values, origins, derived = effective(case), provenance(case), derived_values(case)
     changed = changed_keys(case)
@@ -124,7 +124,7 @@ def case_toml(case: Case) -> str:
     return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case)]) + "\n"
 
 
-def _assumed_lines(case: Case, marks: dict[str, str]) -> list[str]:
+def _assumed_lines(case: CaseData, marks: dict[str, str]) -> list[str]:
     """Reasons, each with the value that it belongs to."""
     if not marks:
         return []
@@ -142,7 +142,7 @@ def _assumed_lines(case: Case, marks: dict[str, str]) -> list[str]:
     ]
 
 
-def _base_lines(case: Case) -> list[str]:
+def _base_lines(case: CaseData) -> list[str]:
     """What the case began with; without a document and a change nothing is told of it."""
     base = case.stated.base
     if base.get("origin") is None and not changed_keys(case):
@@ -164,19 +164,19 @@ def _quoted(key: str) -> str:
     return f'"{key}"' if "." in key else key
 
 
-def _recorded(case: Case, key: str, value: Any) -> str:
+def _recorded(case: CaseData, key: str, value: Any) -> str:
     spec = spec_of(case, key)
     return json.dumps(value) if spec is None else _toml_value(spec, value)
 
 
-def _table_meaning(case: Case, place: str) -> str:
+def _table_meaning(case: CaseData, place: str) -> str:
     *path, name = place.split(".")
     parent = section_at(tuple(path))
     table = parent.fields.get(name) if parent else None
     return table.meaning if isinstance(table, Table) else ""
 
 
-def case_rows(case: Case) -> list[tuple[str, str, str]]:
+def case_rows(case: CaseData) -> list[tuple[str, str, str]]:
     """Key, value with its unit and origin of every value in force."""
     origins, derived = provenance(case), derived_values(case)
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
@@ -187,7 +187,7 @@ def case_rows(case: Case) -> list[tuple[str, str, str]]:
     ]
 
 
-def case_table(case: Case) -> str:
+def case_table(case: CaseData) -> str:
     """Write the case as a table with units, one row for each value in force."""
     rows = case_rows(case)
     widths = [max(len(row[column]) for row in rows) for column in range(2)]

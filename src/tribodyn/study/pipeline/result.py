@@ -8,35 +8,26 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-import numpy as np
-
 from tribodyn.drawing import FIGURES, draw, figures_of, write_report_of
 from tribodyn.errors import collected
-from tribodyn.record import Parts, Record, html_table, record
+from tribodyn.record import Parts, html_table, record
 from tribodyn.stored import write_dataset
 from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
-from tribodyn.study.pipeline.assembly import static_error
+from tribodyn.study.pipeline.computed import Computed
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Campbell, NaturalModes, Response, System
-    from tribodyn.errors import ModelWarning
+    from tribodyn.dynamics import Campbell, NaturalModes
     from tribodyn.gear import ToothContact
-    from tribodyn.mesh import HypoidFriction, MeshFriction, MeshTable
-    from tribodyn.stiffness import LoadedContact
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.coupling import Coupling
-    from tribodyn.study.heat_balance import HeatBalance
-    from tribodyn.study.pipeline.assembly import Damping
+    from tribodyn.mesh import HypoidFriction
 
 
 _PLOT = "plot_"
 
 
 @record
-class Result(Record):
+class Result(Computed):
     """What :func:`tribodyn.run` returns.
 
     Every figure that draws a run is a method: ``result.plot_mesh_force()``.
@@ -65,17 +56,6 @@ class Result(Record):
         How gears and oil came to their temperature, where ``lubricant.heat_transfer`` is given.
     """
 
-    case: Case
-    mesh: MeshTable
-    system: System
-    response: Response
-    damping: Damping
-    warnings: tuple[ModelWarning, ...]
-    friction: MeshFriction | None = None
-    nominal_friction_response: Response | None = None
-    coupling: Coupling | None = None
-    heat: HeatBalance | None = None
-
     @cached_property
     def _summary(self) -> dict[str, float]:
         from tribodyn.study.pipeline.summary import summarize
@@ -96,32 +76,6 @@ class Result(Record):
     def assumptions(self) -> tuple[Assumption, ...]:
         """Values that were assumed or are defaults, each with its reason."""
         return assumptions(self.case)
-
-    @property
-    def half_backlash(self) -> float:
-        """Half of the play on the line of action [m]; zero is a linear mesh."""
-        return 0.5 * self.case.backlash
-
-    def static_error(self, phase: Array | float) -> Array:
-        """Transmission error without load: prescribed, or a column of the mesh table.
-
-        Parameters
-        ----------
-        phase : float or array
-            Mesh phase.
-
-        Returns
-        -------
-        array [m]
-        """
-        own, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
-        return static_error(self.case, phase) + (0.0 if own is None else own(phase))
-
-    def loaded_contact(self) -> LoadedContact:
-        """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ."""
-        from tribodyn.study.pipeline.tooth_contact import loaded_contact, phases_of_turns
-
-        return loaded_contact(self.case, phases=phases_of_turns(self.case))
 
     @cached_property
     def hypoid_contact(self) -> ToothContact | None:
@@ -157,7 +111,7 @@ class Result(Record):
         """Parts of the motion, ramps of a force law as one contact, and the summary."""
         from tribodyn.study.pipeline.series import parts_of
 
-        return parts_of(self)
+        return parts_of(self, self._summary)
 
     def to_csv(self) -> str:
         """Write the series of the motion as comma-separated values in SI.
@@ -169,7 +123,7 @@ class Result(Record):
         """
         from tribodyn.study.pipeline.series import stored, to_csv
 
-        return to_csv(stored(self))
+        return to_csv(stored(self.to_xarray(), self.response))
 
     def cite(self, style: str = "text") -> str:
         """Name the papers behind this result.
@@ -224,7 +178,7 @@ class Result(Record):
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
             (place / "summary.json").write_text(_json(self._summary), encoding="utf-8")
             self.mesh.save(place / "mesh.nc")
-            write_dataset(stored(self), place / "response.nc")
+            write_dataset(stored(self.to_xarray(), self.response), place / "response.nc")
             if csv:
                 (place / "response.csv").write_text(self.to_csv(), encoding="utf-8")
             write_report_of(self, place / "report.html")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tribodyn.errors import ModelWarning, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
-from tribodyn.study.coupling import Coupling, Follow, coupled
+from tribodyn.study.coupling import Follow, coupled
 from tribodyn.study.heat_balance import balanced
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import (
@@ -21,6 +21,7 @@ from tribodyn.study.pipeline.cautions import (
     motion_cautions,
     teeth_cautions,
 )
+from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of, steps_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray
 
     from tribodyn.dynamics import FineSamples, Response, System
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.computed import Computed
 
 
 #: Distance from an event that tells its two sides apart [mesh cycles].
@@ -70,13 +70,13 @@ def first_touch(system: System, samples: FineSamples) -> Array:
     return np.broadcast_to(np.asarray(values, dtype=float), samples.phase.shape)
 
 
-def transmission_error(result: Result, samples: FineSamples) -> Array:
+def transmission_error(result: Computed, samples: FineSamples) -> Array:
     """Dynamic transmission error, counted from first contact of the driving flank."""
     error = compression(samples) + result.static_error(samples.phase)
     return np.asarray(error - result.half_backlash)
 
 
-def tooth_force(result: Result, phase: Array, force: Array) -> Array | None:
+def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
     """Force of the teeth on the wheel with friction in the axes of the pinion; None in a plane."""
     functions = result.mesh.functions()
     if functions.direction is None or result.mesh.direction.shape[-1] != len(SPATIAL_COORDINATES):
@@ -127,7 +127,7 @@ def _sided(samples: Any) -> Array:
     return one_sided_phase(samples) if fine else np.asarray(samples.phase)
 
 
-def friction_forces(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
+def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Friction force of all pairs, and what of it films and asperities cause where that is told."""
     from tribodyn.mesh.functions import ASPERITIES
 
@@ -146,7 +146,7 @@ def friction_forces(result: Result, samples: Any) -> dict[str, tuple[Array, str,
     return found
 
 
-def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
+def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals that figures draw, on the samples: values, unit and meaning by name."""
     force, phase = mesh_force(samples), _sided(samples)
     static = result.mesh.at("static_transmission_error", phase) + result.static_error(phase)
@@ -177,7 +177,7 @@ def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     return found
 
 
-def parts_of(result: Result) -> Parts:
+def parts_of(result: Computed, summary: dict[str, float]) -> Parts:
     """Variables, coordinates and attributes of the data set of a result."""
     response = result.response
     turns = np.array(["theta" in name for name in response.names])
@@ -209,7 +209,7 @@ def parts_of(result: Result) -> Parts:
         variables |= _spectra(result)
         coordinates["order"] = ("order", variables.pop("order"), _told("1", "mesh harmonic"))
     variables |= _ends(result)
-    return Parts(variables, coordinates, _facts(result))
+    return Parts(variables, coordinates, _facts(result, summary))
 
 
 def _contacts(response: Response) -> tuple[Array, Array]:
@@ -220,7 +220,7 @@ def _contacts(response: Response) -> tuple[Array, Array]:
     return pressed[:, :1], force.sum(axis=1, keepdims=True)
 
 
-def _spectra(result: Result) -> dict[str, Any]:
+def _spectra(result: Computed) -> dict[str, Any]:
     """Amplitudes of the mesh harmonics of every signal."""
     from tribodyn.analysis import amplitude_spectrum
 
@@ -238,7 +238,7 @@ def _spectra(result: Result) -> dict[str, Any]:
     return found
 
 
-def _ends(result: Result) -> dict[str, Any]:
+def _ends(result: Computed) -> dict[str, Any]:
     """What a motion is built from again, beside its states at the steps."""
     response, friction = result.response, result.friction
     found: dict[str, Any] = {
@@ -273,7 +273,7 @@ def _ends(result: Result) -> dict[str, Any]:
     return found
 
 
-def _facts(result: Result) -> dict[str, Any]:
+def _facts(result: Computed, summary: dict[str, float]) -> dict[str, Any]:
     response = result.response
     facts: dict[str, Any] = {
         "mesh_frequency": response.mesh_frequency,
@@ -296,8 +296,8 @@ def _facts(result: Result) -> dict[str, Any]:
             f"coupling_{name}": getattr(result.coupling, name) for name in ("kind", "tolerance")
         }
     facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
-    facts["figures"] = len(result.summary())
-    return {**facts, **result.summary()}
+    facts["figures"] = len(summary)
+    return {**facts, **summary}
 
 
 def _kept(response: Response) -> int:
@@ -307,10 +307,9 @@ def _kept(response: Response) -> int:
     return int(min(response.periods, max(1, LARGEST // cycle)))
 
 
-def stored(result: Result) -> xarray.Dataset:
+def stored(data: xarray.Dataset, response: Response) -> xarray.Dataset:
     """The data set of a result as it is saved: of a long run the last mesh cycles."""
-    data: xarray.Dataset = result.to_xarray()
-    periods, kept = int(result.response.periods), _kept(result.response)
+    periods, kept = int(response.periods), _kept(response)
     data.attrs |= {"periods": kept, "computed_mesh_cycles": periods}
     return data.isel(time=slice(data.sizes["time"] // periods * (periods - kept), None))
 

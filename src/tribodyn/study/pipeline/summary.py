@@ -33,11 +33,11 @@ from tribodyn.units import format_quantity
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.computed import Computed
 
 
 #: Computes a figure of a result in SI; None leaves it out.
-Measure = Callable[["Result"], float | None]
+Measure = Callable[[Any], float | None]
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ _GEARS = ("pinion", "wheel")
 _HARMONICS = 5
 
 
-def summarize(result: Result) -> dict[str, float]:
+def summarize(result: Computed) -> dict[str, float]:
     """Compute all figures of a result."""
     samples = measured(result.response)
     values: dict[str, Any] = {
@@ -180,7 +180,7 @@ def _pressure(mesh: MeshTable) -> dict[str, Any]:
     return {"maximum_hertz_pressure": greatest} if np.isfinite(greatest) else {}
 
 
-def _static_error_figures(result: Result) -> dict[str, Any]:
+def _static_error_figures(result: Computed) -> dict[str, Any]:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
     figures: tuple[Any, Any, Any]
@@ -228,7 +228,7 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
     return figures | {name: value for name, value in at_pitch_point.items() if value is not None}
 
 
-def _force_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+def _force_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     from tribodyn.analysis import extremes, mean, rms
 
     force, touch = mesh_force(samples), first_touch(result.system, samples)
@@ -244,7 +244,7 @@ def _force_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     }
 
 
-def _error_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+def _error_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     from tribodyn.analysis import alternating_rms, mean, mesh_harmonics, peak_to_peak
 
     error = transmission_error(result, samples)
@@ -258,7 +258,7 @@ def _error_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     }
 
 
-def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+def _friction_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     from tribodyn.analysis import mean, rms
 
     mesh, force, phase = result.mesh, mesh_force(samples), one_sided_phase(samples)
@@ -280,7 +280,7 @@ def _friction_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     }
 
 
-def _hypoid_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+def _hypoid_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     """Force of the teeth in space, and both transmission errors at rest on the line of action."""
     from tribodyn.analysis import mean
 
@@ -299,7 +299,7 @@ def _hypoid_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     }
 
 
-def _comparison(result: Result) -> dict[str, Any]:
+def _comparison(result: Computed) -> dict[str, Any]:
     """Figures of the same motion with the friction of the nominal load."""
     if result.friction is None or result.nominal_friction_response is None:
         return {}
@@ -321,7 +321,7 @@ def _comparison(result: Result) -> dict[str, Any]:
     return found | {"friction_fit_error": result.friction.fit_error}
 
 
-def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+def _support_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     """Forces on the supports and accelerations of the gear centres."""
     from tribodyn.analysis import alternating_rms, line_of_action_indicator, mean
 
@@ -349,7 +349,7 @@ def _support_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     return figures
 
 
-def _shaft_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+def _shaft_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     """Torque in both shafts, from springs and dampers together."""
     from tribodyn.analysis import alternating_rms, mean
 

@@ -1,18 +1,19 @@
-"""Five published claims about friction, each judged by the figures of one experiment."""
+"""What friction did to a gear pair, and five published claims judged by these figures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.errors import InputError
+from tribodyn.record import Parts, record
+from tribodyn.study.studies.sweep_result import Sweep
 from tribodyn.types import Array, Mask
-
-if TYPE_CHECKING:
-    from tribodyn.study.studies.friction_experiment import FrictionExperiment
 
 #: Change of a figure that counts as none, and part of a printed rise that counts as the rise.
 MARGINAL, ENOUGH = 0.02, 0.5
@@ -26,6 +27,17 @@ _RMS, _MEAN, _PEAK = "rms_mesh_force", "mean_mesh_force", "peak_mesh_force"
 _DTE = "dynamic_transmission_error"
 _SWING = f"peak_to_peak_{_DTE}"
 _MU = "mean_friction_coefficient"
+NONE, CONSTANT, MIXED = "none", "constant", "mixed-ehl"
+#: Figures of the table of effects, and what they are multiplied by.
+_EFFECTS = {
+    "mean_friction_coefficient": 1.0,
+    "mean_mesh_force": 1.0,
+    "rms_mesh_force": 1.0,
+    "peak_to_peak_dynamic_transmission_error": 1e6,
+    "dynamic_transmission_error_harmonic_1": 1e6,
+    "rms_bearing_force_loa_pinion": 1.0,
+    "rms_bearing_force_oloa_pinion": 1.0,
+}
 
 
 @dataclass(frozen=True)
@@ -51,6 +63,193 @@ class Claim:
     def where(self) -> str:
         """Assumptions under which it holds."""
         return _UNKNOWN if self.holds is None else _settings(self.holds)
+
+
+class Rubbing(NamedTuple):
+    """One way in which the teeth rub."""
+
+    law: str
+    roughness: float  #: composite roughness [m]
+    coefficient: float | None = None  #: of the law "constant"
+    as_mixed: bool = False  #: constant at the mean of the mixed friction of this roughness
+    varies: bool = True  #: whether the law knows the roughness
+
+    @property
+    def name(self) -> str:
+        """Name in tables."""
+        if self.coefficient is not None:
+            return f"{self.law} {self.coefficient:g}"
+        words = f"{self.law} as {MIXED}" if self.as_mixed else self.law
+        return f"{words} {self.roughness * 1e6:g} um" if self.varies else words
+
+
+@record
+class FrictionExperiment(Sweep):
+    """What :func:`tribodyn.friction_experiment` returns: a sweep whose last key is the friction.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was varied.
+    axes : tuple of Axis
+        Driving gear, torque that is held, and friction by name.
+    points : tuple of SweepPoint
+        What is done; all of the grid unless it was interrupted.
+    rubbing : tuple of Rubbing
+        Law, roughness and coefficient behind the names of the friction.
+    """
+
+    rubbing: tuple[Rubbing, ...] = ()
+    CLAIM_HEAD: ClassVar[tuple[str, ...]] = (
+        "Source of",
+        "Claim",
+        "Printed",
+        "Computed",
+        "Verdict",
+        "Holds where",
+        "Why",
+    )
+
+    EFFECT_HEAD: ClassVar[tuple[str, ...]] = (
+        "Friction",
+        "mu",
+        "mean force [N]",
+        "rms force [N]",
+        "error p-p [um]",
+        "harmonic 1 [um]",
+        "bearing along, rms [N]",
+        "across, rms [N]",
+    )
+
+    @cached_property
+    def claims(self) -> tuple[Claim, ...]:
+        """What five sources claim of friction, each judged by this experiment."""
+        return judged(self)
+
+    def claim_rows(self) -> Iterator[tuple[str, ...]]:
+        """Table of the claims under ``CLAIM_HEAD``.
+
+        Yields
+        ------
+        tuple of str
+        """
+        for each in self.claims:
+            yield (each.case, each.statement, each.printed, each.computed, each.verdict,
+                   each.where, each.why)  # fmt: skip
+
+    def nearest(self) -> list[int]:
+        """Places of each law with friction, at the roughness nearest to that of the case."""
+        wanted, chosen = self.case.composite_roughness or 0.0, dict[str, int]()
+        for k, one in enumerate(self.rubbing):
+            known = self.rubbing[chosen.get(one.law, k)]
+            nearer = abs(one.roughness - wanted) < abs(known.roughness - wanted)
+            if one.law not in chosen or nearer:
+                chosen[one.law] = k
+        return [k for law, k in chosen.items() if law != NONE]
+
+    def effect_rows(self) -> Iterator[tuple[str, ...]]:
+        """Table under ``EFFECT_HEAD``: figures by law, driver and held torque as in the case.
+
+        Yields
+        ------
+        tuple of str
+        """
+        row, column = (
+            axis.values.index(value)
+            for axis, value in zip(
+                self.axes,
+                (self.case.gears.driver, self.case.operation.torque_balance),
+                strict=False,
+            )
+        )
+        for k in (self.index(NONE), *self.nearest()):
+            values = [self[name][row, column, k] * scale for name, scale in _EFFECTS.items()]
+            if np.isfinite(values).all():
+                yield (self.rubbing[k].name, *(f"{round(value, 9):.4g}" for value in values))
+
+    @property
+    def lead(self) -> str:
+        """What was done, in a line."""
+        failed = sum(bool(point.failed) for point in self.points)
+        lost = f", {failed} failed" if failed else ""
+        return f"{len(self.points)} of {self.failed.size} steady states{lost}"
+
+    def plot(self, figure: str = "friction_effect", **options: Any) -> Any:
+        """Draw the experiment.
+
+        Parameters
+        ----------
+        figure : str
+            ``"friction_effect"``, ``"friction_claims"`` or ``"friction_harmonics"``.
+        **options
+            None are known.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, figure, **options)
+
+    def change(self, figure: str) -> Array:
+        """Relative change of a figure by friction, over the grid.
+
+        Parameters
+        ----------
+        figure : str
+            Name in the summary.
+
+        Returns
+        -------
+        array (2, 3, frictions)
+            Over the same pair without friction, less 1.
+        """
+        values = self[figure]
+        plain = values[:, :, self.index(NONE)]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(values / plain[:, :, None] - 1.0)
+
+    def index(self, law: str, **wanted: Any) -> int:
+        """Place of a friction: the first of a law with given properties.
+
+        Parameters
+        ----------
+        law : str
+            Friction law.
+        **wanted : object
+            Properties of :class:`Rubbing`.
+
+        Returns
+        -------
+        int
+
+        Raises
+        ------
+        InputError
+            If it was not computed.
+        """
+        for place, one in enumerate(self.rubbing):
+            if one.law == law and all(getattr(one, k) == v for k, v in wanted.items()):
+                return place
+        told = ", ".join(dict.fromkeys(one.law for one in self.rubbing))
+        raise InputError(f'friction "{law}" was not computed', "argument law", f"There is {told}")
+
+    def _parts(self) -> Parts:
+        parts = super()._parts()
+        rows = {
+            "law": (np.array([one.law for one in self.rubbing], dtype=object), "1"),
+            "composite_roughness": (np.array([one.roughness for one in self.rubbing]), "m"),
+        }
+        for name, (values, unit) in rows.items():
+            parts.variables[name] = ("friction", values, {"units": unit})
+        for name, texts in zip(self.CLAIM_HEAD, zip(*self.claim_rows(), strict=True), strict=True):
+            key = f"claim_{name.lower().replace(' ', '_')}"
+            parts.variables[key] = ("claim", np.array(texts, dtype=object), {"units": "1"})
+        return parts
+
+    def __repr__(self) -> str:
+        """One line."""
+        told = ", ".join(f"{claim.case} {claim.verdict}" for claim in self.claims)
+        return f"FrictionExperiment({self.lead}; claims: {told})"
 
 
 def judged(found: FrictionExperiment) -> tuple[Claim, ...]:

@@ -1,0 +1,192 @@
+"""The values of a case, in SI, and what follows from them alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.errors import InputError
+from tribodyn.model import text
+from tribodyn.study.case import derive
+from tribodyn.study.case.gears import Gears
+from tribodyn.study.case.given import Given, Source, Stated
+from tribodyn.study.case.hypoid import hypoid_flanks
+from tribodyn.study.case.section import Section, flat, table
+from tribodyn.study.case.sections import (
+    Dynamics,
+    Film,
+    Friction,
+    Losses,
+    LubricantData,
+    MaterialData,
+    Operation,
+    Solver,
+    Stiffness,
+)
+
+if TYPE_CHECKING:
+    from tribodyn.gear import HypoidFlanks, Material, SpurPair
+    from tribodyn.losses import Gearbox
+    from tribodyn.lubricant import Lubricant
+    from tribodyn.mesh.table_file import TableFile
+
+
+class CaseData(Section):
+    """All tables of a case, the objects of the physics that they make, and their origin."""
+
+    title: str = text("Gear pair", meaning="one line that names this case", example='"My gear"')
+    origin: str | None = text(
+        None, meaning="the document that the values come from", example='"Drawing 4711"'
+    )
+    gears: Gears = table(Gears, "the gear pair")
+    material: MaterialData = table(MaterialData, "material of the gears", "empty")
+    lubricant: LubricantData | None = table(LubricantData, "the oil", "none")
+    operation: Operation = table(Operation, "speed and load")
+    film: Film = table(Film, "oil film", "empty")
+    stiffness: Stiffness = table(Stiffness, "stiffness of the teeth", "empty")
+    friction: Friction = table(Friction, "friction of the teeth", "empty")
+    dynamics: Dynamics = table(Dynamics, "the vibrating structure", "empty")
+    losses: Losses | None = table(Losses, "what loses power beside the teeth", "none")
+    solver: Solver = table(Solver, "how the motion is computed", "empty")
+
+    _assumed: dict[str, str]
+    _spread: dict[str, str]
+    _given: Given
+    _source: Source
+    _stated: Stated
+    _effective: dict[str, Any]
+    _changed: tuple[str, ...] | None = None
+
+    @property
+    def uncertain(self) -> dict[str, str]:
+        """Values that are known within bounds, as they were written, by dotted key."""
+        return dict(self._spread)
+
+    @property
+    def assumed(self) -> dict[str, str]:
+        """Reasons of values that the source of the case does not print, by dotted key."""
+        return self._assumed
+
+    @cached_property
+    def mesh_table(self) -> TableFile | None:
+        """The mesh table of another program; None where the teeth are computed."""
+        return derive.mesh_table(self.gears)
+
+    @property
+    def gear_ratio(self) -> float:
+        """Teeth of the wheel over teeth of the pinion."""
+        return self.gears.wheel.teeth / self.gears.pinion.teeth
+
+    @cached_property
+    def gear_pair(self) -> SpurPair:
+        """Both gears in their working position.
+
+        Raises
+        ------
+        InputError
+            If the case has a mesh table of another program, or a hypoid pair.
+        """
+        if self.gears.kind != "spur":
+            raise InputError(derive.no_gear_pair(self.gears.kind))
+        return derive.gear_pair(self.gears, self.dynamics.backlash)
+
+    @cached_property
+    def hypoid_flanks(self) -> HypoidFlanks | None:
+        """Flanks of the side that carries; None where the gears are no hypoid pair."""
+        return hypoid_flanks(self.gears) if self.gears.kind == "hypoid" else None
+
+    @cached_property
+    def material_properties(self) -> Material:
+        """Material of both gears."""
+        return derive.material(self.material)
+
+    def density(self, gear: str) -> float:
+        """Density of one gear [kg/m^3]: its own, or that of the material.
+
+        Parameters
+        ----------
+        gear : str
+            ``"pinion"`` or ``"wheel"``.
+
+        Returns
+        -------
+        float
+
+        Examples
+        --------
+        >>> import tribodyn
+        >>> tribodyn.load_case("fzg-film").density("wheel")
+        7800.0
+        """
+        own = getattr(self.gears, gear).density
+        return float(self.material.density if own is None else own)
+
+    @property
+    def thermal_contact_coefficients(self) -> tuple[float, float]:
+        """``sqrt(k rho c)`` of pinion and wheel [J/(m^2 K s^0.5)]; gear steel if not given."""
+        return derive.thermal_contact_coefficients(self)
+
+    @cached_property
+    def lubricant_properties(self) -> Lubricant | None:
+        """The oil at its working temperature; None if the case has none."""
+        return None if self.lubricant is None else derive.lubricant(self.lubricant)
+
+    @cached_property
+    def gearbox(self) -> Gearbox | None:
+        """Shafts, seals and oil bath; None if the case has no ``[losses]``."""
+        return None if self.losses is None else derive.gearbox(self.losses)
+
+    @property
+    def backlash(self) -> float:
+        """Total play on the line of action [m]: given, or that of the tooth thicknesses."""
+        given = self.dynamics.backlash
+        if given is None:
+            return derive.backlash(self)
+        return given
+
+    @property
+    def composite_roughness(self) -> float | None:
+        """Root of the sum of squares of both roughnesses [m]; None if none is given."""
+        pinion, wheel = self.gears.pinion.rms, self.gears.wheel.rms
+        if pinion is not None and wheel is not None:
+            return math.hypot(pinion, wheel)
+        return self.gears.composite_roughness
+
+    @property
+    def pinion_speed(self) -> float:
+        """Speed of the pinion [rad/s], whichever gear the speed is given for."""
+        of_wheel = self.operation.speed_of == "wheel"
+        return self.operation.speed * (self.gear_ratio if of_wheel else 1.0)
+
+    @property
+    def pinion_torque(self) -> float:
+        """Nominal torque on the pinion [N*m], whichever gear the torque is given for."""
+        of_wheel = self.operation.speed_of == "wheel"
+        return self.operation.torque / (self.gear_ratio if of_wheel else 1.0)
+
+    @property
+    def given(self) -> Given:
+        """What the user gave, before any default."""
+        return self._given
+
+    @property
+    def source(self) -> Source:
+        """Where the values came from."""
+        return self._source
+
+    @property
+    def stated(self) -> Stated:
+        """What the values were that the reasons and the origin of the case belong to."""
+        return self._stated
+
+    def values(self) -> Iterator[tuple[str, Any]]:
+        """Walk over all values of the case.
+
+        Yields
+        ------
+        tuple of (str, object)
+            Dotted key and value in SI; None where nothing was given and a default is derived.
+        """
+        return iter(flat(self).items())
