@@ -208,6 +208,7 @@ def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
             f"the shapes {shapes} of load, radius and speed do not fit",
             where="arguments load_per_width, equivalent_radius, entrainment_speed",
             why="they must be numbers, or arrays that broadcast",
+            remedy="Give numbers, or arrays of one shape",
         ) from error
     return arrays[0].shape, [np.ascontiguousarray(array).reshape(-1) for array in arrays]
 
