@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics._engine.blocks import Backend, marching_on
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
@@ -43,6 +44,7 @@ def basins(
     verdict: bool = True,
     keep_partial: bool = False,
     progress: Progress = SILENT,
+    backend: Backend | None = None,
 ) -> Basins:
     """Find which motion every start of a plane comes to.
 
@@ -76,6 +78,8 @@ def basins(
         Return what is finished when interrupted (Ctrl-C), see ``finished``.
     progress : Progress
         Told about the starts.
+    backend : "cpu" or "cuda", optional
+        The processor that marches, as in :func:`tribodyn.dynamics.simulate_ensemble`.
 
     Returns
     -------
@@ -118,7 +122,8 @@ def basins(
     progress.start("Motions", len(starts) * (1 + bool(verdict)))
     beat = float(mesh_frequency)
     motions = _motions(compiled, starts, beat, force)
-    survey.settle(motions, np.arange(len(starts)), progress)
+    with marching_on(backend):
+        survey.settle(motions, np.arange(len(starts)), progress)
     label = catalogue.label(motions)
     attractors = [
         _attractor(catalogue, n, label[motions.finished] == n, motions, steps)
@@ -127,7 +132,8 @@ def basins(
     refined = np.full(label.shape, -3)
     if verdict and motions.finished.all():
         again = _motions(compile_for(system, beat, 2 * steps), starts, beat, force)
-        fine = _followed_again(catalogue, again, force, progress)
+        with marching_on(backend):
+            fine = _followed_again(catalogue, again, force, progress)
         attractors = _judged(attractors, fine, compiled.step_number)
         refined = _labels_again(fine, again, len(attractors))
     progress.finish()
