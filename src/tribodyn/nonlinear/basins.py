@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import Backend, marching_on
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
@@ -44,7 +43,6 @@ def basins(
     verdict: bool = True,
     keep_partial: bool = False,
     progress: Progress = SILENT,
-    backend: Backend | None = None,
 ) -> Basins:
     """Find which motion every start of a plane comes to.
 
@@ -78,8 +76,6 @@ def basins(
         Return what is finished when interrupted (Ctrl-C), see ``finished``.
     progress : Progress
         Told about the starts.
-    backend : "cpu" or "cuda", optional
-        The processor that marches, as in :func:`tribodyn.dynamics.simulate_ensemble`.
 
     Returns
     -------
@@ -122,8 +118,7 @@ def basins(
     progress.start("Motions", len(starts) * (1 + bool(verdict)))
     beat = float(mesh_frequency)
     motions = _motions(compiled, starts, beat, force)
-    with marching_on(backend):
-        survey.settle(motions, np.arange(len(starts)), progress)
+    survey.settle(motions, np.arange(len(starts)), progress)
     label = catalogue.label(motions)
     attractors = [
         _attractor(catalogue, n, label[motions.finished] == n, motions, steps)
@@ -132,8 +127,7 @@ def basins(
     refined = np.full(label.shape, -3)
     if verdict and motions.finished.all():
         again = _motions(compile_for(system, beat, 2 * steps), starts, beat, force)
-        with marching_on(backend):
-            fine = _followed_again(catalogue, again, force, progress)
+        fine = _followed_again(catalogue, again, force, progress)
         attractors = _judged(attractors, fine, compiled.step_number)
         refined = _labels_again(fine, again, len(attractors))
     progress.finish()
@@ -233,6 +227,7 @@ def _columns(system: System, names: tuple[str, str]) -> tuple[int, int]:
             f"coordinates = {names!r}",
             where="argument coordinates",
             why=f"Two different ones of {', '.join(known)}",
+            remedy="Choose two of these",
         )
     return known.index(names[0]), known.index(names[1])
 
