@@ -152,10 +152,6 @@ class RoughnessProfile:
             ``mm,um``; each further row is one point. The straight line of least squares is taken
             away.
 
-        Returns
-        -------
-        RoughnessProfile
-
         Raises
         ------
         InputError

@@ -128,10 +128,6 @@ def compare(
     teeth : int, optional
         Teeth of the gear on that shaft.
 
-    Returns
-    -------
-    Comparison
-
     Raises
     ------
     InputError

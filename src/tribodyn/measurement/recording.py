@@ -169,10 +169,6 @@ def read(
         Sensitivity of the sensor of a channel that holds its voltage, such as ``"100 mV/g"``:
         the channel comes back in the SI unit of what was measured.
 
-    Returns
-    -------
-    Recording
-
     Raises
     ------
     InputError

@@ -213,25 +213,7 @@ def write_study_report(
 
 @report_of("FrictionExperiment")
 def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
-    """Write the claims and figures of a friction experiment to a file.
-
-    Parameters
-    ----------
-    found : FrictionExperiment
-        What :func:`tribodyn.friction_experiment` returns.
-    path : path
-        File to write; an existing one is replaced.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        If the place cannot be written to.
-    """
+    """Write the claims and figures of a friction experiment to a file."""
     figures = (plot.friction_effect, plot.friction_claims, plot.friction_harmonics)
     blocks = [
         drawn_block(each.name, each.heading, each(found), each.caption_of(found))
@@ -256,25 +238,7 @@ def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
 
 @report_of("PaperComparison")
 def write_paper_report(found: Any, path: str | os.PathLike[str]) -> Path:
-    """Write printed tables beside what is computed to a file.
-
-    Parameters
-    ----------
-    found : PaperComparison
-        What :func:`tribodyn.cases.compare_with_paper` returns.
-    path : path
-        File to write; an existing one is replaced.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        If the place cannot be written to.
-    """
+    """Write printed tables beside what is computed to a file."""
     one = len(found.papers) == 1
     counts = Counter(row["verdict"] for row in found.rows)
     origins = zip(found.table(), found.rows, strict=True)

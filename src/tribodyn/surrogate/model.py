@@ -224,10 +224,6 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
     path : str or path
         The netCDF file.
 
-    Returns
-    -------
-    Surrogate
-
     Raises
     ------
     InputError

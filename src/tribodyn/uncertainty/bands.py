@@ -67,10 +67,6 @@ def bootstrap_band(
     unit : str
         Unit of the samples, for display.
 
-    Returns
-    -------
-    Band
-
     Raises
     ------
     InputError

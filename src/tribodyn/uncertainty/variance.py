@@ -57,10 +57,6 @@ def sobol_indices(
     seed : int
         The same seed gives the same indices.
 
-    Returns
-    -------
-    SobolIndices
-
     Raises
     ------
     InputError

@@ -143,10 +143,6 @@ def study_state(path: str | os.PathLike[str]) -> StudyState:
     path : str or path
         Directory that :func:`run_study` or ``tribodyn study`` wrote, or writes at the moment.
 
-    Returns
-    -------
-    StudyState
-
     Raises
     ------
     InputError

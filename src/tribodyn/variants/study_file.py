@@ -113,10 +113,6 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     path : str or path
         TOML file; what it may hold is told on the page on scale of the documentation.
 
-    Returns
-    -------
-    Study
-
     Raises
     ------
     InputError
@@ -134,10 +130,6 @@ def read_study(content: str, name: str = "study.toml") -> Study:
         TOML text.
     name : str
         Path of the file, for messages; files that it names are looked for beside it.
-
-    Returns
-    -------
-    Study
 
     Raises
     ------

@@ -149,10 +149,8 @@ class HypoidFlanks(Record):
 
         Parameters
         ----------
-        path : str or path
-            File to write, in mm; an existing one is replaced at once.
-        gear : str
-            ``"pinion"`` or ``"wheel"``.
+        path, gear
+            As :meth:`to_csv` takes them.
 
         Returns
         -------
@@ -221,10 +219,6 @@ def hypoid_flanks(
         What the pinion has less than its conjugate; nothing by default.
     points : int
         Points along the face and over the working depth, from 5 on.
-
-    Returns
-    -------
-    HypoidFlanks
 
     Raises
     ------

@@ -1,9 +1,10 @@
-"""WAV, UFF 58, TDMS, HDF5 and netCDF, each by the library that knows it best."""
+"""WAV, UFF 58, TDMS, MAT, HDF5 and netCDF, each by the library that knows it best."""
 
 from __future__ import annotations
 
 import logging
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -198,3 +199,39 @@ def _library(name: str, path: Path) -> Any:
                 'Run: pip install "tribodyn[io]"',
             )
         ) from None
+
+
+def mat(path: Path) -> Content:
+    """Channels of a MAT file of any version: vectors, matrices, cells and structures of them."""
+    with open(path, "rb") as file:
+        head = file.read(128)
+    if head.startswith(b"MATLAB 7.3"):
+        return hdf5(path)  # which refuses tables as we do
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatlabOpaque
+
+    held = loadmat(path, squeeze_me=True, struct_as_record=True)
+    named: dict[str, Any] = {}
+    for name, value in held.items():
+        if isinstance(value, MatlabOpaque) or name == "None":
+            kinds = value["s2"].reshape(-1).tolist() if value.dtype.names else [""]
+            refuse_table(kinds[0], path)
+        elif not name.startswith("__"):
+            named |= dict(_fields(name, value))
+    return from_arrays(named, path)
+
+
+def _fields(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, Any]]:
+    """Structures as names with points, items of arrays of them and of cells by their number."""
+    kind = getattr(value, "dtype", np.dtype(float))
+    fields = kind.names
+    if not (fields or kind.kind == "O") or depth > _DEEPEST:
+        yield name, value
+        return
+    for number, item in enumerate(np.asarray(value).reshape(-1), 1):
+        if fields:
+            place = name if value.size == 1 else f"{name}({number})"
+            for each in fields:
+                yield from _fields(f"{place}.{each}", item[each], depth + 1)
+        else:
+            yield from _fields(f"{name}{{{number}}}", item, depth + 1)

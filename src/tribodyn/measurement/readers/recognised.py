@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribodyn.errors import Argument, InputError, Problem, TribodynError
-from tribodyn.measurement.readers import binary, matlab, text
+from tribodyn.measurement.readers import binary, text
 from tribodyn.measurement.readers.content import Content
 from tribodyn.stored import LARGEST, file_kind
 
@@ -34,7 +34,7 @@ _TEXT = Format(
 FORMATS = (
     Format("WAV", (".wav",), lambda head: head[:4] in (b"RIFF", b"RIFX", b"RF64"), binary.wav),
     Format("TDMS", (".tdms",), lambda head: head[:4] in (b"TDSm", b"TDSh"), binary.tdms),
-    Format("MAT", (".mat",), lambda head: head[:6] == b"MATLAB", matlab.content),
+    Format("MAT", (".mat",), lambda head: head[:6] == b"MATLAB", binary.mat),
     Format("HDF5", (".h5", ".hdf5", ".nc", ".hdf"), lambda head: _HDF5 in head, binary.hdf5),
     Format("UFF", (".uff", ".unv", ".uf"), lambda head: head.lstrip()[:2] == b"-1", binary.uff),
     Format("text that is compressed", (".gz",), lambda head: head[:2] == b"\x1f\x8b", text.content),

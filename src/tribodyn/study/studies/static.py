@@ -235,13 +235,8 @@ def film_over_operation(
     ----------
     case : Case
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
-    torque : float, str or list, optional
-        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
-        That of the case where absent.
-    speed : float, str or list, optional
-        Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
-    progress : Progress
-        Told how many films are solved; silent by default.
+    torque, speed, progress
+        As :func:`comprehensive_stiffness` takes them.
 
     Returns
     -------

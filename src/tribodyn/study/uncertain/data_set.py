@@ -56,10 +56,6 @@ class DataSet(Record):
         Parameters
         ----------
         kept : (rows,) bool array
-
-        Returns
-        -------
-        DataSet
         """
         columns = {name: values[kept] for name, values in self.columns.items()}
         return DataSet(columns, self.units, self.case, self.settings, self.version)
@@ -120,10 +116,6 @@ def load_data(path: str | os.PathLike[str]) -> DataSet:
     ----------
     path : str or path
         The netCDF file.
-
-    Returns
-    -------
-    DataSet
 
     Raises
     ------

@@ -176,10 +176,6 @@ class CaseEnsemble(Record):
         simultaneous : bool
             Whether the band holds the whole curve with that probability, not each point of it.
 
-        Returns
-        -------
-        Band
-
         Raises
         ------
         InputError
@@ -252,10 +248,6 @@ def ensemble(
         The same seed gives the same ensemble.
     progress : Progress
         Told how far the computation has come; silent by default.
-
-    Returns
-    -------
-    CaseEnsemble
 
     Raises
     ------
