@@ -110,11 +110,6 @@ def write_report(result: Any, path: str | os.PathLike[str]) -> Path:
     path : path
         File to write; an existing one is replaced.
 
-    Returns
-    -------
-    Path
-        The file.
-
     Raises
     ------
     InputError

@@ -47,13 +47,8 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
     ----------
     found : Sweep
         What :func:`tribodyn.sweep` returns.
-    path : path
-        File to write; an existing one is replaced.
-
-    Returns
-    -------
-    Path
-        The file.
+    path
+        As :func:`write_report` takes it.
 
     Raises
     ------
@@ -117,8 +112,8 @@ def write_bifurcation_report(
         What :func:`tribodyn.bifurcation` returns.
     case : Case
         The case that was varied.
-    path : path
-        File to write; an existing one is replaced.
+    path
+        As :func:`write_report` takes it.
     lead : str
         What varies, in a line.
     told : sequence of str
@@ -127,11 +122,6 @@ def write_bifurcation_report(
         Head of the table.
     rows : sequence of sequence of str
         Its rows.
-
-    Returns
-    -------
-    Path
-        The file.
 
     Raises
     ------
@@ -172,8 +162,8 @@ def write_study_report(
     ----------
     case : Case or None
         The case that was studied; None for a study of measurements alone.
-    path : path
-        File to write; an existing one is replaced.
+    path
+        As :func:`write_report` takes it.
     kind : str
         What kind of study it is.
     told : sequence of str
@@ -182,11 +172,6 @@ def write_study_report(
         Heading, plotly figure and caption of each.
     head, rows : sequence of str, sequence of sequence of str
         The table.
-
-    Returns
-    -------
-    Path
-        The file.
 
     Raises
     ------

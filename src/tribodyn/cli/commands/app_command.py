@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from tribodyn.cli.screen import tell
+from tribodyn.cli.settings import Flag
 from tribodyn.errors import InputError, Problem
 
 
@@ -19,7 +17,7 @@ def app(
     folder: Path = Path(),
     host: str = "127.0.0.1",
     port: int = 8050,
-    no_browser: Annotated[bool, Parameter(negative="")] = False,
+    no_browser: Flag = False,
 ) -> None:
     """Serve a page for the whole job, on this machine alone, until Ctrl-C.
 

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
-
-from cyclopts import Parameter
+from typing import Any, Literal
 
 from tribodyn.cli.screen import say, say_json, show_resumed, tell
-from tribodyn.cli.settings import RANGE, changed_case, check_place, read_ranges
+from tribodyn.cli.settings import (
+    RANGE,
+    CaseName,
+    Flag,
+    Force,
+    Settings,
+    changed_case,
+    check_place,
+    read_ranges,
+)
 
 #: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.
 _INTERRUPTED = 130
 
 
 def bifurcation(
-    case: str,
+    case: CaseName,
     /,
     *over: str,
     sweep: Literal["up", "down", "both", "independent"] = "up",
@@ -23,16 +30,14 @@ def bifurcation(
     transient: int = 300,
     steps: int | None = None,
     out: Path | None = None,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    set_: Settings = None,
+    force: Force = False,
+    json: Flag = False,
 ) -> int:
     """Follow the motion of a case over one value; tell periods, jumps and step errors.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     over : str
         What varies: "operation.speed=400..3500 rpm:300".
     sweep : str
@@ -46,17 +51,8 @@ def bifurcation(
         Steps per mesh cycle.
     out : Path
         Directory to write; by default that of the case with "-bifurcation".
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write what was found in SI as one JSON object to stdout.
-
-    Returns
-    -------
-    int
-        Exit code.
     """
     from tribodyn.cli.bar import progress_bar
     from tribodyn.members import Members

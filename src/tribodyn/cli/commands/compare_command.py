@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table
-from tribodyn.cli.settings import check_place
+from tribodyn.cli.settings import Flag, check_place
 from tribodyn.errors import InputError, Problem
 from tribodyn.stored import plain_number
 
@@ -24,8 +24,8 @@ def compare(
     gain: str = "1",
     harmonics: int = 5,
     out: Path | None = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Show how two results differ, or how a result differs from a measured recording.
 

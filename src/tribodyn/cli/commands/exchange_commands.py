@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table, tell
-from tribodyn.cli.settings import changed_case, read_changes
+from tribodyn.cli.settings import Flag, changed_case, read_changes
 from tribodyn.errors import InputError, OutputExistsError, Problem
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ def import_(
     stage: int | None = None,
     load_case: int | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
     """List the stages and loads of a REXS gearbox model, and write a case of one stage.
 
@@ -82,8 +82,8 @@ def export(
     rexs: Path | None = None,
     tables: Path | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Write a case as a REXS gearbox model, or all tables and figures of a result.
 

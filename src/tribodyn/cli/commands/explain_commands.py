@@ -6,11 +6,10 @@ import difflib
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any
-
-from cyclopts import Parameter
+from typing import Any
 
 from tribodyn.cli.screen import say, say_json, table
+from tribodyn.cli.settings import Flag
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.values import Word, listed, word
 
@@ -24,7 +23,7 @@ def explain(
     symbol: str,
     /,
     *more: str,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    json: Flag = False,
 ) -> None:
     """Explain a symbol, quantity, key, model, law, warning code or summary value.
 
@@ -221,7 +220,7 @@ def _unknown(symbol: str) -> Problem:
     return Problem(f'nothing is known of "{symbol}"', remedy=remedy)
 
 
-def units(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+def units(*, json: Flag = False) -> None:
     """List the units of all quantities and the spellings that are understood besides.
 
     Parameters
@@ -250,8 +249,8 @@ def cite(
     result: Path,
     /,
     *,
-    bibtex: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    bibtex: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Print the papers behind a result.
 

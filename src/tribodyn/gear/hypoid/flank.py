@@ -130,11 +130,6 @@ class HypoidFlanks(Record):
             File to write, in mm; an existing one is replaced at once.
         gear : str
             ``"pinion"`` or ``"wheel"``.
-
-        Returns
-        -------
-        Path
-            The file.
         """
         position, normal = self.points(gear)
         rows = np.hstack([1e3 * position.reshape(-1, 3), normal.reshape(-1, 3)])
@@ -151,11 +146,6 @@ class HypoidFlanks(Record):
         ----------
         path, gear
             As :meth:`to_csv` takes them.
-
-        Returns
-        -------
-        Path
-            The file.
         """
         position, normal = self.points(gear)
         a, b, c, d = (

@@ -159,11 +159,6 @@ class Result(Computed):
         csv : bool
             Write the motion as ``response.csv`` as well.
 
-        Returns
-        -------
-        Path
-            The directory.
-
         Raises
         ------
         OutputExistsError

@@ -178,11 +178,8 @@ def speed_sweep(
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
     points : int
         Speeds, evenly spaced, the ends included.
-    tables : int
-        Speeds, evenly spaced in the logarithm, at which the tooth contact is computed; film and
-        friction follow the speed between them in straight lines.
-    progress : Progress
-        Told how far the study has come; silent by default.
+    tables, progress
+        As :func:`run_up` takes them.
     **options : object
         ``directions``, ``steps``, ``periods``, ``patience`` and ``tolerance`` of
         :func:`tribodyn.dynamics.speed_sweep`.

@@ -269,15 +269,8 @@ class Sweep(Record):
 
         Parameters
         ----------
-        directory : str or path
-            Directory to make.
-        force : bool
-            Replace an earlier result there.
-
-        Returns
-        -------
-        Path
-            The directory.
+        directory, force
+            As :meth:`tribodyn.Result.save` takes them.
 
         Raises
         ------

@@ -74,11 +74,6 @@ class DataSet(Record):
         path : str or path
             File to write.
 
-        Returns
-        -------
-        Path
-            The file.
-
         Raises
         ------
         OutputExistsError
