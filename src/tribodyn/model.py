@@ -18,7 +18,7 @@ from importlib.metadata import entry_points
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     from tribodyn.nomenclature import Quantity
@@ -334,11 +334,9 @@ class Registry(Generic[T]):
             return self._items[name]
         near = difflib.get_close_matches(str(name), self._items, n=1)
         raise InputError(
-            Problem(
-                what=f'no {self.kind} is called "{name}"',
-                why=f"Known: {', '.join(self._items)}",
-                remedy=f'Did you mean "{near[0]}"?' if near else "",
-            )
+            f'no {self.kind} is called "{name}"',
+            why=f"Known: {', '.join(self._items)}",
+            remedy=f'Did you mean "{near[0]}"?' if near else "",
         )
 
 

@@ -180,7 +180,7 @@ def _dispatch(arguments: list[str]) -> int:
     from cyclopts.exceptions import CycloptsError
 
     from tribodyn.cli.app import COMMANDS, make_app
-    from tribodyn.errors import InputError, Problem
+    from tribodyn.errors import InputError
 
     names = [name for name, _, _ in COMMANDS]
     if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
@@ -189,7 +189,7 @@ def _dispatch(arguments: list[str]) -> int:
         result: Any = make_app()(arguments, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many words: \1", str(error).strip())
-        raise InputError(Problem(what, remedy=_remedy(arguments, what))) from None
+        raise InputError(what, remedy=_remedy(arguments, what)) from None
     return result if isinstance(result, int) else 0
 
 

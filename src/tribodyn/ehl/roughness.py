@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from tribodyn.errors import (
     Argument,
     InputError,
-    Problem,
     require_one_of,
     require_positive,
     warn,
@@ -343,7 +342,7 @@ class RoughnessProfile:
 def _fault(path: str | PathLike[str], line: int, what: str) -> InputError:
     place = f"{Path(path).name}, line {line}" if line else Path(path).name
     why = "A profile has the columns position and height, their units below, for example mm,um"
-    return InputError(Problem(f"{what} ({place})", Argument("roughness_profile"), why))
+    return InputError(f"{what} ({place})", Argument("roughness_profile"), why)
 
 
 #: Grid points that a wavelength needs, and the share of the mean square that may lie below.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, shortened
+from tribodyn.errors import InputError, shortened
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, parse, split
@@ -118,7 +118,7 @@ def _wrong(name: str, given: Any, why: str = "", meant: str = "") -> InputError:
     remedy = (
         f'Write {meant}"0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
     )
-    return InputError(Problem(what, name, why, remedy + "or give data or a SciPy distribution"))
+    return InputError(what, name, why, remedy + "or give data or a SciPy distribution")
 
 
 class _Data:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tribodyn.cli.screen import tell
 from tribodyn.cli.settings import Flag
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 
 
 def app(
@@ -39,9 +39,9 @@ def app(
 
     if find_spec("dash") is None:
         why, remedy = "The page is drawn by Dash", 'Install it with pip install "tribodyn[app]"'
-        raise InputError(Problem("Dash is not installed", "tribodyn app", why, remedy))
+        raise InputError("Dash is not installed", "tribodyn app", why, remedy)
     if not 0 <= port <= 65535:
-        raise InputError(Problem(f"port = {port}", "--port", "Ports are 0 to 65535"))
+        raise InputError(f"port = {port}", "--port", "Ports are 0 to 65535")
     from tribodyn.app.server import Page
 
     page = Page(folder, case, host, port)

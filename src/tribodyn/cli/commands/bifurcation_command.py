@@ -103,20 +103,20 @@ def bifurcation(
 
 def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
     """The one key that varies."""
-    from tribodyn.errors import InputError, Problem
+    from tribodyn.errors import InputError
 
     ranges = read_ranges(over, lists=False)
     if len(ranges) > 1:
         what = f"{len(ranges)} keys vary: {', '.join(ranges)}"
-        raise InputError(Problem(what, "", "A diagram goes over one of them", RANGE))
+        raise InputError(what, "", "A diagram goes over one of them", RANGE)
     return next(iter(ranges.items()))
 
 
 def _check_lengths(cycles: int, transient: int) -> None:
     """Refuse mesh cycles that make no diagram."""
-    from tribodyn.errors import InputError, Problem
+    from tribodyn.errors import InputError
 
     for name, value, least in (("cycles", cycles, 2), ("transient", transient, 0)):
         if value < least:
             why = f"At least {least} are needed" if least else "It is a count"
-            raise InputError(Problem(f"{value} mesh cycles", f"--{name}", why, "Give more of them"))
+            raise InputError(f"{value} mesh cycles", f"--{name}", why, "Give more of them")

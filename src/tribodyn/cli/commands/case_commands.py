@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.screen import figures, say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case
-from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.errors import InputError, OutputExistsError
 
 
 def cases(*, json: Flag = False) -> None:
@@ -92,9 +92,9 @@ def new(
 
     if path.exists() and (path.is_dir() or not force):
         remedy = "Choose another name" + ("" if path.is_dir() else ", or add --force to replace it")
-        raise OutputExistsError(Problem("this exists already", str(path), "", remedy))
+        raise OutputExistsError("this exists already", str(path), "", remedy)
     if not path.parent.is_dir():
-        raise InputError(Problem("there is no such directory", str(path.parent), "", "Create it"))
+        raise InputError("there is no such directory", str(path.parent), "", "Create it")
     write_file(path, load_case(from_).to_toml() if from_ else start_toml())
     if json:
         say_json({"path": str(path)})

@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table, tell
 from tribodyn.cli.settings import Flag, changed_case, read_changes
-from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.errors import InputError, OutputExistsError
 
 if TYPE_CHECKING:
     from tribodyn.exchange import GearboxModel, Load, Stage
@@ -62,9 +62,9 @@ def import_(
         return
     if out.exists() and (out.is_dir() or not force):
         remedy = "Choose another name" + ("" if out.is_dir() else ", or add --force to replace it")
-        raise OutputExistsError(Problem("this exists already", str(out), "", remedy))
+        raise OutputExistsError("this exists already", str(out), "", remedy)
     if not out.parent.is_dir():
-        raise InputError(Problem("there is no such directory", str(out.parent), "", "Create it"))
+        raise InputError("there is no such directory", str(out.parent), "", "Create it")
     case = case_from_rexs(model, stage, load_case, changes=read_changes(set_ or []))
     write_file(out, case.to_toml())
     if json:

@@ -40,7 +40,7 @@ def explain(
     asked = " ".join((symbol, *more)).strip().strip("[]")
     if not asked:
         remedy = "Give a name, for example: tribodyn explain backlash"
-        raise InputError(Problem("there is nothing to explain", "", "", remedy))
+        raise InputError("there is nothing to explain", "", "", remedy)
     if asked.lower() == "friction":
         _friction_laws(json)
         return
@@ -271,7 +271,7 @@ def cite(
     if not file.is_file():
         why = "It holds no case.toml" if result.is_dir() else "There is no such directory"
         remedy = "Give the directory that tribodyn run wrote"
-        raise InputError(Problem("this is no result", str(result), why, remedy))
+        raise InputError("this is no result", str(result), why, remedy)
     case = load_case(file)
     if json:
         say_json([{"key": key, **entry} for key, entry in papers(case).items()])

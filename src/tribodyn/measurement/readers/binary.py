@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.measurement.readers.content import (
     Content,
     from_arrays,
@@ -54,7 +54,7 @@ def uff(path: Path) -> Content:
         file.seek(-min(200, path.stat().st_size), 2)
         if not file.read().rstrip(b"\0\r\n\t ").endswith(b"-1"):
             why, remedy = "Its last dataset has no end", "Take it from the measuring system again"
-            raise InputError(Problem("is cut short", str(path), why, remedy))
+            raise InputError("is cut short", str(path), why, remedy)
     sets = pyuff.UFF(str(path))
     kinds = list(sets.get_set_types())
     channels: dict[str, Array] = {}
@@ -192,12 +192,10 @@ def _library(name: str, path: Path) -> Any:
         return importlib.import_module(name)
     except ImportError:
         raise InputError(
-            Problem(
-                f"{name} is needed to read this file",
-                str(path),
-                "It is not installed",
-                'Run: pip install "tribodyn[io]"',
-            )
+            f"{name} is needed to read this file",
+            str(path),
+            "It is not installed",
+            'Run: pip install "tribodyn[io]"',
         ) from None
 
 

@@ -157,10 +157,10 @@ def read_text(path: Path) -> str:
         line = error.object.count(b"\n", 0, error.start) + 1
         what = f"byte 0x{error.object[error.start]:02x} is not UTF-8"
         why = "A case file is text in UTF-8"
-        raise InputError(Problem(what, f"{path}:{line}", why, "Save it as UTF-8")) from None
+        raise InputError(what, f"{path}:{line}", why, "Save it as UTF-8") from None
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(Problem(f"the file cannot be read: {reason}", str(path))) from None
+        raise InputError(f"the file cannot be read: {reason}", str(path)) from None
 
 
 def read_case(text: str, name: str = "") -> Case:
@@ -190,7 +190,7 @@ normal_pressure_angle, driver, pinion, wheel.
     data = parse_toml(text, name)
     if not data:
         remedy = "Write a case to start from: tribodyn new my.toml"
-        raise InputError(Problem("the file holds no values", name, "", remedy))
+        raise InputError("the file holds no values", name, "", remedy)
     _place_files(data, Path(name).parent)
     return Case(Source(name or "case", partial(key_lines, text)), **data)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import TipReliefOptimum
@@ -262,7 +262,7 @@ def film_over_operation(
 
     if case.film.model == "none":
         remedy = 'Choose one: case.replace({"film.model": "newton"})'
-        raise InputError(Problem('film.model = "none"', "argument case", "No film", remedy))
+        raise InputError('film.model = "none"', "argument case", "No film", remedy)
     pair = case.gear_pair
     with placed(case):
         return compute(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import ComputationError, InputError, Problem, quiet
+from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.run import computed
@@ -137,11 +137,11 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
     if isinstance(over, str):
         if between is None or len(between) != 2:
             remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
-            raise InputError(Problem(f"between = {between}", "argument between", "", remedy))
+            raise InputError(f"between = {between}", "argument between", "", remedy)
         return {over: (*between, points)}
     if between is not None:
         why = "Several keys have their ends in over"
-        raise InputError(Problem(f"between = {between}", "argument between", why, "Remove it"))
+        raise InputError(f"between = {between}", "argument between", why, "Remove it")
     return over
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.drawing import draw, write_report_of
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.stored import write_dataset
 from tribodyn.study.pipeline.save import new_directory
@@ -103,7 +103,7 @@ class Sweep(Record):
 
             near = difflib.get_close_matches(name, self.figures, n=1)
             remedy = f'Did you mean "{near[0]}"?' if near else f"It has: {', '.join(self.figures)}"
-            raise InputError(Problem(f'there is no figure "{name}" in this sweep', remedy=remedy))
+            raise InputError(f'there is no figure "{name}" in this sweep', remedy=remedy)
         values = np.full(prod(self.shape), np.nan)
         values[: len(self.points)] = [p.figures.get(name, np.nan) for p in self.points]
         return values.reshape(self.shape)
