@@ -24,6 +24,9 @@ _FLOORS = {
     )
 }
 
+#: Distance of two orbits over their size, each of which is known to about 1e-13.
+_APART = {"step_error": 1e-12}
+
 #: Size of an error that was left, which may become smaller: the most that it may be.
 _LEFT_OVER = {"steady_state_error": 1e-9}
 
@@ -55,5 +58,5 @@ def differences(case: str, frozen: Mapping[str, float], current: Mapping[str, fl
 def _same(case: str, name: str, old: float, new: float) -> bool:
     if name in _LEFT_OVER:
         return 0.0 <= new <= _LEFT_OVER[name]
-    floor = _FLOORS.get((case, name), _ZERO)
+    floor = _FLOORS.get((case, name), _APART.get(name, _ZERO))
     return abs(new - old) <= max(TOLERANCE * abs(old), floor)

@@ -135,10 +135,18 @@ class PhaseFunction:
         The knots.
     values : array (n, ...)
         Values at the knots.
+    onto : array (m, k), optional
+        Matrix of pure numbers by which the last m values become k.
     """
 
     grid: PhaseGrid
     values: Array
+    onto: Array | None = None
+
+    @property
+    def event_phases(self) -> tuple[float, ...]:
+        """Phases at which it may jump."""
+        return self.grid.event_phases
 
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
@@ -147,7 +155,7 @@ class PhaseFunction:
         total = np.zeros(first.shape + self.values.shape[1:])
         for knot, weight in enumerate(weights):
             total += weight.reshape(weight.shape + further) * self.values[first + knot]
-        return total
+        return total if self.onto is None else np.asarray(total @ self.onto)
 
 
 def phase_grid(event_phases: tuple[float, ...], steps: int = 512) -> PhaseGrid:

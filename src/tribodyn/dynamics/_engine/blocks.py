@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -13,17 +17,39 @@ from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import Failed, newmark_failure, runaway, unparted_step
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import lane_load
+from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
 #: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
 #: stay in the first cache, which 64 lanes of a pair of gears overflow.
-_WIDTHS = (1, 16)
+WIDTH = 16
 #: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
 #: Fewer lanes than these march one by one.
 _OWN_ROWS = 4
 #: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
 _BRIEF = 200_000
+
+#: Where lanes march: on this processor, or on a graphics processor.
+Backend = Literal["cpu", "cuda"]
+_backend: ContextVar[Backend] = ContextVar("backend", default="cpu")
+
+
+@contextmanager
+def marching_on(backend: Backend | None) -> Iterator[None]:
+    """March all lanes inside the block there; None: where it is said outside."""
+    if backend not in (None, "cpu", "cuda"):
+        why = 'It is "cpu", or "cuda" for a graphics processor'
+        raise InputError(f"backend = {backend!r}", Argument("backend"), why)
+    if backend == "cuda":
+        from tribodyn.dynamics._engine.generated.cuda import require_gpu
+
+        require_gpu()
+    token = _backend.set(backend or _backend.get())
+    try:
+        yield
+    finally:
+        _backend.reset(token)
 
 
 @dataclass(frozen=True)
@@ -42,7 +68,7 @@ class LaneBlock:
 def lane_blocks(lanes: int, width: int | None = None, *, own_rows: bool = False) -> list[LaneBlock]:
     """Divide lanes into blocks."""
     if width is None:
-        width = _WIDTHS[0] if lanes < _OWN_ROWS else _OWN_ROWS if own_rows else _WIDTHS[1]
+        width = 1 if lanes < _OWN_ROWS else _OWN_ROWS if own_rows else WIDTH
     return [
         LaneBlock(np.minimum(np.arange(first, first + width), lanes - 1), min(width, lanes - first))
         for first in range(0, lanes, width)
@@ -90,6 +116,16 @@ def march(
     # Whoever gives parameters has looked whether the steps are short enough for them.
     lanes = state.shape[0]
     run = _Run(compiled, method, parameters, period, state, extra_force)
+    if _backend.get() == "cuda":
+        from tribodyn.dynamics._engine.generated.cuda import march_on_gpu
+
+        new, ended = march_on_gpu(
+            run.programs, run.member, period, run.load, state, cycles, record, statistics
+        )
+        if ended.max() >= 0:
+            lane = int(np.argmax(ended))
+            run.report(LaneBlock(np.array([lane]), 1), int(ended[lane]), elapsed)
+        return new
     new = np.empty_like(state)
 
     def march_lanes(block: LaneBlock) -> int:

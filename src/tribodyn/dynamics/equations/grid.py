@@ -114,10 +114,15 @@ class RowEvaluator:
         """Values on the nodes, of an entry that jumps at events only."""
         flat = entry_values(where, entry, self.nodes.reshape(-1), size)
         values = flat.reshape(*self.nodes.shape, size)
-        if self.checks and varies(entry):
+        if self.checks and varies(entry) and not self._is_smooth(entry):
             refuse_chance(where, entry, self.nodes.reshape(-1), flat)
             refuse_jumps(where, entry, self.nodes, values)
         return values
+
+    def _is_smooth(self, entry: Entry) -> bool:
+        """Whether it is a table that jumps nowhere but at events of this grid."""
+        events = getattr(entry, "event_phases", None)
+        return events is not None and bool(np.isin(events, self.grid.segment_left).all())
 
     def derivatives(self, where: str, entry: Entry, size: int = 1) -> Array:
         """Derivatives with respect to phase on the nodes, from a five-point stencil."""

@@ -112,6 +112,10 @@ def push_with_friction(system: System, nodes: Nodes, ratio: Array) -> Array:
 _ROUNDING = 1e-9
 
 
+#: Weights of both ends and the middle of a step.
+_SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
+
+
 class Nodes(NamedTuple):
     """The same rows with names, for evaluation outside the loop; all at (steps, 3)."""
 
@@ -174,7 +178,7 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         direction_slope=vector("direction", rows.derivatives),
         force_direction=direction + vector("friction", rows.values),
         force=rows.values("force", system.force, size),
-        weight=grid.width[:, None] * np.array([1.0, 4.0, 1.0]) / 6.0,
+        weight=grid.width[:, None] * _SIMPSON,
         friction_direction=friction_directions(system, rows),
         friction_coefficients=friction_coefficients(system, rows),
     )
@@ -182,6 +186,29 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     if grid.width.sum() > 0.99:
         object.__setattr__(system, "_checked", min(widest, system._checked))
     return nodes
+
+
+def halved_nodes(system: System, grid: Grid, nodes: Nodes) -> tuple[Grid, Nodes]:
+    """The grid with every step cut in two, and its rows: two of three are there already."""
+    half, count = 0.5 * grid.width, grid.steps
+    first = np.arange(2 * count) % 2 == 0
+    segments = grid.segment_left, grid.segment_right
+    left = np.repeat(grid.left, 2) + np.where(first, 0.0, np.repeat(half, 2))
+    events = np.repeat(grid.after_event, 2) & first
+    fine = Grid(left, np.repeat(half, 2), events, *(np.repeat(part, 2) for part in segments))
+    between = evaluate_nodes(
+        system, Grid(grid.left + 0.5 * half, half, grid.after_event, *segments)
+    )
+
+    def joined(old: Array, new: Array) -> Array:
+        rows = np.empty((count, 2, *old.shape[1:]))
+        rows[:, 0, 0], rows[:, 0, 1], rows[:, 0, 2] = old[:, 0], new[:, 0], old[:, 1]
+        rows[:, 1, 0], rows[:, 1, 1], rows[:, 1, 2] = old[:, 1], new[:, 2], old[:, 2]
+        return rows.reshape(2 * count, *old.shape[1:])
+
+    rows = Nodes(*(joined(old, new) for old, new in zip(nodes, between, strict=True)))
+    weight = fine.width[:, None] * _SIMPSON
+    return fine, rows._replace(weight=weight)
 
 
 def sampled(system: System, steps: int) -> tuple[Grid, Nodes]:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.blocks import WIDTH, march
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import (
@@ -166,6 +166,12 @@ class OrbitMap:
     def follow(self, y: Array) -> tuple[Array, Array]:
         """Map points (..., k) and keep every state on the way, (..., rows, 2 n)."""
         points = y.reshape(-1, y.shape[-1])
+        images, record = self._recorded(points)
+        states = np.ascontiguousarray(np.moveaxis(record, 2, 0))
+        return images.reshape(y.shape), states.reshape(*y.shape[:-1], *states.shape[1:])
+
+    def _recorded(self, points: Array) -> tuple[Array, Array]:
+        """Images of points (lanes, k), and the states on the way (rows, 2 n, lanes)."""
         state, extra = self.split(points)
         rows = self.periods * self.compiled.grid.steps + 1
         record = np.empty((rows, state.shape[1], len(points)))
@@ -174,8 +180,18 @@ class OrbitMap:
             self.compiled, period, state, self.periods, extra_force=extra, record=record, threads=1
         )
         self.cycles += self.periods
-        states = np.ascontiguousarray(np.moveaxis(record, 2, 0))
-        return self._image(points, new).reshape(y.shape), states.reshape(*y.shape[:-1], rows, -1)
+        return self._image(points, new), record
+
+    def differences(self, y: Array, step: float) -> tuple[Array, Array, Array, Array]:
+        """Image and states of a point (k,), and how both change with every coordinate of it.
+
+        The states have the shape (rows, 2 n), their derivatives (rows, 2 n, k).
+        """
+        lanes = -(-(y.size + 1) // WIDTH) * WIDTH  # Whole blocks need no copies.
+        images, record = self._recorded(y + step * np.eye(lanes, y.size, -1))
+        (image, *beside), states = images[: y.size + 1], np.ascontiguousarray(record[:, :, 0])
+        slopes = (record[:, :, 1 : y.size + 1] - record[:, :, :1]) / step
+        return image, (np.array(beside) - image).T / step, states, slopes
 
     def matrix(
         self, y: Array, step: Array | float, *, central: bool = False

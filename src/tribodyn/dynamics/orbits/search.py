@@ -74,14 +74,25 @@ class FlankWatch:
         self._error = nodes.error[:, ::2][:, :, first]
         gaps = [nodes.gap[:, ::2, mesh].min(axis=2) for mesh in kept]
         self._gap = np.stack(gaps, axis=-1) if gaps else np.zeros((*self._error.shape[:2], 0))
+        #: Whether no mesh is made of several contacts, which open one after the other.
+        self.whole = len(kept) == np.count_nonzero(dead)
+        self._held = not np.ptp(self._direction, (0, 1)).any()
         self._steps = mapping.compiled.grid.steps
         self._size = mapping.compiled.system.size
 
     def compression(self, states: Array) -> Array:
         """Compression of each mesh at both ends of every step, (periods, steps, 2, meshes)."""
+        return self._along(states[..., None])[..., 0] - self._error
+
+    def _along(self, states: Array) -> Array:
+        """States (rows, 2 n, k) along the directions, (periods, steps, 2, meshes, k)."""
+        shape = (-1, self._steps, 2, self._direction.shape[2], states.shape[2])
         q = states[:, : self._size]
-        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(-1, self._steps, 2, self._size)
-        return np.asarray(np.einsum("rsji,crsi->crsj", self._direction, ends) - self._error)
+        if self._held:  # the same direction all along
+            along = np.tensordot(q, self._direction[0, 0], (1, 1)).swapaxes(1, 2)
+            return np.stack((along[:-1], along[1:]), axis=1).reshape(shape)
+        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(-1, self._steps, 2, *q.shape[1:])
+        return np.asarray(np.einsum("rsji,crsik->crsjk", self._direction, ends))
 
     def clearance(self, compression: Array) -> Array:
         """Distance of each mesh from parting, on the flank on which it begins."""
@@ -92,9 +103,14 @@ class FlankWatch:
         """Side of the play on which each mesh begins, (meshes,): 1 or -1."""
         return np.where(compression[0, 0, 0] < 0.0, -1.0, 1.0)
 
-    def in_touch(self, states: Array) -> bool:
-        """Whether no mesh parts on the way."""
-        return bool(np.all(self.clearance(self.compression(states)) > 0.0))
+    def in_touch(self, states: Array, beside: Array | None = None) -> bool:
+        """Whether no mesh parts on the way, nor on ways (rows, 2 n, k) beside it."""
+        compression = self.compression(states)
+        room = self.clearance(compression)
+        if beside is None:
+            return bool(np.all(room > 0.0))
+        moved = self.flank(compression)[:, None] * self._along(beside)
+        return bool(np.all(room > 0.0) and np.all(room[..., None] + moved > 0.0))
 
     def stays(self, states: Array, slopes: Array, matrix: Array, distance: Array) -> bool:
         """Whether a motion beside an orbit reaches it without parting."""
@@ -102,17 +118,19 @@ class FlankWatch:
         room = self.clearance(compression).reshape(-1)
         if np.any(room <= 0.0):
             return False
-        still = self.compression(np.zeros_like(states))
-        flank = self.flank(compression)
-        rates = np.stack(
-            [(flank * (self.compression(slope) - still)).reshape(-1) for slope in slopes], axis=1
-        )
-        first = float(np.abs(rates @ distance).max(initial=0.0))
+        rates = self.flank(compression)[:, None] * self._along(slopes)
+        rates = rates.reshape(room.size, -1)
+        first, steepest = float(np.abs(rates @ distance).max(initial=0.0)), 0.0
+        if rates.size:
+            steepest = float(np.sqrt((rates**2).sum(axis=1).max()))
         for _ in range(_HORIZON):
-            moved = rates @ distance
-            if np.any(room + moved <= 0.0):
-                return False
-            if float(np.abs(moved).max(initial=0.0)) <= _GONE * first:
+            if steepest * float(np.linalg.norm(distance)) > room.min(initial=np.inf):
+                moved = rates @ distance
+                if np.any(room + moved <= 0.0):
+                    return False
+                if float(np.abs(moved).max(initial=0.0)) <= _GONE * first:
+                    break
+            elif steepest * float(np.linalg.norm(distance)) <= _GONE * first:
                 break
             distance = matrix @ distance
         return True
@@ -131,8 +149,9 @@ _ANDERSON_LIMIT = 40
 _NEWTON_LIMIT = 8
 #: Plain periods of each further attempt.
 PATIENCE = (150, 400)
-#: Size of the disturbances of the monodromy matrix relative to the orbit.
-_DISTURBANCE = 1e-7
+#: Size of the disturbances of the monodromy matrix relative to the orbit, and where all equations
+#: are linear, so that larger ones are as good and lose fewer digits.
+_DISTURBANCE, _APART = 1e-7, 1e-3
 
 
 @dataclass
@@ -145,8 +164,9 @@ class OrbitPoint:
     scale: float  #: size of the motion [m/s]
     multipliers: ComplexArray  #: floquet multipliers, the largest first
     states: Array  #: the motion over one period
-    slopes: Array  #: its derivative by the reduced vector
+    slopes: Array  #: its derivative by the reduced vector, the last axis
     search: int = 0
+    linear: bool = False  #: in touch all along, so that other motions differ by multiples of slopes
 
     @property
     def correction(self) -> Array:
@@ -182,11 +202,9 @@ def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> Or
         return replace(known, point=y, residual=image - y, scale=scale, states=states)
     if mapping.affine:
         # Of a linear map any difference is exact, and a large one loses no digits.
-        matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((0, *states.shape))
+        matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((*states.shape, 0))
     else:
-        step = _DISTURBANCE * scale
-        images, motions = mapping.follow(y + step * np.eye(y.size))
-        matrix, slopes = (images - image).T / step, (motions - states) / step
+        _, matrix, _, slopes = mapping.differences(y, _DISTURBANCE * scale)
     return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix), states, slopes)
 
 
@@ -204,10 +222,12 @@ def _same_equations(mapping: OrbitMap, one: Array, other: Array) -> bool:
     return np.array_equal(first, second)
 
 
-def finish_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
-    """Newton's method from a point near the orbit."""
+def finish_orbit(
+    mapping: OrbitMap, y: Array, tolerance: float, known: OrbitPoint | None = None
+) -> OrbitPoint:
+    """Newton's method from a point near the orbit, of which another may be known."""
     search = mapping.cycles
-    best = _examine(mapping, y)
+    best = _examine(mapping, y, known)
     for _ in range(_NEWTON_LIMIT):
         if best.error <= 0.01 * tolerance:
             break
@@ -221,6 +241,23 @@ def finish_orbit(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint:
 
 def _good(orbit: OrbitPoint, tolerance: float) -> bool:
     return orbit.error <= tolerance and orbit.attracts
+
+
+def _in_one_march(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint | None:
+    """Orbit that a motion approaches whose flanks never part: its equations are linear."""
+    watch = FlankWatch(mapping)
+    if not watch.whole or mapping.compiled.nodes.friction_coefficients.shape[-1] > 1:
+        return None
+    step = _APART * float(np.linalg.norm(y))
+    image, matrix, states, slopes = mapping.differences(y, step)
+    if not watch.in_touch(states, step * slopes):
+        return None
+    told = mapping.multipliers(matrix), states, slopes
+    start = OrbitPoint(y, image - y, matrix, motion_size(mapping, states), *told, linear=True)
+    orbit = finish_orbit(mapping, y + start.correction, tolerance, start)
+    if orbit.linear and _good(orbit, tolerance) and watch.in_touch(orbit.states):
+        return orbit if watch.stays(orbit.states, slopes, matrix, y - orbit.point) else None
+    return None
 
 
 def _settle(
@@ -286,6 +323,9 @@ def find_orbit(
     """Settle, accelerate, finish; with more and more plain marching if that is not enough."""
     if mapping.affine:
         return finish_orbit(mapping, y, tolerance)
+    touching = _in_one_march(mapping, y, tolerance)
+    if touching is not None:
+        return touching
     orbit = _attempt(mapping, y, _SETTLE, tolerance, None)
     generator = np.random.default_rng(0)
     for periods in patience:

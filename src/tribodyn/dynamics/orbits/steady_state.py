@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.equations.grid import Grid
-from tribodyn.dynamics.equations.program import compile_on
+from tribodyn.dynamics.equations.nodes import halved_nodes
+from tribodyn.dynamics.equations.program import build_program
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
@@ -204,42 +204,38 @@ def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> f
     # The scheme is of fourth order: the orbit at half the step is sixteen times as near to that of
     # the equations, and so near to this one that few periods lead to it.
     fine = copy(mapping)
-    grid = halved(mapping.compiled.grid)
-    nodes, program = compile_on(mapping.compiled.system, grid)
+    system = mapping.compiled.system
+    grid, nodes = halved_nodes(system, mapping.compiled.grid, mapping.compiled.nodes)
     fine.compiled = replace(
         mapping.compiled,
         grid=grid,
         nodes=nodes,
-        program=program,
+        program=build_program(system, grid, nodes),
         parameters=None,
         step_number=0.5 * mapping.compiled.step_number,
     )
     point, way = orbit.point, np.inf
     for _ in range(_ROUNDS):
-        step = newton_step(orbit.matrix, fine.follow(point)[0] - point)[0]
+        image, states = fine.follow(point)
+        step = newton_step(orbit.matrix, image - point)[0]
         last, way = way, float(np.linalg.norm(step))
         moved = float(np.linalg.norm(point + step - orbit.point))
         if not way < 0.5 * last or moved > _OTHER * orbit.scale:
             break
         point = point + step
         if way <= _CLOSE * moved or way <= 1e-9 * orbit.scale:
-            return _apart(mapping, orbit, fine.follow(point)[1])
+            if orbit.linear:  # What is left of the way moves both motions alike.
+                return _apart(mapping, orbit, states[::2] + orbit.slopes @ step)
+            return _apart(mapping, orbit, fine.follow(point)[1][::2])
     found = finish_orbit(fine, orbit.point, 1e-6)
     same = np.linalg.norm(found.point - orbit.point) <= _OTHER * orbit.scale
-    return _apart(mapping, orbit, found.states) if found.error <= 1e-6 and same else float("inf")
+    if not (same and found.error <= 1e-6):
+        return float("inf")
+    return _apart(mapping, orbit, found.states[::2])
 
 
 def _apart(mapping: OrbitMap, orbit: OrbitPoint, states: Array) -> float:
     """Greatest distance at the ends of the whole steps; free motions of the drive do not count."""
-    size = motion_size(mapping, states[::2])
-    coarse, fine = (mapping.coordinates.reduce(part) for part in (orbit.states, states[::2]))
+    size = motion_size(mapping, states)
+    coarse, fine = (mapping.coordinates.reduce(part) for part in (orbit.states, states))
     return float(np.linalg.norm(fine - coarse, axis=1).max()) / size
-
-
-def halved(grid: Grid) -> Grid:
-    """The grid with every step cut in two."""
-    half = np.repeat(0.5 * grid.width, 2)
-    first = np.arange(half.size) % 2 == 0
-    left = np.repeat(grid.left, 2) + np.where(first, 0.0, half)
-    ends = (np.repeat(part, 2) for part in (grid.segment_left, grid.segment_right))
-    return Grid(left, half, np.repeat(grid.after_event, 2) & first, *ends)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -71,33 +71,23 @@ def gear_contact(
     radius_pinion, radius_wheel = base_radius
     direction = np.array([0.0, 1.0, radius_pinion, 0.0, -1.0, -radius_wheel]) * sign
 
-    def friction(phase: Array) -> Array:
-        across = np.asarray(mesh.friction_sum(phase))
-        return np.stack(
-            (
-                across,
-                np.zeros_like(across),
-                np.asarray(mesh.friction_moment_pinion(phase)),
-                -across,
-                np.zeros_like(across),
-                -np.asarray(mesh.friction_moment_wheel(phase)),
-            ),
-            axis=-1,
-        )
-
+    # Across the line of action, and the moments on pinion and wheel.
+    onto = np.zeros((3, 6))
+    onto[[0, 1, 0, 2], [0, 2, 3, 5]] = 1.0, 1.0, -1.0, -1.0
     keep = slice(None) if supports else [2, 5]
     towards: Entry = direction[keep]
     if (varying := getattr(mesh, "direction", None)) is not None:
         keep = _kept(varying, supports)
         towards = _columns(varying, keep)
-    of_mesh = getattr(mesh, "friction", None) or friction
+    of_mesh = getattr(mesh, "friction", None)
+    rub = _rub(mesh, onto[:, keep]) if of_mesh is None else _columns(of_mesh, keep)
     return Contact(
         direction=towards,
         stiffness=mesh.stiffness,
         damping=mesh_damping,
         error=with_error_of(mesh, error),
         gap=0.5 * backlash,
-        friction=_columns(of_mesh, keep),
+        friction=rub,
         events=tuple(mesh.event_phases),
         damping_in_gap=damping_in_gap,
     )
@@ -126,6 +116,16 @@ def with_error_of(mesh: object, error: Entry) -> Entry:
 
 def _columns(function: Callable[[Array], Array], keep: slice | list[int]) -> Callable[..., Array]:
     return lambda phase: function(phase)[:, keep]
+
+
+def _rub(mesh: Any, onto: Array) -> Callable[..., Array]:
+    """Friction of a mesh (p, n) from its three sums: on the knots, if all have the same."""
+    sums = (mesh.friction_sum, mesh.friction_moment_pinion, mesh.friction_moment_wheel)
+    kind, grid = type(sums[0]), getattr(sums[0], "grid", None)
+    if hasattr(kind, "onto") and all(type(e) is kind and e.grid is grid for e in sums):
+        values = np.stack([each.values for each in sums], axis=-1)
+        return cast("Callable[..., Array]", kind(grid, values, onto))
+    return lambda phase: np.stack([np.asarray(each(phase)) for each in sums], axis=-1) @ onto
 
 
 def torques(torque: Array, driver: Driver) -> Array:
