@@ -16,6 +16,7 @@ from tribodyn.cli.settings import (
     check_place,
     read_ranges,
 )
+from tribodyn.errors import InputError
 
 #: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.
 _INTERRUPTED = 130
@@ -103,8 +104,6 @@ def bifurcation(
 
 def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
     """The one key that varies."""
-    from tribodyn.errors import InputError
-
     ranges = read_ranges(over, lists=False)
     if len(ranges) > 1:
         what = f"{len(ranges)} keys vary: {', '.join(ranges)}"
@@ -114,8 +113,6 @@ def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
 
 def _check_lengths(cycles: int, transient: int) -> None:
     """Refuse mesh cycles that make no diagram."""
-    from tribodyn.errors import InputError
-
     for name, value, least in (("cycles", cycles, 2), ("transient", transient, 0)):
         if value < least:
             why = f"At least {least} are needed" if least else "It is a count"

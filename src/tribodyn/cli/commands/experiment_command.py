@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.commands.sweep_command import INTERRUPTED, ended, kept_study
 from tribodyn.cli.screen import say, say_json, table, tell
-from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case
+from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, read_ranges
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -85,8 +85,6 @@ def _keys(found: FrictionExperiment) -> list[str]:
 
 def _options(roughness: str, laws: str) -> dict[str, Any]:
     """Words of the command line as arguments; what is left out stays at its default."""
-    from tribodyn.cli.settings import read_ranges
-
     options: dict[str, Any] = {}
     if roughness:
         given = read_ranges([f"roughness={roughness}"])["roughness"]
