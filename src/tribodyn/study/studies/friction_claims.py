@@ -128,9 +128,8 @@ class FrictionExperiment(Sweep):
 
     def claim_rows(self) -> Iterator[tuple[str, ...]]:
         """Table of the claims under ``CLAIM_HEAD``."""
-        for each in self.claims:
-            yield (each.case, each.statement, each.printed, each.computed, each.verdict,
-                   each.where, each.why)  # fmt: skip
+        names = ("case", "statement", "printed", "computed", "verdict", "where", "why")
+        yield from (tuple(getattr(each, name) for name in names) for each in self.claims)
 
     def nearest(self) -> list[int]:
         """Places of each law with friction, at the roughness nearest to that of the case."""
