@@ -11,7 +11,7 @@ from tribodyn.dynamics.equations.motion import Forces, Scales, forces, with_midd
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
-from tribodyn.errors import ComputationError, Problem, warn
+from tribodyn.errors import ComputationError, warn
 from tribodyn.mesh import MeshTable
 from tribodyn.nonlinear.attractors import settle
 from tribodyn.nonlinear.survey import Outcomes, Points
@@ -67,7 +67,7 @@ def _steady_cycles(lanes: Lanes, places: int, progress: Progress) -> Cycles:
         settle(motions, np.arange(group.size), _TRANSIENT, tolerance=_TOLERANCE, width=_WIDTH)
         if lost := int(np.sum(~np.all(np.isfinite(motions.state), axis=1))):
             what = f"{lost} of {lanes.count} variants grew beyond all bounds"
-            raise ComputationError(Problem(what, "", "", "Narrow the inputs, or add damping"))
+            raise ComputationError(what, "", "", "Narrow the inputs, or add damping")
         restless += int(np.sum(motions.period != 1))
         for begin in range(0, group.size, _HELD):
             part = np.arange(begin, min(begin + _HELD, group.size))
