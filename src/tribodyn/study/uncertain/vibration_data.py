@@ -20,6 +20,7 @@ from tribodyn.errors import (
 )
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.pipeline.motion import engine_arguments
 from tribodyn.study.uncertain.cycles import SIGNALS, signals_at, steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
 from tribodyn.study.uncertain.lanes import Lanes, draw, lanes_of
@@ -225,7 +226,8 @@ class _March:
             name: np.full(lanes.count, 1.1 * values.max()) for name, values in lanes.factors.items()
         }
         setting = Setting(system, lanes.mesh_frequency, 1, steps, extra, LaneParameters(**widest))
-        self.marcher = prepare("rk4", setting)
+        backend = engine_arguments(case).get("backend")
+        self.marcher = prepare("rk4", setting, backend=backend)
         self.parameters, self.elapsed = lanes.parameters(), 0
         self.state = np.tile(static_start(self.marcher.compiled), (lanes.count, 1))
 
