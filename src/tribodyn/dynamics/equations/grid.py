@@ -112,9 +112,12 @@ class RowEvaluator:
 
     def values(self, where: str, entry: Entry, size: int = 1) -> Array:
         """Values on the nodes, of an entry that jumps at events only."""
+        if not varies(entry):
+            one = entry_values(where, entry, self.nodes[:1, 0], size)[0]
+            return np.broadcast_to(one, (*self.nodes.shape, size))
         flat = entry_values(where, entry, self.nodes.reshape(-1), size)
         values = flat.reshape(*self.nodes.shape, size)
-        if self.checks and varies(entry) and not self._is_smooth(entry):
+        if self.checks and not self._is_smooth(entry):
             refuse_chance(where, entry, self.nodes.reshape(-1), flat)
             refuse_jumps(where, entry, self.nodes, values)
         return values
