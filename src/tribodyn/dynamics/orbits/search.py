@@ -86,12 +86,12 @@ class FlankWatch:
 
     def _along(self, states: Array) -> Array:
         """States (rows, 2 n, k) along the directions, (periods, steps, 2, meshes, k)."""
-        shape = (-1, self._steps, 2, self._direction.shape[2], states.shape[2])
-        q = states[:, : self._size]
+        q, cycles = states[:, : self._size], len(states) // self._steps
+        shape = (cycles, self._steps, 2, self._direction.shape[2], states.shape[2])
         if self._held:  # the same direction all along
             along = np.tensordot(q, self._direction[0, 0], (1, 1)).swapaxes(1, 2)
             return np.stack((along[:-1], along[1:]), axis=1).reshape(shape)
-        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(-1, self._steps, 2, *q.shape[1:])
+        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(cycles, self._steps, 2, *q.shape[1:])
         return np.asarray(np.einsum("rsji,crsik->crsjk", self._direction, ends))
 
     def clearance(self, compression: Array) -> Array:
