@@ -10,11 +10,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import pytest
 
 
-def pytest_configure() -> None:
-    """Share one folder among all workers."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Share one folder among all workers, and draw the same on every machine, slow or not."""
+    hypothesis.settings.register_profile("same", derandomize=True, deadline=None)
+    if not config.getoption("--hypothesis-profile"):
+        hypothesis.settings.load_profile("same")
     folder = Path(tempfile.gettempdir()) / "tribodyn-tests"
     os.environ.setdefault("TRIBODYN_CACHE_DIR", str(folder))
     # A job in the background of a shell may begin with Ctrl-C ignored, and so would all it starts.

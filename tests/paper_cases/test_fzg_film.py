@@ -87,24 +87,6 @@ def test_the_film_falls_with_torque_and_rises_with_speed(case: Any) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings(r"ignore:\[film-stiffness\]")
-@pytest.mark.parametrize("kind", ["tangent", "secant"])
-def test_film_stiffness_rises_with_torque_and_falls_with_speed(case: Any, kind: str) -> None:
-    ready = case.replace({"film.stiffness": kind})
-    # Below 150 N*m the film of two pairs turns from rigid to elastic, and its tangent has a pole.
-    loads = [150.0, 200.0, 300.0] if kind == "tangent" else [50.0, 150.0, 300.0]
-    tables = [mesh_of(ready.replace({"operation.torque": load})) for load in loads]
-    fast = [
-        mesh_of(ready.replace({"operation.speed": f"{speed} rpm"})) for speed in (800, 1800, 3000)
-    ]
-    for table, sign in ((tables, 1.0), (fast, -1.0)):
-        film = [each.film_stiffness[each.in_contact].mean() for each in table]
-        mesh = [each.mean_mesh_stiffness for each in table]
-        assert np.all(sign * np.diff(film) > 0.0)
-        assert np.all(sign * np.diff(mesh) > 0.0)
-
-
-@pytest.mark.slow
 def test_the_film_is_far_stiffer_than_the_teeth_and_changes_the_series_little(case: Any) -> None:
     mesh = mesh_of(case)
     here = mesh.in_contact

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+
 import numpy as np
 import pytest
 from broken import SOUND
@@ -71,3 +73,15 @@ def test_a_motion_that_does_not_repeat_is_refused(
     monkeypatch.setattr(motion, "_MOST_CYCLES", 64)
     with pytest.raises(ComputationError, match=r"solver\.engine.*still changes"):
         motion_with(case, "newmark")
+
+
+def test_a_graphics_processor_that_is_not_there_is_told_at_its_key(monkeypatch) -> None:
+    there = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name: None if name == "numba_cuda" else there(name)
+    )
+    asking = read_case(TEXT).replace({"solver.backend": "cuda"})
+    with pytest.raises(InputError, match=r"solver\.backend: numba-cuda is not installed"):
+        td.run(asking)
+    with pytest.raises(InputError, match='does not belong to engine = "newmark"'):
+        asking.replace({"solver.engine": "newmark", "solver.backend": "cuda"})

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -13,6 +17,7 @@ from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import Failed, newmark_failure, runaway, unparted_step
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import lane_load
+from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
@@ -24,6 +29,27 @@ WIDTH = 16
 _OWN_ROWS = 4
 #: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
 _BRIEF = 200_000
+
+#: Where lanes march: on this processor, or on a graphics processor.
+Backend = Literal["cpu", "cuda"]
+_backend: ContextVar[Backend] = ContextVar("backend", default="cpu")
+
+
+@contextmanager
+def marching_on(backend: Backend | None) -> Iterator[None]:
+    """March all lanes inside the block there; None: where it is said outside."""
+    if backend not in (None, "cpu", "cuda"):
+        why = 'It is "cpu", or "cuda" for a graphics processor'
+        raise InputError(f"backend = {backend!r}", Argument("backend"), why)
+    if backend == "cuda":
+        from tribodyn.dynamics._engine.generated.cuda import require_gpu
+
+        require_gpu()
+    token = _backend.set(backend or _backend.get())
+    try:
+        yield
+    finally:
+        _backend.reset(token)
 
 
 @dataclass(frozen=True)
@@ -90,6 +116,16 @@ def march(
     # Whoever gives parameters has looked whether the steps are short enough for them.
     lanes = state.shape[0]
     run = _Run(compiled, method, parameters, period, state, extra_force)
+    if _backend.get() == "cuda":
+        from tribodyn.dynamics._engine.generated.cuda import march_on_gpu
+
+        new, ended = march_on_gpu(
+            run.programs, run.member, period, run.load, state, cycles, record, statistics
+        )
+        if ended.max() >= 0:
+            lane = int(np.argmax(ended))
+            run.report(LaneBlock(np.array([lane]), 1), int(ended[lane]), elapsed)
+        return new
     new = np.empty_like(state)
 
     def march_lanes(block: LaneBlock) -> int:

@@ -14,10 +14,10 @@ the step with adaptive ones. Eight numbers per contact and eight of the search i
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numba as nb
-import numpy as np
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -165,7 +165,7 @@ def go_on(
         g = _distance(room, leader, I64(NOW), sides, w)
         there = alone and abs(g) <= _THERE * room[WIDTH * leader + _CHANGE]
         # A motion beyond all bounds has no crossing to be found; the caller reports it.
-        there = there or not np.isfinite(g)
+        there = there or not math.isfinite(g)
     if there:
         return True, target
     kept, other = (_HIGH, _LOW) if some else (_LOW, _HIGH)
@@ -314,6 +314,6 @@ def split_step(
         restart((0.0,), method, own, 2 * law.code[2], w)
         start, target, searching, left = target, 1.0, False, left - 1
     for i in range(2 * n):
-        if not np.isfinite(w[i]):
+        if not math.isfinite(w[i]):
             return good, I64(-1)
     return good, contact

@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
-from tribodyn.dynamics._engine.blocks import BlockRecord, march
+from tribodyn.dynamics._engine.blocks import Backend, BlockRecord, march, marching_on
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import RecordedLanes, Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, Member, compile_lanes
@@ -19,7 +19,7 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
 from tribodyn.errors import InputError
 from tribodyn.interrupt import in_threads
-from tribodyn.model import Model, Registry, number
+from tribodyn.model import Model, Registry, choice, number
 from tribodyn.types import Array, Index
 
 #: Ways to march over time.
@@ -40,15 +40,23 @@ class Setting(NamedTuple):
 class FixedMarcher:
     """Lanes that march in the steps of the grid."""
 
-    def __init__(self, setting: Setting, compiled: Compiled, method: RungeKutta4 | Newmark) -> None:
+    def __init__(
+        self,
+        setting: Setting,
+        compiled: Compiled,
+        method: RungeKutta4 | Newmark,
+        backend: Backend | None = None,
+    ) -> None:
         self.setting, self.compiled, self.method = setting, compiled, method
+        self.backend: Backend | None = backend
 
     def march(self, state: Array, cycles: int, **options: Any) -> Array:
         """March by some mesh cycles."""
         setting = self.setting
         options |= {"extra_force": setting.extra_force, "parameters": setting.parameters}
         period = 1.0 / setting.frequency
-        return march(self.compiled, period, state, cycles, method=self.method, **options)
+        with marching_on(self.backend):
+            return march(self.compiled, period, state, cycles, method=self.method, **options)
 
 
 class AdaptiveMarcher:
@@ -137,9 +145,11 @@ class AdaptiveMarcher:
 Marcher = FixedMarcher | AdaptiveMarcher
 
 
-def _runge_kutta(setting: Setting) -> Marcher:
+def _runge_kutta(setting: Setting, backend: Backend | None = None) -> Marcher:
+    with marching_on(backend):
+        pass  # a processor that is not there is told before anything is computed
     compiled = compile_lanes(setting.systems, setting.frequency, setting.steps, setting.parameters)
-    return FixedMarcher(setting, compiled, RungeKutta4())
+    return FixedMarcher(setting, compiled, RungeKutta4(), backend)
 
 
 def _dormand_prince(
@@ -170,7 +180,7 @@ def _any_step(setting: Setting) -> Compiled:
 
 #: How each method begins, from a :class:`Setting` and the options that belong to it alone.
 _BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
-    "rk4": (_runge_kutta, ()),
+    "rk4": (_runge_kutta, ("backend",)),
     "dormand-prince": (_dormand_prince, ("rtol", "atol")),
     "newmark": (_newmark, ("gamma", "beta", "preset")),
 }
@@ -188,7 +198,10 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
         )
     begin, own = _BEGIN[name]
     given = {option: value for option, value in options.items() if value is not None}
-    for option in (each for each in given if each not in own):
+    for option in [each for each in given if each not in own]:
+        if given[option] == "cpu":
+            del given[option]  # where all engines march
+            continue
         owner = next(each for each, (_, others) in _BEGIN.items() if option in others)
         raise InputError(
             f'{option} = {given[option]} with method = "{method}"',
@@ -254,7 +267,21 @@ class Engine(Model):
 ENGINES: Registry[Engine] = Registry("engine", model=Engine, part="method")
 
 for _engine in (
-    Engine("runge-kutta-4", "rk4", meaning="steps of one length, of fourth order"),
+    Engine(
+        "runge-kutta-4",
+        "rk4",
+        {
+            "backend": choice(
+                "cpu",
+                {
+                    "cpu": "this processor",
+                    "cuda": "a graphics processor of NVIDIA, for thousands of motions at a time",
+                },
+                meaning="processor that marches the motions",
+            ),
+        },
+        "steps of one length, of fourth order",
+    ),
     Engine(
         "dormand-prince",
         "dormand-prince",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
+from tribodyn.dynamics._engine.blocks import Backend
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS, Statistics
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
@@ -108,6 +109,7 @@ def simulate_ensemble(
     gamma: float | None = None,
     beta: float | None = None,
     preset: str | None = None,
+    backend: Backend | None = None,
 ) -> Ensemble:
     """March many trajectories and gather their statistics without storing a series.
 
@@ -141,6 +143,9 @@ def simulate_ensemble(
         Told about the mesh cycles.
     method, rtol, atol, gamma, beta, preset
         As :func:`simulate` takes them [m or rad, m/s or rad/s].
+    backend : "cpu" or "cuda", optional
+        Of "rk4": the processor that marches. A graphics processor of NVIDIA has one thread for each
+        trajectory, and is worth it from thousands of them on.
 
     Raises
     ------
@@ -164,6 +169,7 @@ def simulate_ensemble(
             why="Statistics cover some of the last mesh cycles",
         )
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
+    options |= {"backend": backend}
     lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size
     extra = np.zeros((lanes, size)) if extra_force is None else np.asarray(extra_force, float)
     extra = np.ascontiguousarray(np.broadcast_to(extra, (lanes, size)))

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
+from tribodyn.dynamics._engine.blocks import Backend
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, prepare
 from tribodyn.dynamics.time.response import Response, build_response, later
@@ -67,6 +68,7 @@ def simulate(
     gamma: float | None = None,
     beta: float | None = None,
     preset: str | None = None,
+    backend: Backend | None = None,
 ) -> Response:
     """March a system over time, every force held as given.
 
@@ -99,6 +101,8 @@ def simulate(
     preset : str, optional
         Of "newmark": "average acceleration", "linear acceleration", "central difference" or "seed"
         (1/2, 1/2) instead of the two numbers.
+    backend : "cpu" or "cuda", optional
+        Of "rk4": the processor that marches; see :func:`simulate_ensemble`.
 
     Returns
     -------
@@ -132,7 +136,8 @@ def simulate(
     state = read_start(system, start)[None, :]
     frequency = np.array([float(mesh_frequency)])
     setting = Setting(system, frequency, cycles, steps, extra[None, :])
-    marcher = prepare(method, setting, rtol=rtol, atol=atol, gamma=gamma, beta=beta, preset=preset)
+    options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
+    marcher = prepare(method, setting, **options, backend=backend)
     kept = cycles if kept is None else require_whole("kept", kept)
     skipped = cycles - min(kept, cycles)
     record = np.empty(((cycles - skipped) * steps + 1, 2 * system.size, 1))

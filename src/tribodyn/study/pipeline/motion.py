@@ -32,13 +32,16 @@ _PERIODS = (1, 2, 3, 4)
 
 def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progress) -> Response:
     """Compute the motion of a case."""
+    from tribodyn.dynamics._engine.blocks import marching_on
+
     steps = steps_of(case, system, mesh_frequency)
-    if case.solver.method == "steady":
-        response = _steady(system, mesh_frequency, steps, progress)
-        if case.solver.engine != _ORBITS:
-            response = _marched_orbit(case, system, response, steps, progress)
-    else:
-        response = _transient(case, system, mesh_frequency, steps, progress)
+    with marching_on(engine_arguments(case).get("backend")):
+        if case.solver.method == "steady":
+            response = _steady(system, mesh_frequency, steps, progress)
+            if case.solver.engine != _ORBITS:
+                response = _marched_orbit(case, system, response, steps, progress)
+        else:
+            response = _transient(case, system, mesh_frequency, steps, progress)
     _warn_of_tension(case, response)
     return response
 

@@ -1,0 +1,163 @@
+"""All lanes on a graphics processor, one thread for each.
+
+The thread runs the engine's own functions, compiled for the processor, with the forces and the step
+of the structure at hand as straight lines of code. Numba's simulator (``NUMBA_ENABLE_CUDASIM=1``)
+runs them as they stand, in Python.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from functools import lru_cache
+from types import FunctionType
+from typing import Any
+
+import numba
+import numpy as np
+
+from tribodyn.compiled import tell
+from tribodyn.dynamics._engine import contact_forces, crossing, moments, runge_kutta
+from tribodyn.dynamics._engine.generated.source import write_source
+from tribodyn.dynamics._engine.statistics import Statistics
+from tribodyn.dynamics.equations.divergence import most_splits
+from tribodyn.dynamics.equations.program import Program, lay_out
+from tribodyn.errors import Argument, ComputationError, InputError
+from tribodyn.interrupt import STOPPED, refuse_stopped, stop_flag
+from tribodyn.types import Array, Index
+
+#: Threads of a block, which share a multiprocessor, and lanes in the memory of the processor.
+_BLOCK, _LANES = 64, 1 << 16
+#: Steps of one lane, and of all, between two looks at an interruption: a fraction of a second, also
+#: on a processor that draws a screen.
+_STEPS, _ALL_STEPS = 20_000, 20_000_000
+
+
+def require_gpu() -> None:
+    """Refuse where no graphics processor answers."""
+    where, stay = Argument("backend"), 'or leave backend = "cpu"'
+    try:
+        if not numba.config.ENABLE_CUDASIM and importlib.util.find_spec("numba_cuda") is None:
+            raise ImportError("It compiles for graphics processors of NVIDIA")
+        from numba import cuda
+    except ImportError as error:
+        what, remedy = "numba-cuda is not installed", 'Install it: pip install "tribodyn[cuda]", '
+        raise InputError(what, where, f"{error}", remedy + stay) from None
+    if not cuda.is_available():
+        lines = [line.strip(" .") for line in str(cuda.cuda_error()).splitlines()]
+        reason = [line for line in lines if line and not line.endswith(":")]
+        what, why = "no graphics processor of NVIDIA answers", "; ".join(reason[:1])
+        remedy = f"Install its driver, so that nvidia-smi lists the processor, {stay}"
+        raise InputError(what, where, why, remedy)
+
+
+class _Kernel:
+    """The thread of one structure, and the sizes of what it works with."""
+
+    def __init__(self, source: str, n: int, contacts: int, frictions: int, columns: int) -> None:
+        from numba import cuda
+
+        from tribodyn.dynamics._engine.generated import thread
+
+        self.slots = lay_out(n, contacts, frictions).end
+        parts = 1 + (most_splits(contacts) + 1) * (2 + contacts + 4 * n)
+        sizes = (self.slots, 3 * columns, crossing.WIDTH * (contacts + 1), parts)
+        self.ends = tuple(int(end) for end in np.cumsum(sizes))
+        names: dict[str, Any] = {}
+        for module in (contact_forces, crossing, moments, runge_kutta, thread):
+            names.update(vars(module))
+        for name, value in list(names.items()):
+            function = getattr(value, "py_func", value)
+            if function is not value or getattr(value, "__module__", "") == thread.__name__:
+                names[name] = FunctionType(function.__code__, names, name, function.__defaults__)
+        names |= {"SLOTS": self.slots, "COLUMNS": columns, "ENDS": self.ends}
+        exec(compile(source, "<straight lines of one structure>", "exec"), names)
+        functions = {name: f for name, f in names.items() if getattr(f, "__globals__", 0) is names}
+        self.march = cuda.jit(functions.pop("march_thread"))
+        if not numba.config.ENABLE_CUDASIM:
+            names |= {name: cuda.jit(device=True)(each) for name, each in functions.items()}
+            tell("compiling the engine for the graphics processor, about half a minute")
+
+
+_kernel = lru_cache(16)(_Kernel)
+
+
+def march_on_gpu(
+    programs: tuple[Program, ...],
+    member: Index,
+    period: Array,
+    load: Array,
+    state: Array,
+    cycles: int,
+    record: Array | None,
+    statistics: Statistics | None,
+) -> tuple[Array, Index]:
+    """March all lanes; returns their states and what the march of a block returns for each."""
+    new, codes = np.empty_like(state), np.empty(len(state), dtype=np.int64)
+    for first in range(0, len(state), _LANES):
+        lanes = slice(first, first + _LANES)
+        kept = np.zeros((0, state.shape[1], codes[lanes].size))
+        kept = kept if record is None else np.empty((record.shape[0], *kept.shape[1:]))
+        sums = None if statistics is None else np.ascontiguousarray(statistics.moments[:, lanes])
+        given = member[lanes], period[lanes], load[lanes], state[lanes]
+        try:
+            new[lanes], codes[lanes] = _march(programs, given, cycles, kept, statistics, sums)
+        except Exception as error:
+            if not type(error).__module__.startswith(("numba", "cuda")):
+                raise
+            raise ComputationError(
+                f"the graphics processor gave up: {str(error).strip()}",
+                Argument("backend"),
+                f"It was to march {len(given[0])} lanes and record {kept.nbytes / 2**20:.0f} MiB",
+                'March fewer at a time, update the driver, or take backend = "cpu"',
+            ) from error
+        if record is not None:
+            record[:, :, lanes] = kept
+        if statistics is not None:
+            statistics.moments[:, lanes] = sums
+    return new, codes
+
+
+def _march(
+    programs: tuple[Program, ...],
+    lanes_given: tuple[Array | Index, ...],
+    cycles: int,
+    record: Array,
+    statistics: Statistics | None,
+    sums: Array | None,
+) -> tuple[Array, Index]:
+    """March lanes, of which member, period, load and state are given."""
+    from numba import cuda
+
+    first, lanes, double = programs[0], *lanes_given[-1].shape
+    contacts, frictions = int(first.code[1]), first.slots.end - first.slots.friction
+    kernel = _kernel(write_source(first), double // 2, contacts, frictions, int(first.code[2]))
+    outputs, waves = np.zeros((0, double)), np.zeros((0, 3, 0, 2))
+    if statistics is not None:
+        outputs, waves = statistics.outputs, statistics.waves
+    harmonics = waves.shape[2]
+    tables = np.stack([program.rows for program in programs])
+    fixed = first.code, first.reads, tables, first.width, first.restart, *lanes_given
+    given = [cuda.to_device(np.ascontiguousarray(part)) for part in fixed]
+    kept = cuda.device_array((kernel.slots, lanes))
+    room = cuda.device_array((lanes, kernel.ends[-1] + 6 * harmonics))
+    gathered = [cuda.to_device(np.ascontiguousarray(part)) for part in (outputs, waves.reshape(-1))]
+    moments_there = cuda.to_device(np.zeros((0, lanes)) if sums is None else sums)
+    ended = cuda.to_device(np.full(lanes, -1, dtype=np.int64))
+    steps = first.width.size
+    most = max(1, min(_STEPS // steps, _ALL_STEPS // (steps * lanes)))
+    threads = min(_BLOCK, lanes)
+    for done in range(0, cycles, most):
+        count = min(most, cycles - done)
+        rows = slice(done * steps, (done + count) * steps + 1) if len(record) else slice(0, 0)
+        states = cuda.device_array((rows.stop - rows.start, double, lanes))
+        kernel.march[-(-lanes // threads), threads](
+            *given, count, done * steps, kept, room, states, *gathered, harmonics, moments_there,
+            1.0 / cycles, ended,
+        )  # fmt: skip
+        cuda.synchronize()
+        states.copy_to_host(record[rows])
+        if stop_flag()[0] != 0:
+            refuse_stopped(STOPPED)
+    if sums is not None:
+        moments_there.copy_to_host(sums)
+    return kept.copy_to_host()[:double].T, ended.copy_to_host()

@@ -1,0 +1,148 @@
+"""One trajectory marched by one thread: the same steps, crossings and statistics as in a block.
+
+Nothing here is compiled by itself: :mod:`tribodyn.dynamics._engine.generated.cuda` compiles it for
+the processor, with all that it calls. The functions of the engine that work on vectors of lanes
+work on numbers there, for which they find the first functions below in the place of those of
+:mod:`tribodyn.dynamics._engine.lanes`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import cuda
+from numba.extending import register_jitable
+
+from tribodyn.dynamics._engine.contact_forces import I64, Law, set_sides, slots_of
+from tribodyn.dynamics._engine.crossing import split_step
+from tribodyn.dynamics._engine.marching import (
+    UNPARTED,
+    has_dead_zones,
+    put_lane,
+    set_up,
+    take_lane,
+)
+from tribodyn.dynamics._engine.moments import Gathered, gather, gather_parts
+from tribodyn.dynamics._engine.runge_kutta import take_over
+
+#: Constants and functions of one structure, put in before compiling.
+SLOTS, COLUMNS, ENDS = 0, 0, (0, 0, 0, 0)
+step: Any = None
+left_side: Any = None
+
+
+def load(lanes: Any, w: Any, slot: int) -> Any:
+    """The number in a slot."""
+    return w[slot]
+
+
+def store(w: Any, slot: int, value: Any) -> None:
+    """Write a number into a slot."""
+    w[slot] = value
+
+
+def entry(lanes: Any, rows: Any, item: int) -> Any:
+    """One item of a row table."""
+    return rows[item]
+
+
+def first_lane(value: Any) -> Any:
+    """The number itself."""
+    return value
+
+
+def least(left: Any, right: Any) -> Any:
+    """Smaller of two numbers."""
+    return left if left < right else right
+
+
+def greatest(left: Any, right: Any) -> Any:
+    """Larger of two numbers."""
+    return left if left > right else right
+
+
+def above(left: Any, right: Any) -> Any:
+    """1 where the left number is above the right one, else 0."""
+    return 1.0 if left > right else 0.0
+
+
+def below(left: Any, right: Any) -> Any:
+    """1 where the left number is below the right one, else 0."""
+    return 1.0 if left < right else 0.0
+
+
+def prepare(method: Any, law: Law, base: int, duration: float, kind: int, w: Any) -> None:
+    """The method keeps nothing of its own."""
+
+
+def restart(lanes: Any, method: Any, law: Law, base: int, w: Any) -> None:
+    """The method keeps nothing of its own."""
+
+
+@register_jitable
+def march_thread(
+    code: Any, reads: Any, tables: Any, share: Any, again: Any, member: Any, period: Any, load: Any,
+    state: Any, cycles: int, marched: int, kept: Any, room: Any, record: Any, outputs: Any,
+    waves: Any, harmonics: int, moments: Any, weight: float, ended: Any,
+) -> None:  # fmt: skip
+    """March one lane by ``cycles`` mesh cycles, the first time or on from its slots ``kept``.
+
+    ``marched`` counts the steps before; ``ended`` becomes what the march of a block returns.
+    """
+    lane = cuda.grid(1)
+    if lane >= period.size or ended[lane] >= 0:
+        return
+    w = cuda.local.array(SLOTS, np.float64)
+    for slot in range(SLOTS):
+        w[slot] = kept[slot, lane] if marched > 0 else 0.0
+    law, own, scratch = Law(code, reads, tables[member[lane]]), lane + 1, room[lane]
+    if marched == 0:
+        set_up(1, code, period[lane:own], load[lane:own], state[lane:own], w)
+    single, part, search, parts, near = (
+        scratch[:SLOTS], scratch[ENDS[0] : ENDS[1]], scratch[ENDS[1] : ENDS[2]],
+        scratch[ENDS[2] : ENDS[3]], scratch[ENDS[3] :],
+    )  # fmt: skip
+    gathered = Gathered(outputs, waves, harmonics, moments[:, lane])
+    s = slots_of(code)
+    switching, gathering, point = has_dead_zones(law), moments.shape[0] > 0, 0
+    for _cycle in range(cycles):
+        for r in range(share.size):
+            base = 3 * COLUMNS * r
+            w[s.h] = period[lane] * share[r]
+            if switching and (again[r] or marched + point == 0):
+                set_sides((0.0,), law, base, I64(0), w)
+            if record.shape[0] > 0:
+                for item in range(state.shape[1]):
+                    record[point, item, lane] = w[item]
+            step((0.0,), 0, law, r, base, w)
+            split = switching and left_side((0.0,), law, base + 2 * COLUMNS, w)
+            wave, of_step = 6 * harmonics * r, weight * share[r]
+            if split:
+                take_lane(0, 1, SLOTS, w, single)
+                _, contact = split_step(0, law, base, w[s.h], part, single, parts, search)
+                if contact >= 0:
+                    ended[lane] = UNPARTED + (marched + point) * s.contacts + contact
+                    return
+                put_lane(0, 1, 4 * s.n, 6 * s.n, w, single)
+                put_lane(0, 1, s.side, s.side + s.contacts, w, single)
+                if gathering:
+                    gather_parts(
+                        law, base, parts, w[s.h], part, of_step, wave, near, gathered, single
+                    )
+                    set_sides((0.0,), law, base + 2 * COLUMNS, I64(2), w)
+            elif gathering:
+                w[s.inverse] = 1.0 / w[s.h]
+                gather((0.0,), law, base, switching, of_step, wave, gathered, w)
+            take_over((0.0,), s.n, w)
+            point += 1
+        for item in range(state.shape[1]):
+            if not math.isfinite(w[item]):
+                ended[lane] = marched + point
+                return
+    if record.shape[0] > 0:
+        for item in range(state.shape[1]):
+            record[point, item, lane] = w[item]
+    for slot in range(SLOTS):
+        kept[slot, lane] = w[slot]
