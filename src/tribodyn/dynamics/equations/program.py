@@ -112,7 +112,7 @@ class _Terms:
 
     def terms(self, values: Array, slot: int) -> int:
         """Append a term for each last item that is not zero throughout; returns how many."""
-        some = values.any(axis=tuple(range(values.ndim - 1)))
+        some = np.asarray(values.any(axis=tuple(range(values.ndim - 1))))
         present = [item for item in range(some.size) if self.keeps(some[item])]
         for item in present:
             self.factor(values[..., item])
