@@ -119,7 +119,7 @@ class FlankWatch:
         if np.any(room <= 0.0):
             return False
         rates = self.flank(compression)[:, None] * self._along(slopes)
-        rates = rates.reshape(room.size, -1)
+        rates = rates.reshape(room.size, distance.size)
         first, steepest = float(np.abs(rates @ distance).max(initial=0.0)), 0.0
         if rates.size:
             steepest = float(np.sqrt((rates**2).sum(axis=1).max()))
