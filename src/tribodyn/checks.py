@@ -24,13 +24,25 @@ def positive(**quantities: ArrayLike) -> list[Array]:
     arrays = [real_numbers(Argument(name), value) for name, value in quantities.items()]
     for name, array in zip(quantities, arrays, strict=True):
         if not np.all((array > 0.0) & (array < np.inf)):
-            require_positive(name, array, QUANTITIES[name].unit, remedy=_REMEDIES.get(name, ""))
+            unit = QUANTITIES[name].unit if name in QUANTITIES else ""
+            require_positive(name, array, unit, remedy=_REMEDIES.get(name, ""))
+    require_one_shape(**dict(zip(quantities, arrays, strict=True)))
     return arrays
+
+
+def require_one_shape(**arrays: Array) -> None:
+    """Raise :class:`InputError` unless arrays, each called by its name, broadcast to one shape."""
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        what = ", ".join(f"{name} has the shape {array.shape}" for name, array in arrays.items())
+        why, remedy = "They are combined one by one", "Give numbers, or arrays of one shape"
+        raise InputError(what, Argument(" and ".join(arrays)), why, remedy) from None
 
 
 def one_or_more(**quantities: ArrayLike) -> list[Array]:
     """Lists of quantities of which one value or several are given, all of them positive."""
-    lists = [np.atleast_1d(values) for values in positive(**quantities)]
+    lists = [np.atleast_1d(positive(**{name: value})[0]) for name, value in quantities.items()]
     for name, values in zip(quantities, lists, strict=True):
         if values.ndim != 1 or values.size == 0:
             raise InputError(

@@ -18,6 +18,7 @@ from inspect import cleandoc, signature
 from pathlib import Path
 from typing import Any, TypeVar
 
+from tribodyn.arguments.reading import checked
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Registry
 
@@ -214,7 +215,7 @@ def drawing(
 
     def keep(draw: Callable[..., Any]) -> Drawing:
         argument = next(iter(signature(draw).parameters))
-        figure = Drawing(name, draw, heading, caption, missing, kinds, made_by)
+        figure = Drawing(name, checked(draw), heading, caption, missing, kinds, made_by)
         text = figure_text(cleandoc(draw.__doc__ or ""), argument, kinds)
         object.__setattr__(figure, "__doc__", text)
         FIGURES.register(name)(figure)

@@ -7,11 +7,13 @@ or argument), why (the limit and its origin) and what to do next.
 from __future__ import annotations
 
 import re
+import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -241,7 +243,16 @@ def warn(code: str, message: str, *, stacklevel: int = 2) -> None:
     """
     warning = ModelWarning(code, message)
     if not any(takes(warning) for takes in reversed(_listeners.get())):
-        warnings.warn(warning, stacklevel=stacklevel + 1)
+        warnings.warn(warning, stacklevel=frames(stacklevel + 1, sys._getframe()))
+
+
+def frames(count: int, frame: FrameType) -> int:
+    """Frames to skip from this one on, with those in between that only read arguments."""
+    level = 1
+    while frame.f_back is not None and count > 1:
+        frame, level = frame.f_back, level + 1
+        count -= frame.f_code.co_name != "reading_arguments"
+    return level
 
 
 @contextmanager
@@ -342,7 +353,7 @@ _IN_SI = {
 }
 
 #: No quantity in SI is as large, and powers of this one still are numbers of the machine.
-_ENDLESS = 1e60
+ENDLESS = 1e60
 
 
 def _check(
@@ -351,7 +362,7 @@ def _check(
     array = real_numbers(Argument(name), value)
     if not array.size:
         raise InputError(f"{name} is empty", Argument(name), "Wanted: numbers", "Give one at least")
-    bad = ~((np.abs(array) < _ENDLESS) & holds(array))
+    bad = ~((np.abs(array) < ENDLESS) & holds(array))
     if np.any(bad):
         worst = np.atleast_1d(array)[np.atleast_1d(bad)][0]
         raise InputError(

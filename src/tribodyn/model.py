@@ -376,7 +376,7 @@ class Registry(Generic[T]):
             Problem(
                 what=f'no {self.kind} is called "{name}"',
                 why=f"Known: {', '.join(self._items)}",
-                remedy=f'Did you mean "{near[0]}"?' if near else "",
+                remedy=f'Did you mean "{near[0]}"?' if near else "Choose one of these",
             )
         )
 

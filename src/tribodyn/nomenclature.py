@@ -9,7 +9,16 @@ from __future__ import annotations
 import difflib
 from dataclasses import dataclass
 
+from tribodyn.arguments import guard
+from tribodyn.errors import Argument, InputError
+
 __all__ = ["QUANTITIES", "Quantity", "find", "lookup"]
+
+
+class UnknownQuantityError(InputError, KeyError):
+    """No quantity has this name."""
+
+    __str__ = Exception.__str__
 
 
 @dataclass(frozen=True)
@@ -220,8 +229,8 @@ def lookup(name: str) -> Quantity:
 
     Raises
     ------
-    KeyError
-        If there is none; the message names the nearest.
+    InputError
+        If there is none; the message names the nearest. It is a KeyError as well.
 
     Examples
     --------
@@ -232,7 +241,8 @@ def lookup(name: str) -> Quantity:
         return QUANTITIES[name]
     near = difflib.get_close_matches(name, QUANTITIES, n=1)
     hint = f'; did you mean "{near[0]}"?' if near else ""
-    raise KeyError(f'no quantity is called "{name}"{hint}')
+    what, why = f'no quantity is called "{name}"{hint}', "QUANTITIES holds all names"
+    raise UnknownQuantityError(what, Argument("name"), why, "Look for it with find(name)")
 
 
 def find(text: str) -> list[Quantity]:
@@ -258,3 +268,6 @@ def find(text: str) -> list[Quantity]:
         return exact
     lowered = text.lower().replace(" ", "_")
     return [q for q in QUANTITIES.values() if lowered in q.name or lowered in q.meaning.lower()]
+
+
+guard(__name__)

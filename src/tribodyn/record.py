@@ -196,7 +196,8 @@ class Record:
             if len(shapes) > 1:
                 told = ", ".join(" x ".join(dims) or "one value" for dims in sorted(shapes))
                 what = f"{type(self).__name__} is no one table: its fields stand over {told}"
-                raise InputError(what, "", "", 'Take .to_xarray()[["name", ...]].to_dataframe()')
+                why = "A table has one row for each value of its axes"
+                raise InputError(what, "", why, 'Take .to_xarray()[["name", ...]].to_dataframe()')
         return data.to_dataframe()
 
     def plot(self, *arguments: Any, **options: Any) -> Any:

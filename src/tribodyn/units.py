@@ -16,6 +16,8 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
+from tribodyn.arguments import guard
+
 __all__ = [
     "SPELLINGS",
     "UnitProblemError",
@@ -323,7 +325,7 @@ def convert(value: float, unit: str, to: str) -> float:
     Parameters
     ----------
     value : float
-        Value in ``unit``.
+        Value in ``unit``; any, NaN too.
     unit, to : str
         Unit of the value and unit wanted.
 
@@ -369,7 +371,7 @@ def format_quantity(value: float, unit: str, display_unit: str | None = None) ->
     Parameters
     ----------
     value : float
-        Value in ``unit``.
+        Value in ``unit``; any, NaN too.
     unit : str
         SI unit.
     display_unit : str, optional
@@ -382,3 +384,6 @@ def format_quantity(value: float, unit: str, display_unit: str | None = None) ->
     """
     shown = display_unit or unit
     return f"{convert(float(value), unit, shown):.10g} {shown}".strip()
+
+
+guard(__name__)

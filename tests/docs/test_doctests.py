@@ -15,7 +15,15 @@ NAMES = ["tribodyn", *(name for name in FOUND if not name.endswith("__main__"))]
 
 def examples(name: str) -> list[doctest.DocTest]:
     module = importlib.import_module(name)
-    return [test for test in doctest.DocTestFinder().find(module, name) if test.examples]
+    tests = doctest.DocTestFinder().find(module, name)
+    return [test for test in tests if test.examples and _is_home(test.name, name)]
+
+
+def _is_home(example: str, name: str) -> bool:
+    """Whether what is documented was written in this module, and is not only found there."""
+    short = example.removeprefix(f"{name}.").partition(".")[0]
+    thing = getattr(importlib.import_module(name), short, None)
+    return getattr(getattr(thing, "__wrapped__", thing), "__module__", name) == name
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")

@@ -1,5 +1,6 @@
 """Figures read off a motion: rms, peaks, mesh harmonics, spectra, direction indicator."""
 
+from tribodyn.arguments import guard
 from tribodyn.nonlinear.basins import basins
 from tribodyn.nonlinear.basins_attractors import Attractor, Basins
 from tribodyn.nonlinear.bifurcation import Bifurcation, bifurcation
@@ -93,3 +94,5 @@ __all__ = [
     "time_synchronous_average",
     "zoom_spectrum",
 ]
+
+guard(__name__)

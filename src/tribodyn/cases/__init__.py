@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from types import ModuleType
 
+from tribodyn.arguments import guard
 from tribodyn.cases.catalogue import case_files, cases
 from tribodyn.cases.load import load_case, run
 from tribodyn.cases.papers.comparison import PaperComparison, compare_with_paper
@@ -19,6 +20,8 @@ __all__ = [
     "load_result",
     "run",
 ]
+
+guard(__name__)
 
 
 class _Catalogue(ModuleType):

@@ -43,8 +43,8 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     path = named.get(asked, Path(asked))
     kind = file_kind(path)
     if not asked:
-        remedy = "See: tribodyn cases"
-        raise InputError("the name of the case is empty", "argument name_or_path", "", remedy)
+        why, remedy = "A case has a name, or is a file", "See: tribodyn cases"
+        raise InputError("the name of the case is empty", "argument name_or_path", why, remedy)
     if kind == "directory":
         inner = path / "case.toml"
         remedy = f"Use {inner}" if inner.is_file() else "Give the path of a TOML file"

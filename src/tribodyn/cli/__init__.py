@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from tribodyn.arguments import guard
 from tribodyn.cli.entry import call, main
 
 __all__ = ["call", "main"]
+
+guard(__name__)

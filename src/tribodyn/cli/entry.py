@@ -180,7 +180,7 @@ def _dispatch(arguments: list[str]) -> int:
     from cyclopts.exceptions import CycloptsError
 
     from tribodyn.cli.app import COMMANDS, make_app
-    from tribodyn.errors import InputError, Problem
+    from tribodyn.errors import InputError
 
     names = [name for name, _, _ in COMMANDS]
     if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
@@ -189,7 +189,8 @@ def _dispatch(arguments: list[str]) -> int:
         result: Any = make_app()(arguments, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many words: \1", str(error).strip())
-        raise InputError(Problem(what, remedy=_remedy(arguments, what))) from None
+        why = "Commands take the words and options that their help lists"
+        raise InputError(what, why=why, remedy=_remedy(arguments, what)) from None
     return result if isinstance(result, int) else 0
 
 
@@ -223,7 +224,16 @@ def _failed(error: BaseException, as_json: bool) -> int:
     if isinstance(error, TribodynError):
         code, problems = error.exit_code, list(error.problems)
     elif isinstance(error, KeyboardInterrupt):
-        code, problems = INTERRUPTED, [Problem("interrupted", remedy="No unfinished file is left")]
+        code, problems = (
+            INTERRUPTED,
+            [
+                Problem(
+                    "interrupted",
+                    remedy="No unfinished file is left",
+                    why="The job was ended from outside",
+                )
+            ],
+        )
     elif isinstance(error, OSError) and error.errno in FAULTS_OF_THE_PLACE:
         code, problems = 1, [cannot_write(error.filename or "standard output", error)]
     else:

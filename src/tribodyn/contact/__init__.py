@@ -8,6 +8,7 @@
 | `ellipse` | half axes, pressure and approach of an elliptical contact |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.contact.ellipse import HertzEllipse, hertz_ellipse
 from tribodyn.contact.hertz import HertzLine, effective_modulus, hertz_line
 from tribodyn.contact.path import (
@@ -33,3 +34,5 @@ __all__ = [
     "hertz_line",
     "path_of_contact",
 ]
+
+guard(__name__)

@@ -413,6 +413,7 @@ def gear_loss_factor(pair: SpurPair, share: Callable[[Array], Array] | None = No
             "the load share is not finite on the path of contact",
             where=Argument("share"),
             remedy="Return a finite share for every path between A and E",
+            why="Film and friction of a pair are computed under its share of the load",
         )
     motion = contact.kinematics(path, 1.0)
     return float(weight @ (values * np.abs(motion.sliding_speed))) / pair.pinion.base_radius

@@ -1,5 +1,6 @@
 """Lumped structures with time-varying contacts: steady states, transients, ensembles."""
 
+from tribodyn.arguments import guard
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
@@ -93,3 +94,5 @@ __all__ = [
     "torsional",
     "torsional_stiffness",
 ]
+
+guard(__name__)

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from tribodyn.arguments import guard
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
 from tribodyn.ehl.formulas.elliptical import hamrock_dowson_minimum
@@ -83,3 +84,5 @@ __all__ = [
     "solve_line_contacts",
     "solve_transient_line_contact",
 ]
+
+guard(__name__)

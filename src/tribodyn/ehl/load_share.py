@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
+from tribodyn.checks import positive, require_one_shape
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
@@ -145,6 +145,7 @@ def balanced_load_share(
     require_between("central_film", np.minimum(film, 1e50), 0.0, np.inf, "m")
     require_positive("film_exponent", film_exponent)
     pressure, modulus = positive(hertz_pressure=hertz_pressure, effective_modulus=effective_modulus)
+    require_one_shape(central_film=film, hertz_pressure=pressure, effective_modulus=modulus)
     with np.errstate(divide="ignore"):
         ratio = np.log(film / asperities.rms_height)
     # Asperities carry evenly over the width: their pressure is compared with the mean one.

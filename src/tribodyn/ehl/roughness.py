@@ -76,6 +76,7 @@ class RoughnessProfile:
                 f"{height.size} heights and {position.size} positions",
                 where="argument height",
                 why="a profile needs at least 8 heights, each with its position",
+                remedy="Measure more points, and give one position for each height",
             )
         bad = np.flatnonzero(~np.isfinite(height))
         if bad.size:
@@ -347,7 +348,14 @@ class RoughnessProfile:
 def _fault(path: str | PathLike[str], line: int, what: str) -> InputError:
     place = f"{Path(path).name}, line {line}" if line else Path(path).name
     why = "A profile has the columns position and height, their units below, for example mm,um"
-    return InputError(Problem(f"{what} ({place})", Argument("roughness_profile"), why))
+    return InputError(
+        Problem(
+            f"{what} ({place})",
+            Argument("roughness_profile"),
+            why,
+            remedy="Give a profile, or the path of a file with the columns position and height",
+        )
+    )
 
 
 #: Grid points that a wavelength needs, and the share of the mean square that may lie below.

@@ -10,6 +10,7 @@
 | ``write`` | a case as a REXS model, which reads back without loss |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear, read_rexs
 from tribodyn.exchange.tables import write_tables
 from tribodyn.exchange.to_case import case_from_rexs
@@ -25,3 +26,5 @@ __all__ = [
     "write_rexs",
     "write_tables",
 ]
+
+guard(__name__)

@@ -121,10 +121,15 @@ def read_file(path: str | PathLike[str]) -> RexsFile:
         content = read_bytes(Path(path), "rexs")
     except TypeError:
         why = "Wanted: the place of a file"
-        raise InputError(f"path = {path!r}", Argument("path"), why) from None
+        raise InputError(
+            f"path = {path!r}", Argument("path"), why, "Give a text or a Path"
+        ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"cannot be read: {reason}", place) from None
+        why = "The file system says so"
+        raise InputError(
+            f"cannot be read: {reason}", place, why, "Check place and rights"
+        ) from None
     try:
         return model_of(_tree(content, place), place)
     except RecursionError:
@@ -281,7 +286,9 @@ def _dicts(parent: Any, name: str, place: str) -> list[dict[str, Any]]:
     if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
         raise InputError(f"{name} is no list of objects", place, "", _REMEDY)
     if len(items) > _MOST:
-        raise InputError(f"there are {len(items)} {name}", place, f"At most {_MOST} are read")
+        raise InputError(
+            f"there are {len(items)} {name}", place, f"At most {_MOST} are read", "Export less"
+        )
     return items
 
 

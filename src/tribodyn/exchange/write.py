@@ -70,7 +70,7 @@ def write_rexs(case: Case, path: str | PathLike[str], *, force: bool = False) ->
         raise InputError(
             f'the name ends in "{target.suffix}"',
             str(path),
-            "",
+            "The ending says how the model is written",
             f"Let it end in {', '.join(_WRITERS)}",
         )
     if case.gears.kind != "spur":

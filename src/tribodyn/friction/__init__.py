@@ -15,6 +15,7 @@
 
 from __future__ import annotations
 
+from tribodyn.arguments import guard
 from tribodyn.friction.base import (
     LAWS,
     STEEL_BODIES,
@@ -68,3 +69,5 @@ __all__ = [
     "schlenk",
     "xu_2007",
 ]
+
+guard(__name__)

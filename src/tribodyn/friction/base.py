@@ -354,6 +354,7 @@ class FrictionLaw(Model):
                 what=f'option "{name}" is missing',
                 where=f'friction law "{self.name}"',
                 remedy=f"Give {name}",
+                why="The law cannot be computed without it",
             )
             for name in self.options
             if complete[name] is None and self.declared[name].required

@@ -15,6 +15,7 @@
 | `hypoid` | hypoid and spiral bevel pairs: blank, flanks, contact |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.gear.flank_gap import (
     flank_gap,
     hunting_period,
@@ -93,3 +94,5 @@ __all__ = [
     "tooth_positions",
     "zero_backlash_center_distance",
 ]
+
+guard(__name__)

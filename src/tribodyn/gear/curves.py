@@ -55,7 +55,11 @@ def inverse_involute(value: float) -> float:
         if step <= 1e-16:  # descending no more: rounding is reached
             return angle
         angle -= step
-    raise ComputationError(f"no pressure angle found for the involute function {value!r}")
+    raise ComputationError(
+        f"no pressure angle found for the involute function {value!r}",
+        why="The search left the range in which an angle was sought",
+        remedy="Give a value of 0 or more that belongs to an angle below 80 degrees",
+    )
 
 
 @dataclass(frozen=True)

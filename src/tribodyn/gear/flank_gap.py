@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.checks import require_one_shape
 from tribodyn.gear.mesh_geometry import FlankRange, default_relief_length, flank_ranges
 from tribodyn.gear.modification import FlankModification
 from tribodyn.gear.spur_gear import SpurGear
@@ -304,6 +305,10 @@ def flank_gap(
     [10.0, 0.0, 10.0]
     """
     face = np.asarray(face_position, dtype=float)
+    radii = np.asarray(pinion_curvature_radius), np.asarray(wheel_curvature_radius)
+    require_one_shape(
+        pinion_curvature_radius=radii[0], wheel_curvature_radius=radii[1], face_position=face
+    )
     gap = pair.misalignment * face / pair.common_face_width
     length = default_relief_length(pair)
     for gear, flank, radius in zip(

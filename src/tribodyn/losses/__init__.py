@@ -11,6 +11,7 @@
 | `measured_loss` | friction coefficient and its uncertainty from measured torque losses |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.losses.bearings import BEARINGS, BearingMoments, RollingBearing, bearing_moments
 from tribodyn.losses.gear_loss import gear_loss_factor, ohlendorf_loss_factor
 from tribodyn.losses.gearbox import Gearbox, GearboxLosses, ShaftParts, gearbox_losses
@@ -41,3 +42,5 @@ __all__ = [
     "seal_loss",
     "windage_loss",
 ]
+
+guard(__name__)

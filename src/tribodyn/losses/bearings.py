@@ -227,6 +227,7 @@ def bearing_moments(
     rolling, sliding = _base_values(bearing, family, turns, radial_load, abs(axial_load))
     heating = 1.0 / (1.0 + 1.84e-9 * (turns * mean) ** 1.28 * viscosity**0.64)
     width = math.sqrt(family.k_z / (2.0 * (outer - bore)))
+    require_between("replenishment", replenishment, 0.0, 1e-3)
     starving = math.exp(-replenishment * viscosity * turns * (bore + outer) * width)
     boundary = math.exp(-2.6e-8 * (turns * viscosity) ** 1.4 * mean)
     friction = boundary * (0.12 if turns else 0.15) + (1.0 - boundary) * sliding_friction

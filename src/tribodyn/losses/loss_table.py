@@ -230,7 +230,12 @@ def _columns(file: Path, head: Sequence[str]) -> Mapping[str, tuple[int, float]]
             try:
                 found[name] = (place, units.parse(f"1 {written}", known[name]))
             except units.UnitProblemError as error:
-                raise InputError(f'column "{cell.strip()}"', f"{file}:1", str(error)) from None
+                raise InputError(
+                    f'column "{cell.strip()}"',
+                    f"{file}:1",
+                    str(error),
+                    remedy='Name the column as "speed [rpm]", with a unit that is known',
+                ) from None
     missing = [name for name in COLUMNS if name not in found]
     if missing:
         remedy = f"Name the columns: {', '.join(_NAMED[name] for name in COLUMNS)}"
@@ -276,7 +281,7 @@ def _column(
         if value is None:
             what = f'"{shown}" is no number' if shown else "a number is missing"
             why = f"Column {column[0] + 1} holds a number, with a point as decimal sign"
-            problems.append(Problem(what, f"{file}:{number}", why))
+            problems.append(Problem(what, f"{file}:{number}", why, remedy="Correct this line"))
         values.append(value or 0.0)
     return np.array(values) * column[1]
 

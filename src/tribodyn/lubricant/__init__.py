@@ -13,6 +13,7 @@
 
 from __future__ import annotations
 
+from tribodyn.arguments import guard
 from tribodyn.lubricant.agma_925 import BASE_OILS, agma_925_coefficient
 from tribodyn.lubricant.astm_d341 import walther_slope, walther_viscosity
 from tribodyn.lubricant.barus import barus_viscosity
@@ -38,3 +39,5 @@ __all__ = [
     "walther_slope",
     "walther_viscosity",
 ]
+
+guard(__name__)

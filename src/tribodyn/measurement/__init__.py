@@ -10,6 +10,7 @@
 | ``synthetic`` | a run-up whose orders are known |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.measurement.comparison import Comparison, compare
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, read
@@ -30,3 +31,5 @@ __all__ = [
     "synthetic_run_up",
     "track_orders",
 ]
+
+guard(__name__)

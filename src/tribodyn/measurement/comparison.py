@@ -206,7 +206,7 @@ def _refuse(measured: Any, channels: Any) -> None:
             Problem(
                 "no channels are compared",
                 Argument("channels"),
-                "",
+                "A comparison lays channels beside computed signals",
                 'Write {"acc": "acceleration_loa_pinion"}',
             )
         )
@@ -312,7 +312,12 @@ def _gain(given: Any, name: str, computed: Array, measured: Array) -> float:
         square = float(computed @ computed)
         if square == 0.0:
             what = f"the computed harmonics for {name} are all zero"
-            raise InputError(what, where=Argument("gain"), remedy="Give the gain as a number")
+            raise InputError(
+                what,
+                where=Argument("gain"),
+                remedy="Give the gain as a number",
+                why="It scales one signal to the other",
+            )
         return float(computed @ measured) / square
     value = given.get(name, 1.0) if isinstance(given, Mapping) else given
     require_positive("gain", value)

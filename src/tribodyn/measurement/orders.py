@@ -221,6 +221,7 @@ def _checked(signal: Any, angle: Any, max_order: float) -> tuple[Array, Array]:
             f"angle has {turned.size} samples, the signal has {values.size}",
             where=where,
             why="Each sample of the signal has its own angle",
+            remedy="Give the angle of the shaft at each sample",
         )
     steps = np.diff(turned)
     if steps.min() < 0.0:

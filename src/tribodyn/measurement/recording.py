@@ -212,7 +212,10 @@ def _chosen(channels: Iterable[str]) -> list[str]:
     names = [channels] if isinstance(channels, str) else list(channels)
     if not names:
         raise InputError(
-            "no channel is asked for", where=Argument("channels"), remedy="Leave it out for all"
+            "no channel is asked for",
+            where=Argument("channels"),
+            remedy="Leave it out for all",
+            why="A recording without channels has nothing to compare",
         )
     return names
 

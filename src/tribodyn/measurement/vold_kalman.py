@@ -181,6 +181,7 @@ def _refuse(values: Array, turned: Array, wanted: Array) -> None:
             f"angle has {turned.size} samples, the signal has {values.size}",
             where=Argument("angle"),
             why="Each sample of the signal has its own angle",
+            remedy="Give the angle of the shaft at each sample",
         )
     if values.size * wanted.size > _MOST:
         raise InputError(

@@ -1,5 +1,6 @@
 """The mesh table: what happens in the tooth contact over one mesh cycle, made, kept and drawn."""
 
+from tribodyn.arguments import guard
 from tribodyn.mesh.build import build
 from tribodyn.mesh.columns import MeshColumns
 from tribodyn.mesh.film.film_columns import film_columns, moving_film
@@ -40,3 +41,5 @@ __all__ = [
     "moving_film",
     "phase_grid",
 ]
+
+guard(__name__)

@@ -305,4 +305,4 @@ def at_rest(place: Array, stiffness: Array, force: float) -> tuple[Array, Array]
 
 
 def _refuse(what: str, why: str) -> None:
-    raise InputError(what, where="MeshForceLaw", why=why)
+    raise InputError(what, where="MeshForceLaw", why=why, remedy="Give both of the same shape")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,7 +16,8 @@ from tribodyn.friction import PitchPoint, TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
-from tribodyn.mesh.film.path_film import FilmAt, film_of
+from tribodyn.mesh.film.path_film import FilmAt, FormulaFilm, PathFilm, film_of
+from tribodyn.mesh.film.tabled_film import TabledFilm, UntabledError, tabled_film
 from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, SharedLoad, Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Mask
@@ -41,8 +43,19 @@ def quasi_static_loads(
     progress: Progress,
 ) -> Loads:
     """Share the load among the pairs and find their films."""
+    if (tabled := tabled_film(settings, cycle, teeth, pairs)) is not None:
+        with suppress(UntabledError):
+            return _under_load(cycle, teeth, settings, tabled)
     film = film_of(settings, cycle, teeth, pairs, pinion_speed, progress)
+    return _under_load(cycle, teeth, settings, film)
 
+
+def _under_load(
+    cycle: MeshCycle,
+    teeth: Teeth,
+    settings: ToothContact,
+    film: FormulaFilm | PathFilm | TabledFilm,
+) -> Loads:
     def solve(loads: Array, checked: tuple[int, ...]) -> FilmAt:
         raised = np.maximum(loads, film.least_load)
         return film.solve(np.where(cycle.in_contact, raised, 0.0), checked)
@@ -62,7 +75,8 @@ def quasi_static_loads(
 def reported_films(films: Films, loads: Loads, least_load: float) -> Films:
     """Leave out pairs that hardly touch, and what is not known well enough."""
     loads.film_at.warn_of_doubt()
-    known = (loads.load_per_width > least_load) & ~loads.film_at.doubtful
+    films, known = loads.film_at.reported(films, loads.tribological)
+    known = (loads.load_per_width > least_load) & known
     columns: dict[str, Any] = {}
     for row, name in zip(known, QUANTITIES, strict=True):
         column = getattr(films, name)

@@ -227,6 +227,7 @@ def _columns(system: System, names: tuple[str, str]) -> tuple[int, int]:
             f"coordinates = {names!r}",
             where="argument coordinates",
             why=f"Two different ones of {', '.join(known)}",
+            remedy="Choose two of these",
         )
     return known.index(names[0]), known.index(names[1])
 

@@ -14,7 +14,7 @@ from tribodyn.compiled import tell
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start, simulate
-from tribodyn.errors import ComputationError, InputError, require_positive
+from tribodyn.errors import ComputationError, InputError, require_one_of, require_positive
 from tribodyn.members import Members
 from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
@@ -140,8 +140,7 @@ def bifurcation(
     >>> found.period.tolist(), found.verdicts()
     ([[1, 1]], {'physical': 2})
     """
-    if sweep not in _BRANCHES:
-        raise InputError(f'sweep = "{sweep}"', where="argument sweep", why=f"One of {[*_BRANCHES]}")
+    require_one_of("sweep", sweep, _BRANCHES)
     values = _read_values(systems, mesh_frequency, steps)
     given = _read_parameter(parameter, values)
     name = signal_name(values.systems[0], signal)
@@ -223,7 +222,12 @@ def _read_parameter(parameter: ArrayLike | None, values: Points) -> Array:
     given = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
     if given.shape not in ((), (values.count,)):
         what = f"parameter has the shape {given.shape}, and there are {values.count} values"
-        raise InputError(what, where="argument parameter")
+        raise InputError(
+            what,
+            where="argument parameter",
+            why="Each value of the parameter has a place on the axis",
+            remedy="Give one finite value for each system",
+        )
     return np.broadcast_to(given, (values.count,)).copy()
 
 
@@ -241,10 +245,16 @@ def _read_values(
             f"{np.shape(steps)} steps",
             where="argument systems",
             why="Each is one, or one for each value of the parameter",
+            remedy="Give one of each, or one of each for every value",
         ) from error
     if not given or np.any(np.asarray(steps) < 1):
         what = "no system" if not given else f"steps = {np.min(np.asarray(steps))}"
-        raise InputError(what, where="argument systems" if not given else "argument steps")
+        raise InputError(
+            what,
+            where="argument systems" if not given else "argument steps",
+            why="There is one time grid for each value",
+            remedy="Give one number of steps, or one for each value",
+        )
     frequency = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (count,)).copy()
     whole = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
     return Points(given * count if len(given) == 1 else given, frequency, whole)
@@ -256,6 +266,7 @@ def _read_survey(survey: Survey) -> Survey:
             f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
             where="argument keep",
             why="At least two points are kept, of as many mesh cycles or more",
+            remedy="Lower keep, or raise cycles",
         )
     return survey
 

@@ -22,7 +22,7 @@ from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
-from tribodyn.dynamics.time.simulate import read_start
+from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
@@ -201,8 +201,9 @@ def lyapunov_exponents(
             "no coordinate is held by a spring, a damper or a contact",
             where="System.stiffness",
             why="Nothing vibrates, so that every exponent is zero",
+            remedy="Hold at least one coordinate",
         )
-    extra = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    extra = read_force(system, extra_force)
     state = static_start(compiled) if start is None else read_start(system, start)
     carrier = _Carrier(tables, state, np.broadcast_to(extra, (system.size,)))
     progress.start("Mesh cycles", int(cycles + transient))

@@ -132,7 +132,10 @@ def parameter_map(
     if transient < 0 or cycles < 2 or (steps is not None and steps < 1):
         what = f"transient = {transient}, cycles = {cycles}, steps = {steps}"
         raise InputError(
-            what, where="argument cycles", why="At least two mesh cycles are looked at"
+            what,
+            where="argument cycles",
+            why="At least two mesh cycles are looked at",
+            remedy="Give cycles=2 or more",
         )
     systems = [system] if isinstance(system, System) else [system(float(v)) for v in axes.first]
     name = signal_name(systems[0], signal)
@@ -272,7 +275,7 @@ def _read_axes(
     except (TypeError, ValueError) as error:
         remedy = 'Write over=(("mesh_frequency", values), ("force_scale", values))'
         raise InputError(
-            f"over = {over!r}", where="argument over", why="", remedy=remedy
+            f"over = {over!r}", where="argument over", why="Two names with values", remedy=remedy
         ) from error
     known = ("mesh_frequency", *SCALES)
     own = not isinstance(system, System)
@@ -282,16 +285,34 @@ def _read_axes(
         raise InputError(f"over {one} and {two}", where="argument over", why=why, remedy=remedy)
     if own and one in known:
         raise InputError(
-            f"{one} with a function", where="argument over", why="The function takes that value"
+            f"{one} with a function",
+            where="argument over",
+            why="The function takes that value",
+            remedy="Give a system and a name, or a function alone",
         )
     if own and units is None:
-        raise InputError(f"{one} without its unit", where="argument units")
+        raise InputError(
+            f"{one} without its unit",
+            where="argument units",
+            why="Axes show values with their units",
+            remedy="Give one unit for each parameter",
+        )
     if any(each.ndim != 1 or not np.all(np.isfinite(each)) for each in values):
-        raise InputError("values that are no list of numbers", where="argument over")
+        raise InputError(
+            "values that are no list of numbers",
+            where="argument over",
+            why="Each axis of the map has its values",
+            remedy="Give (name, values) for each of the two axes",
+        )
     if "mesh_frequency" in (one, two):
         require_positive("mesh_frequency", values[(one, two).index("mesh_frequency")], "Hz")
     elif mesh_frequency is None:
-        raise InputError("no mesh frequency", where="argument mesh_frequency")
+        raise InputError(
+            "no mesh frequency",
+            where="argument mesh_frequency",
+            why="The time of one mesh cycle follows from it",
+            remedy="Give mesh_frequency in Hz, or return it beside the system",
+        )
     else:
         require_positive("mesh_frequency", mesh_frequency, "Hz")
     return _Axes((one, two), values[0], values[1])

@@ -14,7 +14,7 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates, static_start
 from tribodyn.dynamics.orbits.periods import closed_period, open_period
 from tribodyn.dynamics.time.response import Response
-from tribodyn.dynamics.time.simulate import read_start
+from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.survey import Path, Verdict, follow, step_verdict
@@ -139,10 +139,15 @@ def poincare(
     if mesh_frequency is None or cycles < 1 or transient < 0:
         what = f"mesh_frequency = {mesh_frequency}, cycles = {cycles}, transient = {transient}"
         why = "A system needs a mesh frequency, at least one mesh cycle and no negative transient"
-        raise InputError(what, where="argument mesh_frequency", why=why)
+        raise InputError(
+            what,
+            where="argument mesh_frequency",
+            why=why,
+            remedy="Give the mesh frequency of each system in Hz",
+        )
     compiled = compile_for(motion, mesh_frequency, steps)
     state = static_start(compiled) if start is None else read_start(motion, start)
-    force = np.zeros(motion.size) if extra_force is None else np.asarray(extra_force, dtype=float)
+    force = read_force(motion, extra_force)
     path = _march(compiled, float(mesh_frequency), (state, force), transient, cycles)
     nodes = compiled.nodes
     position = path.states[:, 0, : motion.size]
@@ -360,6 +365,7 @@ def phase_portrait(
             where="argument of",
             why=f"A contact from 0 to {motion.deflection.shape[1] - 1}, or one of "
             f"{', '.join(motion.names)}, over at least one mesh cycle",
+            remedy="Choose one of these, and leave at least one mesh cycle",
         )
     steps = len(motion.position) // motion.periods
     rows = slice(transient * steps, None)

@@ -98,6 +98,7 @@ def signal_name(system: System, signal: int | str) -> str:
         f"signal = {signal!r}",
         where="argument signal",
         why=f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
+        remedy="Choose one of these",
     )
 
 

@@ -5,6 +5,7 @@ Figures are looked up by name in :data:`FIGURES`. Plotly is loaded when the firs
 
 from __future__ import annotations
 
+from tribodyn.arguments import guard
 from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
@@ -136,3 +137,5 @@ __all__ = [
     "transmission_error",
     "waterfall",
 ]
+
+guard(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tribodyn.arguments import guard
 from tribodyn.report.html import render_report, write_report
 from tribodyn.report.study import write_bifurcation_report, write_study_report, write_sweep_report
 
@@ -12,3 +13,5 @@ __all__ = [
     "write_study_report",
     "write_sweep_report",
 ]
+
+guard(__name__)

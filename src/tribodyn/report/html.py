@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import report_of
 from tribodyn.report.blocks import Block, figure_blocks
 from tribodyn.report.numbers import HEAD, compared_friction, headlines, modes_table, table
 from tribodyn.report.origin import operating_point, provenance, version
 from tribodyn.study.pipeline.save import write_file
+
+if TYPE_CHECKING:
+    from tribodyn.study import Result
 
 _HERE = Path(__file__).parent
 
@@ -53,7 +56,7 @@ def _figures(blocks: list[Block]) -> Any:
     return Markup("{\n" + ",\n".join(drawn) + "\n}")
 
 
-def render_report(result: Any) -> str:
+def render_report(result: Result) -> str:
     """Write a result as one self-contained HTML page.
 
     Parameters
@@ -98,7 +101,7 @@ def _lines(citations: Any) -> list[str]:
 
 
 @report_of("Result")
-def write_report(result: Any, path: str | os.PathLike[str]) -> Path:
+def write_report(result: Result, path: str | os.PathLike[str]) -> Path:
     """Write the report of a result to a file.
 
     The file appears complete or not at all: it is written beside its place and then moved there.

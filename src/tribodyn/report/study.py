@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tribodyn import plot
 from tribodyn.drawing import report_of
@@ -18,6 +18,10 @@ from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.words import in_words
+
+if TYPE_CHECKING:
+    from tribodyn.analysis import Bifurcation
+    from tribodyn.study import Case, Sweep
 
 #: Rows of the table; more are in the files beside it.
 _ROWS = 400
@@ -40,7 +44,7 @@ class _Page:
 
 
 @report_of("Sweep")
-def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
+def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
     """Write the figures and the table of a sweep to a file.
 
     Parameters
@@ -100,8 +104,8 @@ def write_sweep_report(found: Any, path: str | os.PathLike[str]) -> Path:
 
 
 def write_bifurcation_report(
-    found: Any,
-    case: Any,
+    found: Bifurcation,
+    case: Case,
     path: str | os.PathLike[str],
     *,
     lead: str,
@@ -157,7 +161,7 @@ def write_bifurcation_report(
 
 
 def write_study_report(
-    case: Any,
+    case: Case | None,
     path: str | os.PathLike[str],
     *,
     kind: str,

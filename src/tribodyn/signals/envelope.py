@@ -67,6 +67,7 @@ def envelope(
             f"a band from {low:g} to {high:g} Hz",
             where="argument band",
             why="It must rise, from above zero",
+            remedy="Give (low, high) in Hz",
         )
     sections = butter(4, (low, high), btype="bandpass", fs=sampling_rate, output="sos")
     return np.asarray(np.abs(hilbert(sosfiltfilt(sections, values))))

@@ -11,10 +11,23 @@ from typing import Any
 import numpy as np
 
 from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array, ComplexArray
+
+
+def _on(size: int, signal: Array) -> Array:
+    """Signal whose samples are as many as the fine samples, or a multiple of their three a step."""
+    count = len(signal) if signal.ndim else 0
+    if not count or (count % 3 if size == 3 else count != size):
+        what, wanted = (
+            f"signal has the shape {signal.shape}",
+            "a multiple of 3" if size == 3 else size,
+        )
+        why = f"A signal on the fine samples has {wanted} of them along its first axis"
+        raise InputError(what, Argument("signal"), why, "Compute it of the motion's fine samples")
+    return signal
 
 
 def mean(samples: FineSamples, signal: Array) -> Array:
@@ -41,7 +54,7 @@ def mean(samples: FineSamples, signal: Array) -> Array:
     >>> round(float(mean(samples, wave)), 6)
     3.0
     """
-    return samples.mean(signal)
+    return samples.mean(_on(samples.phase.size, signal))
 
 
 def rms(samples: FineSamples, signal: Array) -> Array:
@@ -66,7 +79,7 @@ def rms(samples: FineSamples, signal: Array) -> Array:
     >>> round(float(rms(samples, wave) ** 2), 6)
     11.0
     """
-    return np.asarray(np.sqrt(samples.mean(signal**2)))
+    return np.asarray(np.sqrt(samples.mean(_on(samples.phase.size, signal) ** 2)))
 
 
 def alternating_rms(samples: FineSamples, signal: Array) -> Array:
@@ -91,7 +104,7 @@ def alternating_rms(samples: FineSamples, signal: Array) -> Array:
     >>> round(float(alternating_rms(samples, wave) ** 2), 6)
     2.0
     """
-    return rms(samples, signal - samples.mean(signal))
+    return rms(samples, signal - mean(samples, signal))
 
 
 def extremes(signal: Array) -> tuple[Array, Array]:
@@ -118,7 +131,7 @@ def extremes(signal: Array) -> tuple[Array, Array]:
     >>> round(float(high), 12)
     1.0
     """
-    return sample_extremes(signal)
+    return sample_extremes(_on(3, signal))
 
 
 def peak_to_peak(signal: Array) -> Array:
@@ -165,7 +178,7 @@ def crest_factor(samples: FineSamples, signal: Array) -> Array:
     >>> round(float(crest_factor(samples, wave) ** 2), 6)
     2.0
     """
-    alternating = signal - samples.mean(signal)
+    alternating = signal - mean(samples, signal)
     low, high = extremes(alternating)
     size, peak = rms(samples, alternating), np.maximum(high, -low)
     moves = size > 1e-12 * np.abs(signal).max(axis=0)
@@ -271,6 +284,7 @@ def direction_shares(along: Any, across: Any) -> tuple[float, float]:
             f"{total:g} together",
             where="arguments along and across",
             why="Both must be sampled alike, and one must vibrate",
+            remedy="Give both signals over the same samples",
         )
     return float(np.var(first)) / total, float(np.var(second)) / total
 
@@ -322,6 +336,7 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
             why=f"With this step it is resolved up to harmonic {limit:.0f}, eight steps each",
             remedy="Use more steps per mesh cycle",
         )
+    _on(fine.phase.size, signal)
     turns = np.exp(-2j * np.pi * orders[:, None] * fine.phase) * fine.weight
     return np.asarray(2.0 * np.tensordot(turns, signal, axes=(1, 0)))
 
@@ -403,6 +418,7 @@ def amplitude_spectrum(
             f"signal has the shape {signal.shape}",
             where="argument signal",
             why=f"It must be one signal on the fine samples, {fine.phase.shape}",
+            remedy="Give one signal of this shape",
         )
     steps = fine.phase.size // 3 // response.periods
     top = min(50, steps // 8) if highest is None else highest

@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.dynamics.linear.natural_modes import NaturalModes
 from tribodyn.dynamics.running_up.run_up_result import RunUp
-from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.angular_resampling import window_values
 from tribodyn.signals.order_map import OrderCut, OrderMap
@@ -57,8 +57,7 @@ class OverallLevel(Record):
 
 def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
     """Tell which blocks lie wholly in a part of the run."""
-    if part not in ("all", "up", "down"):
-        raise InputError(f'part = "{part}"', where="argument part", why='"all", "up" or "down"')
+    require_one_of("part", part, ("all", "up", "down"))
     if part == "all":
         return np.ones(starts.size, dtype=bool)
     inside = run.cycles.rate > 0.0 if part == "up" else run.cycles.rate < 0.0
@@ -69,6 +68,7 @@ def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
             f"the speed never goes {part} for {cycles} mesh cycles",
             where="argument part",
             remedy='Take part="all", or a profile that does',
+            why="An order map needs a record of this length",
         )
     return np.asarray(found)
 
@@ -215,8 +215,7 @@ def order_cut(
     """
     if isinstance(source, OrderMap):
         return source.cut(order)
-    if of not in ("mesh", "shaft"):
-        raise InputError(f'of = "{of}"', where="argument of", why='"mesh" or "shaft"')
+    require_one_of("of", of, ("mesh", "shaft"))
     require_positive("order", order)
     mesh = order / source.teeth if of == "shaft" else order
     if mesh >= source.samples / 2:
@@ -409,7 +408,12 @@ def resonances(
 
     lines = [float(order) for order in orders]
     if not lines:
-        raise InputError("no order is asked for", where="argument orders")
+        raise InputError(
+            "no order is asked for",
+            where="argument orders",
+            why="Each curve belongs to one order",
+            remedy="Give orders=(1, 2, 3), say",
+        )
     require_between("prominence", prominence, 0.0, 1.0)
     known = modes if modes is not None else run.modes
     cuts = [order_cut(run, order, signal, part=part) for order in lines]

@@ -86,6 +86,7 @@ def spectrum(
             f"there is no scaling {scaling!r}",
             where="argument scaling",
             remedy=f"Take one of {', '.join(_SCALINGS)}",
+            why="Spectra of different scaling are not compared",
         )
     length = values.size if block_length is None else block_length
     require_between("block_length", length, 8, values.size, "samples")
@@ -358,6 +359,7 @@ def zoom_spectrum(
             f"a band from {lowest:g} to {highest:g} Hz on {points} lines",
             where="arguments lowest, highest and points",
             why="It must rise from above zero and have two lines or more",
+            remedy="Give a rising band and at least two points",
         )
     weights = window_values(window, values.size)
     lines = zoom_fft(weights * values, [lowest, highest], m=points, fs=sampling_rate, endpoint=True)

@@ -260,6 +260,7 @@ def kurtosis(signal: Any) -> float:
         raise ComputationError(
             "the kurtosis of a signal that does not change",
             why="It is a moment over the variance, which is zero",
+            remedy="Give a signal that changes",
         )
     return float(np.mean(away**4)) / second**2
 

@@ -10,6 +10,7 @@
 | `tip_relief` | transmission error over torque, and the best tip relief |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.stiffness.loaded import (
     ContactProblem,
     LoadedContact,
@@ -85,3 +86,5 @@ __all__ = [
     "wind_up_compliance",
     "with_tip_relief",
 ]
+
+guard(__name__)

@@ -120,7 +120,7 @@ class StiffnessModel(Model):
             what=f'the stiffness model "{self.name}" has no option "{name}"',
             where=ModelOption("stiffness", name=name),
             why=f"Its options are: {known}",
-            remedy=self.nearest(name),
+            remedy=self.nearest(name) or "Choose one of these, or leave it out",
         )
 
 

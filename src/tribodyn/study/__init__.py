@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from tribodyn.arguments import guarded
+
 if TYPE_CHECKING:
     from tribodyn.study.beside import ResultComparison, compare_results
     from tribodyn.study.case.case import Case
@@ -100,4 +102,5 @@ def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    thing = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    return globals().setdefault(name, guarded(thing, __name__))

@@ -133,14 +133,18 @@ def compare_results(*results: Result, names: Sequence[str] | None = None) -> Res
     wrong = [each for each in results if not isinstance(each, Result)]
     if wrong:
         what = f"results holds {shortened(repr(wrong[0]))}"
-        raise InputError(what, Argument("results"), "Wanted: what tribodyn.run returns")
+        raise InputError(what, Argument("results"), "Wanted: what tribodyn.run returns", "Run both")
     if not 2 <= len(results) <= 12:
         why = "Two to twelve are laid beside each other"
-        raise InputError(f"there are {len(results)} results", Argument("results"), why)
+        raise InputError(
+            f"there are {len(results)} results", Argument("results"), why, "Give several"
+        )
     given = tuple(names) if names is not None else _titles(results)
     if len(given) != len(results) or len(set(given)) < len(given):
         what = f"names = {shortened(repr(given))}"
-        raise InputError(what, Argument("names"), f"Wanted: {len(results)} different names")
+        raise InputError(
+            what, Argument("names"), f"Wanted: {len(results)} different names", "Rename them"
+        )
     return ResultComparison(
         given,
         differing([dict(each.case.values()) for each in results]),

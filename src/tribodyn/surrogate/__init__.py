@@ -11,6 +11,7 @@
 | ``baselines`` | what simpler models make of the same table |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.surrogate.baselines import BASELINES, baselines
 from tribodyn.surrogate.levenberg_marquardt import Fit, Squares, levenberg_marquardt
 from tribodyn.surrogate.measures import ErrorMeasures
@@ -36,3 +37,5 @@ __all__ = [
     "split_rows",
     "train",
 ]
+
+guard(__name__)

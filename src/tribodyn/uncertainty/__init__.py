@@ -8,9 +8,12 @@
 | ``variance`` | which input the spread of an output comes from |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.uncertainty.bands import Band, bootstrap_band
 from tribodyn.uncertainty.distribution import distribution
 from tribodyn.uncertainty.sampling import sample
 from tribodyn.uncertainty.variance import SobolIndices, sobol_indices
 
 __all__ = ["Band", "SobolIndices", "bootstrap_band", "distribution", "sample", "sobol_indices"]
+
+guard(__name__)

@@ -117,8 +117,9 @@ def _wrong(name: str, given: Any, why: str = "", meant: str = "") -> InputError:
     what = f"{shortened(repr(given))} is no distribution"
     remedy = (
         f'Write {meant}"0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
+        "or give data or a SciPy distribution"
     )
-    return InputError(Problem(what, name, why, remedy + "or give data or a SciPy distribution"))
+    return InputError(Problem(what, name, why or "It is none of the kinds that are known", remedy))
 
 
 class _Data:

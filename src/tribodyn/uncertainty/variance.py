@@ -111,9 +111,17 @@ def sobol_indices(
                 )
             )
         if not np.all(np.isfinite(found)):
-            raise ComputationError("the function returns values that are not finite")
+            raise ComputationError(
+                "the function returns values that are not finite",
+                why="Shares of a variance need every sample",
+                remedy="Look for the sample at which the function fails",
+            )
         if np.ptp(found) == 0.0:
-            raise ComputationError("the output does not vary", remedy="Widen the inputs")
+            raise ComputationError(
+                "the output does not vary",
+                remedy="Widen the inputs",
+                why="Shares of a variance need one above zero",
+            )
         return found.astype(float)
 
     random = np.random.default_rng(require_whole("seed", seed, 0))

@@ -10,6 +10,7 @@
 | ``dataset`` | the store as one lazy data set |
 """
 
+from tribodyn.arguments import guard
 from tribodyn.variants.dataset import open_study
 from tribodyn.variants.run import run_study
 from tribodyn.variants.store import StudyState, study_state
@@ -24,3 +25,5 @@ __all__ = [
     "run_study",
     "study_state",
 ]
+
+guard(__name__)

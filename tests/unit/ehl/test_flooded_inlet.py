@@ -1,10 +1,16 @@
 """Pressure and load of the inlet before the grid, with their slopes."""
 
+import numba as nb
 import numpy as np
 import pytest
 
-from tribodyn.ehl._kernel.inlet import flooded_inlet
+from tribodyn.ehl._kernel.inlet import flooded_inlet as compiled
 from tribodyn.ehl.steady.grid import inlet_tail
+
+
+@nb.njit
+def flooded_inlet(start, film, lam, curvature, s):
+    return compiled(start, film, lam, curvature, s)
 
 
 def test_equals_the_inlet_of_the_steady_solver() -> None:

@@ -178,7 +178,7 @@ def springs(*stiffness):
     each = np.array([stiffness])
     gaps = np.zeros((1, 1, each.size))
     compliance = Compliance(independent_compliance(each, 1.0), np.zeros(each.shape), 0.0)
-    problem = ContactProblem(None, compliance, gaps, np.ones(1))
+    problem = ContactProblem(types.SimpleNamespace(contact=None), compliance, gaps, np.ones(1))
     return SpringTeeth(each > 0.0, 1e5, problem, each)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from tribodyn.stiffness import ContactProblem
 from tribodyn.stiffness.loaded.problem import Compliance
 
 WIDTH = 0.02
+NOWHERE = SimpleNamespace(contact=None)
 
 
 def problem(seed: int, *, phases: int = 6, pairs: int = 4, slices: int = 1) -> ContactProblem:
@@ -23,7 +26,7 @@ def problem(seed: int, *, phases: int = 6, pairs: int = 4, slices: int = 1) -> C
     gaps = 5e-6 * np.abs(random.normal(size=(phases, slices, pairs)))
     gaps[:, 0, 0] = 0.0
     compliance = Compliance(structure, local, logarithm)
-    return ContactProblem(None, compliance, gaps, np.full(slices, WIDTH / slices))
+    return ContactProblem(NOWHERE, compliance, gaps, np.full(slices, WIDTH / slices))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -127,7 +130,7 @@ def test_a_soft_pair_that_is_touched_first_does_not_lead_astray():
     structure = np.diag([1e-4, 1e-10])[None]
     logarithm = 2.0 * 0.91 / (np.pi * 206e9)
     compliance = Compliance(structure, logarithm * np.full((1, 2), 17.0), logarithm)
-    given = ContactProblem(None, compliance, np.array([[[0.0, 3e-6]]]), np.array([WIDTH]))
+    given = ContactProblem(NOWHERE, compliance, np.array([[[0.0, 3e-6]]]), np.array([WIDTH]))
     found = given.at_loads(np.array([1e-3, 4000.0]))
     load = found.load[1, 0, 0]
     assert WIDTH * load.sum() == pytest.approx(4000.0, rel=1e-11)

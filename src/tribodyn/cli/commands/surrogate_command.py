@@ -161,7 +161,7 @@ def _inputs(model: Surrogate, given: dict[str, Any]) -> dict[str, float]:
 
     units = dict(zip(map(str, model.features), map(str, model.feature_unit), strict=True))
     problems = [
-        Problem(f"{name} is no input of this model", name, f"It has {', '.join(units)}")
+        Problem(f"{name} is no input of this model", name, f"It has {', '.join(units)}", "Use one")
         for name in given
         if name not in units
     ]

@@ -46,6 +46,7 @@ def read_atol(atol: Tolerance, size: int) -> Array:
             where="argument atol",
             why="One positive number, one for positions and one for velocities, or one for "
             f"each of the {2 * size} states",
+            remedy="Give 1e-9, or one tolerance for each state",
         )
     return np.array(np.broadcast_to(values, (2 * size,)))
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from tribodyn.compiled import source_digest
 from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.inner_kernels import INNER_OPTIONS
 from tribodyn.types import Array, Index
 
 
@@ -51,8 +52,8 @@ class Newmark(NamedTuple):
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
 
-#: For what only compiled functions call: no entry from Python has to be compiled.
-INNER: dict[str, Any] = {**JIT, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+#: For what only compiled functions call.
+INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
 
 #: For what is called in one place only: it is not compiled by itself, which would be done again
 #: with its caller.

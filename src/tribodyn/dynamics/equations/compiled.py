@@ -153,6 +153,8 @@ def _refuse_different(systems: list[System]) -> None:
         raise InputError(
             "systems is neither a System nor a sequence of one System for each lane",
             where="argument systems",
+            why="Every lane has a system of its own",
+            remedy="Give one System, or a list of them",
         )
     known = {id(systems[0]): facts(systems[0])}
     first = known[id(systems[0])]

@@ -57,6 +57,7 @@ def entry_values(where: str, entry: Any, phases: Array, size: int) -> Array:
                 f"{where} has the shape {value.shape}",
                 where=where,
                 why=f"It must be a number or have the shape ({size},)",
+                remedy="Give a number, or one for each coordinate",
             )
         values = np.broadcast_to(value, (phases.size, size)).astype(float)
     if not np.all(np.isfinite(values)):
@@ -65,6 +66,7 @@ def entry_values(where: str, entry: Any, phases: Array, size: int) -> Array:
             f"{where} is NaN or infinite at the mesh phase {at:.6g}",
             where=where,
             remedy="Check the table or function there; declare jumps as events",
+            why="The equations of motion need a finite number there",
         )
     return values
 
@@ -125,6 +127,7 @@ def _shaped(where: str, values: Array, count: int, size: int) -> Array:
             f"{where} gives the shape {values.shape}",
             where=where,
             why=f"It must be ({count}, {size}) for {count} mesh phases",
+            remedy="Return one row of values for each phase that the function is given",
         )
     return values
 

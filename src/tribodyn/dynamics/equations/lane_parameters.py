@@ -62,6 +62,7 @@ class LaneParameters:
                     else f"{name} holds NaN or infinity",
                     where=f"LaneParameters.{name}",
                     why="A factor is one number, or one number per lane",
+                    remedy="Give a finite factor, or a list of them",
                 )
             if name in _NOT_NEGATIVE and np.any(values < 0.0):
                 worst = int(np.argmin(values))
@@ -69,6 +70,7 @@ class LaneParameters:
                     f"{name} = {values.reshape(-1)[worst]:g} in lane {worst}",
                     where=f"LaneParameters.{name}",
                     why="The factor cannot be negative",
+                    remedy="Give zero or more; 1 leaves it as it is",
                 )
             if values.ndim:
                 lengths[values.size] = name
@@ -79,6 +81,7 @@ class LaneParameters:
                 f"{first} holds {one} factors and {second} holds {two}",
                 where="LaneParameters",
                 why="Every array has one factor for each lane",
+                remedy="Give as many factors to each",
             )
 
     def __repr__(self) -> str:
@@ -134,6 +137,7 @@ class LaneParameters:
                     f"{name} holds {values.size} factors for {lanes} lanes",
                     where=f"LaneParameters.{name}",
                     why="One number, or one for each lane",
+                    remedy="Give one number for all lanes, or one for each",
                 )
             columns.append(np.broadcast_to(values, (lanes,)))
         return np.stack(columns, axis=1)

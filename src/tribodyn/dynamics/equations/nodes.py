@@ -35,6 +35,7 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
             f"{where} gives the shape {values.shape}",
             where=where,
             why=f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases",
+            remedy="Return a row of numbers for each phase that the function is given",
         )
     return int(shape[0]) if shape else 1
 

@@ -168,9 +168,15 @@ def _matrix(name: str, value: ArrayLike) -> Array:
             f"{name} has the shape {matrix.shape}",
             where=f"System.{name}",
             why="It must be a square (n, n) matrix",
+            remedy="Give a list of rows, as many as there are coordinates",
         )
     if not np.all(np.isfinite(matrix)):
-        raise InputError(f"{name} holds NaN or infinity", where=f"System.{name}")
+        raise InputError(
+            f"{name} holds NaN or infinity",
+            where=f"System.{name}",
+            why="The equations of motion need finite numbers",
+            remedy="Look for the entry that is not finite",
+        )
     return matrix
 
 
@@ -229,6 +235,7 @@ class System:
                     f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
                     where=f"System.{name}",
                     why="All three matrices belong to the same coordinates",
+                    remedy="Give it the shape of the mass matrix",
                 )
             object.__setattr__(self, name, matrix)
         contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
@@ -244,12 +251,18 @@ class System:
                     f"{name} is no sequence of {kind.__name__}",
                     where=f"System.{name}",
                     remedy="Give a list or a tuple",
+                    why="A system has several of them",
                 )
         object.__setattr__(self, "frictions", tuple(frictions))
         object.__setattr__(self, "contacts", tuple(contacts))
         names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
         if len(names) != size:
-            raise InputError(f"{len(names)} names for {size} coordinates", where="System.names")
+            raise InputError(
+                f"{len(names)} names for {size} coordinates",
+                where="System.names",
+                why="Every coordinate has one name",
+                remedy="Give as many names as coordinates, or none",
+            )
         object.__setattr__(self, "names", names)
         _refuse_singular(matrices["mass"], names)
         _refuse_missing_contacts(self)
@@ -257,7 +270,10 @@ class System:
             balance = real_numbers("System.balance", self.balance)
             if balance.shape != (size,):
                 raise InputError(
-                    f"balance has the shape {balance.shape}, not ({size},)", where="System.balance"
+                    f"balance has the shape {balance.shape}, not ({size},)",
+                    where="System.balance",
+                    why="It holds the torque of each coordinate back",
+                    remedy="Give one number for each coordinate",
                 )
             object.__setattr__(self, "balance", balance)
 
@@ -322,4 +338,5 @@ def _refuse_missing_contacts(system: System) -> None:
                 + (f"are {count} contacts" if count != 1 else "is 1 contact"),
                 where=f"System.frictions[{f}].contacts",
                 why="Contacts are counted from 0 in the order of System.contacts",
+                remedy="Give the numbers of contacts that the system has",
             )

@@ -140,6 +140,7 @@ def forced_response(
             f"contact = {contact}",
             where="argument contact",
             why=f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0",
+            remedy="Give the number of one of its contacts",
         )
     members = np.flatnonzero(linear.bundle == linear.bundle[contact])
     given = np.where(np.isin(np.arange(count), members), float(error), 0.0)

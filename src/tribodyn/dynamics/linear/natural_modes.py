@@ -90,7 +90,10 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
         return nodes, nodes.weight
     if isinstance(phase, str):
         raise InputError(
-            f'phase = "{phase}"', where="argument phase", why='"mean" or a mesh phase in [0, 1)'
+            f'phase = "{phase}"',
+            where="argument phase",
+            why='"mean" or a mesh phase in [0, 1)',
+            remedy="Choose one of the two",
         )
     at = float(phase)
     require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")
@@ -406,6 +409,7 @@ def structure_elements(
             what,
             where="argument elements",
             why="The springs together are the stiffness matrix of the structure",
+            remedy="Give all springs of the structure, those to the ground too",
         )
     return given
 

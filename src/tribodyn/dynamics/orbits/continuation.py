@@ -35,7 +35,7 @@ from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.orbits.steady_state import TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response, sample_extremes
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, warn
+from tribodyn.errors import ComputationError, InputError, require_positive, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -140,6 +140,7 @@ def continuation(
     function = FamilyMap(family, int(periods), (float(low), float(sum(between) - low)))
     progress.start("Points of the branch", None)
     names = signal_names(function.at(low).compiled.system, signals)
+    require_positive("tolerance", tolerance)
     first = _first(function, start, between, tolerance)
     stepping = Stepping(longest_step, points, tolerance)
     orbits, ending, complete = follow(function, first, stepping, progress)
@@ -164,7 +165,12 @@ def _check(between: tuple[float, float], periods: int, longest: float, points: i
         problem, where = f"points = {points}", "a whole number >= 2"
     if problem:
         name = problem.partition(" ")[0]
-        raise InputError(problem, where=f"argument {name}", why=f"It is {where}")
+        raise InputError(
+            problem,
+            where=f"argument {name}",
+            why=f"It is {where}",
+            remedy="Give a value of this range",
+        )
 
 
 def _first(
@@ -215,6 +221,7 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
             f"start lies at {start.parameter:.8g}",
             where="argument start",
             why=f"The range is {function.origin:g} to {function.origin + function.range:g}",
+            remedy="Start within the range, or widen it",
         )
     mapping = function.at(start.parameter)
     y = mapping.start(np.concatenate((start.position, start.velocity)))
@@ -348,6 +355,7 @@ def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...
                 f'no signal is called "{name}"',
                 where="argument signals",
                 why=f"Known: {', '.join((*known, *system.names))}",
+                remedy="Choose one of these",
             )
     return tuple(wanted)
 

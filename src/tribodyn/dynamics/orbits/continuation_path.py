@@ -74,6 +74,7 @@ class Family:
                 + ("" if frequency is not None else " and no mesh frequency was given"),
                 where="argument make_system",
                 why="A System with mesh_frequency given, or a tuple (System, mesh frequency)",
+                remedy="Return one of the two",
             )
         return compile_for(system, float(frequency), self._steps), float(frequency)
 

@@ -110,10 +110,14 @@ def speed_sweep(
             "the mesh frequencies do not rise",
             where="argument mesh_frequency",
             remedy="Sort them; the direction is the matter of directions",
+            why="A sweep goes through them in order",
         )
     if not directions or any(each not in ("up", "down") for each in directions):
         raise InputError(
-            f"directions = {directions}", where="argument directions", why='"up", "down" or both'
+            f"directions = {directions}",
+            where="argument directions",
+            why='"up", "down" or both',
+            remedy="Choose one or two of these",
         )
     require_positive("teeth", teeth)
     require_positive("patience", patience)
@@ -378,6 +382,7 @@ class SpeedSweep(Record):
                 f'no signal "{signal}"',
                 where="argument signal",
                 why=f"There are {', '.join(self.signals)}",
+                remedy="Choose one of these",
             )
         return self.signals.index(signal)
 

@@ -184,6 +184,7 @@ def read_outputs(outputs: Mapping[str, ArrayLike] | None, system: System) -> Arr
                 f"the output {name} has the shape {row.shape}",
                 where="argument outputs",
                 why=f"It is a row over positions and velocities, ({2 * system.size},)",
+                remedy="Give one factor for each position, then one for each velocity",
             )
     return np.array(rows) if rows else np.zeros((0, 2 * system.size))
 
@@ -197,6 +198,8 @@ def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
         raise InputError(
             f"rotation has the shape {turning.shape}, not ({system.size},)",
             where="argument rotation",
+            why="It says how fast each coordinate turns with the shaft",
+            remedy="Give one number for each coordinate",
         )
     return np.asarray(-np.asarray(system.mass) @ turning * (2.0 * np.pi / teeth))
 

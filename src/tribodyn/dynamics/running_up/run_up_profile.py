@@ -193,7 +193,12 @@ def speed_ramp(
     """
     require_positive("duration", duration, "s")
     if hold < 0.0:
-        raise InputError(f"hold = {hold:g} s", where="argument hold", why="A time is not negative")
+        raise InputError(
+            f"hold = {hold:g} s",
+            where="argument hold",
+            why="A time is not negative",
+            remedy="Give zero or more seconds",
+        )
     corners = [(0.0, low), (duration, high)]
     if hold > 0.0:
         corners.append((duration + hold, high))
@@ -228,5 +233,6 @@ def read_profile(
             "the profile is not a pair (time, mesh_frequency)",
             where="argument profile",
             remedy="Give ([0.0, 10.0], [100.0, 800.0]) or speed_ramp(100.0, 800.0, 10.0)",
+            why="A speed over time is needed",
         ) from error
     return SpeedProfile(np.asarray(corners, float), np.asarray(frequency, float))

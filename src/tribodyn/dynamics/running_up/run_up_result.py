@@ -133,7 +133,10 @@ class RunUp(Record):
             return self.output[:, self.output_names.index(name)], self.output_unit
         known = ("deflection", "contact_force", *self.names, *self.output_names)
         raise InputError(
-            f'no signal "{name}"', where="argument signal", why=f"There are {', '.join(known)}"
+            f'no signal "{name}"',
+            where="argument signal",
+            why=f"There are {', '.join(known)}",
+            remedy="Choose one of these",
         )
 
     def __repr__(self) -> str:

@@ -46,7 +46,12 @@ def systems_by_frequency(
     if isinstance(system, System):
         return np.zeros(1), (system,)
     if not system:
-        raise InputError("no system", where="argument system")
+        raise InputError(
+            "no system",
+            where="argument system",
+            why="The equations of motion belong to a system",
+            remedy="Give a System, or several by mesh frequency",
+        )
     frequency = np.array(sorted(system), dtype=float)
     require_positive("mesh_frequency", frequency, "Hz")
     found = tuple(system[each] for each in sorted(system))
@@ -64,6 +69,7 @@ def systems_by_frequency(
                 where="argument system",
                 why="Contacts, friction and loads may change with the speed; matrices, "
                 "coordinates, the number of contacts and the balanced torque stay",
+                remedy="Give systems of one structure",
             )
     return frequency, found
 

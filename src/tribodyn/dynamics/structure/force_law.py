@@ -42,6 +42,7 @@ def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ..
         f'mesh_force = "{mesh_force}"',
         where="argument mesh_force",
         why='"stiffness", "tangent" or "force-law"',
+        remedy="Choose one of these",
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried, sum_of
-from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ def row_of(
             f"{name} has the shape {array.shape}",
             where=f"argument {name}",
             why=why or f"Give one value, or {count} of them",
+            remedy="Give one value for all, or a list of them",
         )
     if not array.size:  # a shaft of one disc has no springs
         return array
@@ -49,8 +50,7 @@ def pair_of(name: str, value: ArrayLike, unit: str, *, positive: bool = True) ->
 
 
 def _sign(driver: Driver) -> float:
-    if driver not in ("pinion", "wheel"):
-        raise InputError(f'driver = "{driver}"', where="argument driver", why='"pinion" or "wheel"')
+    require_one_of("driver", driver, ("pinion", "wheel"))
     return 1.0 if driver == "pinion" else -1.0
 
 
@@ -158,6 +158,7 @@ def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | 
         f'torque_balance = "{torque_balance}"',
         where="argument torque_balance",
         why='"drive" holds the driving torque, "load" the load torque, "both" both',
+        remedy="Choose one of these",
     )
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.structure.gear_pair import Driver, row_of
-from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.types import Array
 
 
@@ -249,6 +249,7 @@ def assemble(
             f'two bodies have a coordinate "{doubled[0]}"',
             where="argument bodies",
             why="Each disc needs a name of its own",
+            remedy="Rename one of them",
         )
     force = np.zeros(len(names))
     for disc, value in torque.items():
@@ -280,7 +281,12 @@ def _diagonal(blocks: Sequence[Array]) -> Array:
 def _column(names: tuple[str, ...], disc: str, where: str) -> int:
     if f"{disc}_theta" not in names:
         known = ", ".join(name.removesuffix("_theta") for name in names if name.endswith("_theta"))
-        raise InputError(f'there is no disc "{disc}"', where=where, remedy=f"Known: {known}")
+        raise InputError(
+            f'there is no disc "{disc}"',
+            where=where,
+            remedy=f"Known: {known}",
+            why="Springs and meshes name the discs of the shafts",
+        )
     return names.index(f"{disc}_theta")
 
 
@@ -299,11 +305,13 @@ def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
     require_between("backlash", mesh.backlash, 0.0, np.inf, "m")
     require_between("lag", mesh.lag, 0.0, 1.0, "")
     if int(mesh.cycles) != mesh.cycles or mesh.cycles < 1:
-        raise InputError(f"cycles = {mesh.cycles}", where="GearMesh.cycles", why="A whole number")
-    if mesh.driver not in ("pinion", "wheel"):
         raise InputError(
-            f'driver = "{mesh.driver}"', where="GearMesh.driver", why='"pinion" or "wheel"'
+            f"cycles = {mesh.cycles}",
+            where="GearMesh.cycles",
+            why="A whole number",
+            remedy="Give cycles=1 for a pair of its own",
         )
+    require_one_of("GearMesh.driver", mesh.driver, ("pinion", "wheel"))
     radii = row_of("base_radius", mesh.base_radius, 2, "m")
     along = np.array([np.cos(mesh.line_angle), np.sin(mesh.line_angle)])
     along[np.abs(along) < 1e-15] = 0.0

@@ -102,6 +102,7 @@ class AdaptiveSolution(Record):
                 f"time = {given[outside].flat[0]:.6g} s",
                 where="argument time",
                 why=f"The motion goes from 0 to {self.time[-1]:.6g} s",
+                remedy="Ask for a time within the motion",
             )
         phase = given.reshape(-1) * self.mesh_frequency
         step = np.clip(np.searchsorted(self.phase, phase, side="right") - 1, 0, self.steps - 1)

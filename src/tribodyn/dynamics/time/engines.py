@@ -195,6 +195,7 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
             f'method = "{method}"',
             where="argument method",
             why="It is one of " + ", ".join(f'"{each}"' for each in _BEGIN),
+            remedy="Choose one of these",
         )
     begin, own = _BEGIN[name]
     given = {option: value for option, value in options.items() if value is not None}

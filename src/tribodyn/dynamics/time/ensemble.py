@@ -167,6 +167,7 @@ def simulate_ensemble(
             f"averaged = {averaged} with cycles = {cycles}",
             where="argument averaged",
             why="Statistics cover some of the last mesh cycles",
+            remedy="Give 1 to cycles",
         )
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     options |= {"backend": backend}
@@ -213,6 +214,7 @@ def _frequencies(
             f"{name} is for {counts[name]} lanes, others are for {lanes}",
             where=f"argument {name}",
             why="One for each lane, or one for all",
+            remedy="Give one value, or one for each lane",
         )
     return np.array(np.broadcast_to(frequency, (lanes,)))
 

@@ -55,6 +55,7 @@ def newmark_law(
             where="argument preset",
             why="It names both parameters and is one of "
             + ", ".join(f'"{name}"' for name in NEWMARK_PRESETS),
+            remedy="Choose one of these, and leave out the parameters",
         )
     return NEWMARK_PRESETS[preset]
 

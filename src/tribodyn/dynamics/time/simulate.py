@@ -34,6 +34,7 @@ def read_start(
             "start holds NaN or infinity, or is not a pair (position, velocity)",
             where="argument start",
             why=f"Each of the two has the shape ({size},){several}",
+            remedy="Give (position, velocity), both finite",
         )
     return state if lanes else state[0]
 
@@ -48,6 +49,7 @@ def read_force(system: System, extra_force: ArrayLike | None) -> Array:
             f"extra_force has the shape {force.shape}, or holds NaN or infinity",
             where=Argument("extra_force"),
             why=f"One finite force for each coordinate: ({system.size},)",
+            remedy="Give one finite force for each coordinate",
         )
     return force
 

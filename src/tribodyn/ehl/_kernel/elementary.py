@@ -13,6 +13,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from tribodyn.inner_kernels import INNER_OPTIONS
+
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: dict[str, Any] = {
     "nogil": True,
@@ -20,11 +22,11 @@ JIT: dict[str, Any] = {
     "error_model": "numpy",
 }
 
-#: For what only compiled functions call: no entry from C has to be compiled.
-INNER: dict[str, Any] = {**JIT, "no_cfunc_wrapper": True}
+#: For what only compiled functions call.
+INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
 
-#: For what not even a test calls from Python: no entry from there either, which is much to compile.
-BURIED: dict[str, Any] = {**INNER, "no_cpython_wrapper": True}
+#: For what Python calls too.
+OPEN: dict[str, Any] = {**JIT, "no_cfunc_wrapper": True}
 
 
 #: Files whose code ends up in every compiled kernel of a film, beside its own.

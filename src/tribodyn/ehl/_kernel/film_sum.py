@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import BURIED, INNER
+from tribodyn.ehl._kernel.elementary import INNER, OPEN
 from tribodyn.types import Array
 
 
@@ -136,7 +136,7 @@ def _antiderivative(x: float) -> float:
     return x * (math.log(abs(x)) - 1.0) if x != 0.0 else 0.0
 
 
-@nb.njit(**INNER)
+@nb.njit(**OPEN)
 def influence(n: int, dx: float) -> Array:
     """Deflection at a distance of 0..n intervals from one node under unit pressure."""
     kernel = np.empty(n + 1)
@@ -262,7 +262,7 @@ class Grid(NamedTuple):
     plan: Array  #: of :func:`film_sum`
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def make_grid(n: int, dx: float) -> Grid:
     """Grid of ``n`` intervals."""
     kernel = influence(n, dx)

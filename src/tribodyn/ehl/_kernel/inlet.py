@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import BURIED, INNER
+from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum
 from tribodyn.ehl._kernel.newton import Equation, NewtonWork
 from tribodyn.ehl._kernel.reynolds import BARUS, ROELANDS
@@ -54,7 +54,7 @@ _FADED = -0.5
 _RIGID, _PARTING = 2.0, 0.4754
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def dry_gap(x: float) -> float:
     """Gap of the dry contact outside of it, in b^2/R."""
     a = abs(x)
@@ -64,7 +64,7 @@ def dry_gap(x: float) -> float:
     return 0.5 * (a * root - np.log(a + root))
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def piezoviscosity(oil: Array) -> float:
     """Slope of ln(viscosity) over the dimensionless pressure at ambient pressure."""
     if oil[0] == ROELANDS:
@@ -72,7 +72,7 @@ def piezoviscosity(oil: Array) -> float:
     return oil[1] if oil[0] == BARUS else 0.0
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def free_nodes(n: int, P: Array) -> int:
     """Last node with pressure."""
     k = n - 1
@@ -81,7 +81,7 @@ def free_nodes(n: int, P: Array) -> int:
     return k
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _reduced_pressure(
     n: int, start: float, dx: float, lam: float, film: float, tail: float, q: Array
 ) -> float:
@@ -101,7 +101,7 @@ def _reduced_pressure(
     return last
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _rigid_pressure(
     n: int, start: float, dx: float, lam: float, film: float, tail: float, q: Array
 ) -> None:
@@ -118,7 +118,7 @@ def _rigid_pressure(
         before = here
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _thickened(q: float, slope: float) -> float:
     """Pressure of the reduced pressure ``q`` under Barus' law."""
     if slope > 2.0:
@@ -126,7 +126,7 @@ def _thickened(q: float, slope: float) -> float:
     return min(q, _HIGHEST)
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def cold_start(
     grid: Grid, start: float, equation: Equation, film: float, work: NewtonWork, P: Array, H: Array
 ) -> float:

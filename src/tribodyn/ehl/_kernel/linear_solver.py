@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import BURIED, INNER
+from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, make_grid
 from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
 from tribodyn.types import Array, Index
@@ -155,7 +155,7 @@ class LinearWork(NamedTuple):
     transform: Array  #: of :func:`film_sum`
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def linear_work(n: int) -> LinearWork:
     """Arrays of the linear solver on ``n`` intervals."""
     a = np.zeros((5, n + 2))
@@ -167,7 +167,7 @@ def linear_work(n: int) -> LinearWork:
     )  # fmt: skip
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def no_coarse() -> CoarseTangent:
     """No coarse grid."""
     none, zero = np.empty(0), nb.int64(0)
@@ -175,7 +175,7 @@ def no_coarse() -> CoarseTangent:
     return CoarseTangent(grid, zero, np.empty((0, 0)), np.empty(0, np.int64), none, none, none)
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def coarse_tangent(
     n: int, dx: float, k: int, ratio: int, lam: float, u: float, squeeze: float, imposed: bool,
     oil: Array, P: Array, H: Array,
@@ -212,7 +212,7 @@ def coarse_tangent(
     return CoarseTangent(grid, last, a, pivot, np.empty(m + 2), p, h)
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def _correct(
     fine: Grid,
     k: int,
@@ -282,7 +282,7 @@ def _correct(
     return fine.dx * total
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
     """Scale the rows of the tangent and factor its band; False if that is singular."""
     cH, cP, band, pivot = work.by_film, work.by_pressure, work.band, work.pivot
@@ -322,7 +322,7 @@ def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
     return True
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def _precondition(
     grid: Grid,
     k: int,
@@ -350,7 +350,7 @@ def _precondition(
             z[i] += correction[i]
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def film_change(grid: Grid, k: int, first: float, x: Array, work: LinearWork) -> None:
     """Film of a change of the pressures: that of node 0, then ``x`` at the nodes 1..k."""
     p = work.pressure
@@ -362,7 +362,7 @@ def film_change(grid: Grid, k: int, first: float, x: Array, work: LinearWork) ->
     film_sum(grid.n, grid.influence, grid.plan, p, work.transform, work.film)
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def _apply(grid: Grid, k: int, imposed: bool, work: LinearWork, x: Array, y: Array) -> None:
     """Rows 1..k of the tangent times ``x``, scaled."""
     cH, cP, p, h, scale = work.by_film, work.by_pressure, work.pressure, work.film, work.scale
@@ -387,7 +387,7 @@ def _apply(grid: Grid, k: int, imposed: bool, work: LinearWork, x: Array, y: Arr
         )
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def linear_solve(
     grid: Grid,
     k: int,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import BURIED
+from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum
 from tribodyn.ehl._kernel.linear_solver import (
     CoarseTangent,
@@ -83,14 +83,14 @@ class Solved(NamedTuple):
     flux_error: float
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def newton_work(n: int, flag: Index) -> NewtonWork:
     """Arrays of :func:`newton_level` on ``n`` intervals."""
     a = np.zeros((3, n + 2))
     return NewtonWork(make_fields(n), linear_work(n), a[0], a[1], a[2], flag)
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _flux_error(k: int, F: Array, G: Array) -> float:
     """Greatest deviation of the summed mass balance from its mean, over the mean flux."""
     total, mean, flux, highest = 0.0, 0.0, 0.0, 0.0
@@ -109,7 +109,7 @@ def _flux_error(k: int, F: Array, G: Array) -> float:
     return worst / unit
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _balance_error(k: int, squeeze: float, cavity: Array, H: Array, f: Fields) -> float:
     """Sum of the mass balances of the free nodes over the mean flux, or over the squeezed oil."""
     wrong, flux, squeezed = 0.0, 0.0, 0.0
@@ -121,7 +121,7 @@ def _balance_error(k: int, squeeze: float, cavity: Array, H: Array, f: Fields) -
     return wrong / max(flux / k, 1e-3 * squeezed)
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _step_length(n: int, k: int, cap: float, delta: Array, rise: Array, H: Array) -> float:
     """Greatest step that changes no pressure by more than ``cap`` and keeps the gap open."""
     largest, least = 0.0, H[0]
@@ -140,7 +140,7 @@ def _step_length(n: int, k: int, cap: float, delta: Array, rise: Array, H: Array
     return 0.0
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _refill(k: int, streak: int, cavity: Array, visits: Array, G: Array) -> bool:
     """Fill cavities from those of their nodes where oil is left over: one more node, two, four."""
     filled, i = False, 1
@@ -160,7 +160,7 @@ def _refill(k: int, streak: int, cavity: Array, visits: Array, G: Array) -> bool
     return filled
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _rupture(k: int, cavity: Array, P: Array) -> tuple[int, bool]:
     """Make cavities of the nodes with negative pressure; last free node, and whether any was."""
     torn = False
@@ -173,7 +173,7 @@ def _rupture(k: int, cavity: Array, P: Array) -> tuple[int, bool]:
     return k, torn
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _hold_cavities(k: int, cavity: Array, P: Array, rhs: Array, cH: Array, cP: Array) -> None:
     """Put the pressure zero in place of the mass balance where the film is torn."""
     for i in range(1, k + 1):
@@ -184,7 +184,7 @@ def _hold_cavities(k: int, cavity: Array, P: Array, rhs: Array, cH: Array, cP: A
             cP[i, 2] = 1.0
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def newton_level(
     grid: Grid, equation: Equation, limits: Limits, offset: float, free: int, P: Array, H: Array,
     cavity: Array, coarse: CoarseTangent, work: NewtonWork,

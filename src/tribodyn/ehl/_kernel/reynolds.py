@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import BURIED, INNER, exp_, log_
+from tribodyn.ehl._kernel.elementary import INNER, OPEN, exp_, log_
 from tribodyn.types import Array
 
 ISOVISCOUS, BARUS, ROELANDS = 0.0, 1.0, 2.0
@@ -22,7 +22,7 @@ ISOVISCOUS, BARUS, ROELANDS = 0.0, 1.0, 2.0
 LOWEST = -0.3
 
 
-@nb.njit(**INNER)
+@nb.njit(**OPEN)
 def oil_state(
     n: int, P: Array, oil: Array, lneta: Array, dlneta: Array, rho: Array, drho: Array
 ) -> None:
@@ -49,7 +49,7 @@ def oil_state(
 THINNEST = 1e-10
 
 
-@nb.njit(**INNER)
+@nb.njit(**OPEN)
 def mobility(n: int, H: Array, lam: float, lneta: Array, rho: Array, eps: Array) -> None:
     """``eps = rho H^3 / (eta lambda)``: flux per pressure gradient."""
     inverse = 1.0 / lam
@@ -83,7 +83,7 @@ def residual(
         G[i] = F[i] - F[i - 1] + squeeze * rho[i] * H[i] - history[i]
 
 
-@nb.njit(**INNER)
+@nb.njit(**OPEN)
 def coefficients(
     n: int,
     dx: float,
@@ -142,21 +142,21 @@ class Fields(NamedTuple):
     G: Array  #: residual of the mass balance
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def make_fields(n: int) -> Fields:
     """Fields of a grid of ``n`` intervals, not yet filled."""
     a = np.zeros((7, n + 2))
     return Fields(a[0], a[1], a[2], a[3], a[4], a[5], a[6])
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def fill_oil(n: int, lam: float, oil: Array, P: Array, H: Array, f: Fields) -> None:
     """Oil and mobility of a pressure and a film."""
     oil_state(n, P, oil, f.lneta, f.dlneta, f.rho, f.drho)
     mobility(n, H, lam, f.lneta, f.rho, f.eps)
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def fill_tangent(
     n: int,
     dx: float,

@@ -9,7 +9,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
-from tribodyn.ehl._kernel.elementary import BURIED, JIT, SOURCES
+from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import make_grid
 from tribodyn.ehl._kernel.inlet import cold_start, free_nodes
 from tribodyn.ehl._kernel.linear_solver import (
@@ -38,7 +38,7 @@ _TWO_GRIDS, _COARSE = 2048, 128
 _PASSING_FLUX = 1e-2
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _gap(n: int, start: float, dx: float, factor: int, profile: Array) -> Array:
     """Undeformed gap on a grid ``factor`` times as wide: the profile by its local mean."""
     shape = np.empty(n + 1)
@@ -147,9 +147,11 @@ def _build_tangent(digest: str) -> Any:
         grid, f, work = make_grid(n, dx), make_fields(n), linear_work(n)
         K, cH, cP = grid.influence, work.by_film, work.by_pressure
         rhs, x = np.zeros(n + 2), np.empty(n + 2)
+        # Typed: a literal would make the compiler translate the callees anew.
+        imposed = n > 0
         fill_oil(n, lam, oil, P, H, f)
         fill_tangent(n, dx, 1.0, 0.0, P, H, f, cH, cP)
-        if not prepare(grid, k, True, work):
+        if not prepare(grid, k, imposed, work):
             return 0.0, 0.0, -1
         # The pressure of the first node is given: its column of the tangent goes to the right.
         for i in range(1, k + 1):
@@ -159,7 +161,7 @@ def _build_tangent(digest: str) -> Any:
         rhs[0] -= cP[1, 1] * tail
         rhs[1] -= cP[2, 0] * tail
         rhs[k] = load - 0.5 * dx * tail
-        products = linear_solve(grid, k, True, _TOLERANCE, no_coarse(), work, rhs, x)
+        products = linear_solve(grid, k, imposed, _TOLERANCE, no_coarse(), work, rhs, x)
         film_change(grid, k, tail, x, work)
         for i in range(n + 1):
             work.film[i] += x[k]

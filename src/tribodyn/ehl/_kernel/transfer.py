@@ -5,11 +5,11 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import BURIED, INNER
+from tribodyn.ehl._kernel.elementary import INNER, OPEN
 from tribodyn.types import Array
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def cut_negative(n: int, k: int, change: float, P: Array) -> int:
     """Last free node after all from the first negative pressure near the outlet are released."""
     first = k + 1
@@ -25,13 +25,13 @@ def cut_negative(n: int, k: int, change: float, P: Array) -> int:
     return last
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def extend(n: int, k: int, streak: int) -> int:
     """Last free node after the outlet has moved on: one node, then two, then four."""
     return min(n - 1, k + min(2**streak, max(1, n // 16)))
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def outlet_position(k: int, n: int, P: Array) -> float:
     """Index, with fraction, at which the pressure ends."""
     if k < 2 or not P[k] > 0.0 or not P[k - 1] > P[k]:
@@ -40,7 +40,7 @@ def outlet_position(k: int, n: int, P: Array) -> float:
     return min(k + near / (far - near), float(n))
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def scale_to_load(n: int, dx: float, k: int, load: float, tail: float, P: Array) -> None:
     """Scale the pressure behind the first node to the load, the first node counted half."""
     total = 0.0
@@ -53,7 +53,7 @@ def scale_to_load(n: int, dx: float, k: int, load: float, tail: float, P: Array)
             P[i] *= factor
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def refine(n: int, dx: float, P: Array, k: int, load: float, tail: float, fine: Array) -> int:
     """Interpolate a pressure to the grid of half the interval."""
     m = 2 * n
@@ -76,7 +76,7 @@ def refine(n: int, dx: float, P: Array, k: int, load: float, tail: float, fine: 
     return last
 
 
-@nb.njit(**INNER)
+@nb.njit(**OPEN)
 def central(n: int, start: float, dx: float, H: Array) -> float:
     """Film at X = 0 by cubic interpolation on a grid that begins at ``start``."""
     t = -start / dx

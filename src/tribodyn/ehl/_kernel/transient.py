@@ -13,7 +13,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
-from tribodyn.ehl._kernel.elementary import BURIED, JIT, SOURCES
+from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, influence
 from tribodyn.ehl._kernel.inlet import flooded_inlet
 from tribodyn.ehl._kernel.linear_solver import no_coarse
@@ -90,7 +90,7 @@ class _Setting(NamedTuple):
     work: NewtonWork
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _setting(contact: TransientContact, flag: Index) -> _Setting:
     n = contact.n
     kernel = influence(n, contact.dx) + contact.dx * np.log(contact.depth) / np.pi
@@ -98,7 +98,7 @@ def _setting(contact: TransientContact, flag: Index) -> _Setting:
     return _Setting(grid, np.empty(n + 1), np.zeros(n + 1), newton_work(n, flag))
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _add_profile(
     n: int, start: float, dx: float, shift: float, factor: float, heights: Array, first: float,
     spacing: float, periodic: bool, shape: Array,
@@ -127,7 +127,7 @@ def _add_profile(
         )
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _fill_gap(contact: TransientContact, row: Array, shape: Array) -> None:
     """Gap of the undeformed bodies at one instant."""
     n, start, dx, profiles = contact.n, contact.start, contact.dx, contact.profiles
@@ -143,7 +143,7 @@ def _fill_gap(contact: TransientContact, row: Array, shape: Array) -> None:
         )  # fmt: skip
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def _inlet(
     start: float, film: float, carried: float, lam: float, flooded: bool, row: Array
 ) -> tuple[float, float]:
@@ -158,7 +158,7 @@ def _inlet(
     return pressure, outside
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def _solve(
     contact: TransientContact, setting: _Setting, row: Array, film: float, squeeze: float,
     state: Instant, load: float, P: Array, H: Array, cavity: Array,
@@ -183,7 +183,7 @@ def _solve(
     )
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def _carry(
     contact: TransientContact,
     setting: _Setting,
@@ -234,7 +234,7 @@ def _carry(
     return nb.int64(CONVERGED), state
 
 
-@nb.njit(**BURIED)
+@nb.njit(**INNER)
 def _keep(
     contact: TransientContact,
     P: Array,
@@ -264,7 +264,7 @@ def _keep(
     record[11] = np.sum(cavity)
 
 
-@nb.njit(inline="always", **BURIED)
+@nb.njit(inline="always", **INNER)
 def _follow(
     contact: TransientContact, setting: _Setting, time: Array, table: Array, halvings: int,
     every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array, films: Array,

@@ -119,7 +119,7 @@ def film_formula(law: Callable[[Groups], Array]) -> FilmFormula:
     public = FunctionType(
         formula.__code__, law.__globals__, law.__name__, None, formula.__closure__
     )
-    taken = inspect.signature(line_contact_groups).replace(return_annotation="Array")
+    taken = inspect.signature(line_contact_groups, eval_str=True).replace(return_annotation="Array")
     public.__signature__ = taken  # type: ignore[attr-defined]
     public.__annotations__ = {**line_contact_groups.__annotations__, "return": "Array"}
     public.__module__, public.__qualname__ = law.__module__, law.__qualname__

@@ -172,7 +172,7 @@ def solve_line_contacts(
         table[:, index], solutions[index] = row, solution
         progress.advance()
     progress.finish()
-    _warn_coarse(table[7] / table[0], options, shape)
+    warn_coarse(table[7].reshape(shape) / table[0].reshape(shape), options.nodes)
     table[2] = -length * columns[0] / table[2]
     if stiffness:
         _warn_negative(table[2], shape)
@@ -208,6 +208,7 @@ def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
             f"the shapes {shapes} of load, radius and speed do not fit",
             where="arguments load_per_width, equivalent_radius, entrainment_speed",
             why="they must be numbers, or arrays that broadcast",
+            remedy="Give numbers, or arrays of one shape",
         ) from error
     return arrays[0].shape, [np.ascontiguousarray(array).reshape(-1) for array in arrays]
 
@@ -226,15 +227,15 @@ def _row(solution: LineContactSolution, stiffness: bool | str) -> list[float]:
     ]
 
 
-def _warn_coarse(error: Array, options: SolverOptions, shape: tuple[int, ...]) -> None:
-    """One warning for all contacts whose stated nodes are too few."""
-    if isinstance(options.nodes, str) or not np.any(error > STATED_LIMIT):
+def warn_coarse(error: Array, nodes: str | int) -> None:
+    """One warning for all contacts whose stated nodes are too few, by the error of their film."""
+    if isinstance(nodes, str) or not np.any(error > STATED_LIMIT):
         return
-    worst = int(np.argmax(error))
-    place = ", ".join(str(part) for part in np.unravel_index(worst, shape)) or "0"
+    worst = np.unravel_index(np.argmax(error), error.shape)
+    place = ", ".join(str(part) for part in worst) or "0"
     warn(
         "film-resolution",
-        f"With nodes = {options.nodes} the central film of {np.sum(error > STATED_LIMIT)} of "
+        f"With nodes = {nodes} the central film of {np.sum(error > STATED_LIMIT)} of "
         f"{error.size} contacts has an estimated error above {STATED_LIMIT:g} of it; the worst is "
         f'contact [{place}] with {error[worst]:.2g}. Take nodes = "auto" or more nodes',
         stacklevel=4,

@@ -98,6 +98,7 @@ def choose_domain(
             where="argument inlet",
             why='"flooded": oil everywhere before the contact; "zero": no pressure before the '
             "first position of the domain, as if the oil began there",
+            remedy="Choose one of the two",
         )
     stated = not (isinstance(domain, str) and domain == "auto")
     if stated:
@@ -192,6 +193,7 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
             f"nodes = {nodes!r}",
             where="argument nodes",
             why=f'it is "auto" or a whole number from {FEWEST} to {MOST}',
+            remedy='Leave it at "auto", or give a number of this range',
         )
     count = int(float(nodes))
     near = 2 ** min(14, max(6, round(math.log2(max(count - 1, 1))))) + 1

@@ -277,6 +277,7 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
             "positions, or heights that are not finite",
             where="argument profile",
             why="every node of the grid needs a height",
+            remedy="Return one finite height in m for each position",
         )
     return np.ascontiguousarray(heights * case.equivalent_radius / case.half_width**2)
 
@@ -287,6 +288,7 @@ def _start(start: Any) -> Any:
             f"start is of the type {type(start).__name__}",
             where="argument start",
             why="it must be a solution of a similar contact",
+            remedy="Give what this solver returned before, or None",
         )
     return start._grid
 

@@ -48,7 +48,7 @@ def inlet_change(solution: SolvedContact) -> InletChange:
         return estimate_film(load, solution.moes_viscosity, density) * math.exp(change)
 
     slope = (film(_STEP) - film(-_STEP)) / (2.0 * _STEP)
-    _, _, pressure_film, load_film, pressure_load, load_load = flooded_inlet(
+    _, _, pressure_film, load_film, pressure_load, load_load = flooded_inlet.py_func(
         float(grid.X[0]), film(0.0), grid.lam, 1.0, 1.0
     )
     return InletChange(

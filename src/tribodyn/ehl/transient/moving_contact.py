@@ -91,6 +91,7 @@ def _series(name: str, given: Series, t: Array) -> Array:
             f"{name} is {np.atleast_1d(values)[bad[0]]} at instant {bad[0]}",
             where=f"argument {name}",
             why="all values must be finite",
+            remedy="Look for the instant that has no value",
         )
     return np.ascontiguousarray(np.broadcast_to(values, t.shape))
 
@@ -145,6 +146,7 @@ def _travel(
             f"entrainment_speed {speed[i]:.6g} m/s at instant {i}",
             where="arguments surface_speeds and entrainment_speed",
             why="the entrainment speed is HALF the sum of the surface speeds",
+            remedy="Give (u1 + u2)/2",
         )
     steps = 0.5 * (speeds[:, 1:] + speeds[:, :-1]) * np.diff(t)
     return np.concatenate((np.zeros((2, 1)), np.cumsum(steps, axis=1)), axis=1)

@@ -196,7 +196,12 @@ def _numbers(vector: Array) -> str:
 def _written(path: str | os.PathLike[str], text: str) -> Path:
     if not isinstance(path, str | os.PathLike):
         what = f"path = {shortened(repr(path))}"
-        raise InputError(what, Argument("path"), "Wanted: the name of a file")
+        raise InputError(
+            what,
+            Argument("path"),
+            "Wanted: the name of a file",
+            remedy="Give it as a text or a Path",
+        )
     with whole(Path(path)) as partial:
         partial.write_text(text, "utf-8")
     return Path(path)
@@ -249,16 +254,15 @@ def hypoid_flanks(
     >>> flanks.undercut_share, round(float(flanks.gap.max()) * 1e6)
     (0.0, 31)
     """
-    if not isinstance(blank, HypoidBlank):
-        what = f"blank = {shortened(repr(blank))}"
-        raise InputError(what, Argument("blank"), "Wanted: what hypoid_blank returns")
-    if not isinstance(ease_off, EaseOff | None):
-        what = f"ease_off = {shortened(repr(ease_off))}"
-        raise InputError(what, Argument("ease_off"), "Wanted: an EaseOff or None")
     side = require_one_of("side", side, SIDES)
     count = require_whole("points", points, 5)
     if count > 1000:
-        raise InputError(f"points = {count}", Argument("points"), "At most 1000 are made")
+        raise InputError(
+            f"points = {count}",
+            Argument("points"),
+            "At most 1000 are made",
+            remedy="Give 1000 at most",
+        )
     flanks = ConjugateFlanks(blank, side, ease_off or EaseOff())
     mean = blank.mean_cone_distance_wheel
     along = np.linspace(

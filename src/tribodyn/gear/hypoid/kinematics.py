@@ -9,12 +9,9 @@ import numpy as np
 
 from tribodyn.checks import require_number
 from tribodyn.errors import (
-    Argument,
-    InputError,
     require_between,
     require_one_of,
     require_positive,
-    shortened,
 )
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.envelope import Curvature, cross
@@ -115,9 +112,6 @@ def hypoid_kinematics(
     >>> bool(motion.sliding_speed.min() > 2.0)
     True
     """
-    if not isinstance(contact, ToothContact):
-        what = f"contact = {shortened(repr(contact))}"
-        raise InputError(what, Argument("contact"), "Wanted: what tooth_contact returns")
     speed = require_number("pinion_speed", pinion_speed)
     require_positive("pinion_speed", speed, "rad/s", remedy="3000 rpm is 314.16 rad/s")
     require_between("pinion_speed", speed, 0.0, 1e5, "rad/s", remedy="3000 rpm is 314.16 rad/s")

@@ -8,7 +8,7 @@ from dataclasses import field
 import numpy as np
 
 from tribodyn.checks import require_flag, require_whole
-from tribodyn.errors import Argument, InputError, require_between, require_positive, shortened
+from tribodyn.errors import require_between, require_positive
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.contact_lines import ContactLines
 from tribodyn.gear.hypoid.ease_off import eased_gap
@@ -155,12 +155,6 @@ def tooth_contact(
     >>> round(contact.peak_to_peak * 1e6)
     34
     """
-    if not isinstance(flanks, HypoidFlanks):
-        what = f"flanks = {shortened(repr(flanks))}"
-        raise InputError(what, Argument("flanks"), "Wanted: what hypoid_flanks returns")
-    if not isinstance(misalignment, Misalignment | None):
-        what = f"misalignment = {shortened(repr(misalignment))}"
-        raise InputError(what, Argument("misalignment"), "Wanted: a Misalignment or None")
     exact = require_flag("exact", exact)
     require_positive("marking_thickness", marking_thickness, "m", remedy="6 um is 6e-6")
     require_between("marking_thickness", marking_thickness, 0.0, 1e-3, "m", remedy="6 um is 6e-6")

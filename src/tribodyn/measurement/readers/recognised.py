@@ -48,7 +48,10 @@ def content_of(path: str | os.PathLike[str]) -> Content:
         place = Path(path)
     except TypeError:
         raise InputError(
-            f"path = {path!r}", where=Argument("path"), why="Wanted: the place of a file"
+            f"path = {path!r}",
+            where=Argument("path"),
+            why="Wanted: the place of a file",
+            remedy="Give it as a text or a Path",
         ) from None
     found = _format(place, _head(place))
     try:
@@ -82,7 +85,14 @@ def _head(place: Path) -> bytes:
             head = file.read(1024)
     except OSError as error:
         reason = os.strerror(error.errno or errno.EIO)
-        raise InputError(Problem("cannot be read", str(place), reason)) from None
+        raise InputError(
+            Problem(
+                "cannot be read",
+                str(place),
+                reason,
+                remedy="Check that the file is whole, and what wrote it",
+            )
+        ) from None
     if not head.strip():
         raise InputError(Problem("is empty", str(place), "", "Take it from the system again"))
     return head

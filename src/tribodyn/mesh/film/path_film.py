@@ -35,7 +35,6 @@ from tribodyn.mesh.film.film_refinement import (
     PRESSURE,
     PROMISED,
     QUANTITIES,
-    RIGID,
     STIFFNESS,
     Memory,
     PathLoads,
@@ -44,6 +43,7 @@ from tribodyn.mesh.film.film_refinement import (
     joined_over_age,
     places_of,
 )
+from tribodyn.mesh.film.loaded_films import LoadedFilms
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import Progress
@@ -76,12 +76,11 @@ class FilmAt(Protocol):
     def rigid_share(self) -> float:
         """Part of the contacts whose film does not fall with the load."""
 
-    @property
-    def doubtful(self) -> Mask:
-        """Quantities (4, contacts or 1) that may be further from a solution than promised."""
-
     def warn_of_doubt(self) -> None:
         """Say where quantities are in doubt."""
+
+    def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
+        """Films as they are reported under these loads, and which quantities of them are known."""
 
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
@@ -99,7 +98,6 @@ class FormulaFilm:
 
     keeps_distance = False
     rigid_share = 0.0
-    doubtful = np.zeros((len(QUANTITIES), 1), dtype=bool)
 
     def solve(self, loads: Array, checked: tuple[int, ...] = ()) -> FilmAt:
         """Answer with itself: nothing has to be solved."""
@@ -112,6 +110,10 @@ class FormulaFilm:
 
     def warn_of_doubt(self) -> None:
         """Say nothing: a formula is what it is."""
+
+    def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
+        """Report every film."""
+        return films, np.ones((len(QUANTITIES), 1), dtype=bool)
 
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
@@ -166,12 +168,14 @@ class PathFilm:
             refinement.solve_extremes()
         values = refinement.values(np.arange(self.zone.size))
         return SolvedPath(
-            path=self,
-            places=refinement.places,
+            pairs=self.pairs,
+            keeps_distance=self.settings.film["stiffness"] == "approach",
             factors=np.exp(values[:STIFFNESS]),
             yielding=values[STIFFNESS],
             doubtful=refinement.doubtful,
             loads=loads,
+            path=self,
+            places=refinement.places,
         )
 
     def _solve_more(self, loads: PathLoads, contacts: Index) -> Places:
@@ -190,55 +194,22 @@ class PathFilm:
 
 
 @dataclass(frozen=True, eq=False)
-class SolvedPath:
+class SolvedPath(LoadedFilms):
     """Films solved along the path of contact; called with loads it gives those of all contacts."""
 
     path: PathFilm  #: positions and contacts
     places: Places  #: solved contacts: the positions first, then those that were added
-    factors: Array
-    yielding: Array  #: compliance of their films over its scale
-    doubtful: Mask  #: quantities (4, contacts) that may be further from a solution than promised
-    loads: PathLoads  #: loads that the films were solved for
-
-    @property
-    def scored(self) -> Mask:
-        """Contacts that carry enough for a film of their own."""
-        return self.loads.scored
-
-    @property
-    def keeps_distance(self) -> bool:
-        """Whether each film is a spring about the distance that it keeps between the flanks."""
-        return bool(self.path.settings.film["stiffness"] == "approach")
 
     @cached_property
-    def _distance(self) -> tuple[Array, Array]:
-        """Distance under the solved loads, and the power of the load by which it falls."""
+    def distance_factors(self) -> Array:
+        """Distance under the solved loads, over the scale of films."""
         path, zones, places = self.path, self.path.zone, self.places.yielding_ones
         factors = np.empty(zones.size)
         for zone in range(len(path.places.counts)):
             here, curve = zones == zone, path.memory.curves.get((zone, STIFFNESS), False)
             known, age = places.distance[places.zone == zone], path.pairs.age[here]
             factors[here] = joined_over_age(path.places, places, known, age, zone, curve=curve)
-        factors = np.exp(factors)
-        film = path.pairs.scales(self.loads.of_contacts)["central_film"]
-        return film * factors, np.clip(self.yielding / factors, RIGID, 1.0)
-
-    @property
-    def rigid_share(self) -> float:
-        """Part of the contacts whose film does not fall with the load."""
-        return float(np.mean(self.yielding[self.scored] < RIGID))
-
-    def __call__(self, load_per_width: Array) -> Films:
-        """Films of all contacts of the mesh table."""
-        *scales, stiffness = self.path.pairs.scales(load_per_width).values()
-        central, minimum, pressure = np.stack(scales) * self.factors
-        if not self.keeps_distance:
-            film_stiffness = stiffness / np.maximum(self.yielding, RIGID)
-            return Films(central, minimum, pressure, film_stiffness)
-        solved, power = self._distance
-        distance = solved * (load_per_width / self.loads.of_contacts) ** -power
-        film_stiffness = self.path.pairs.common_face_width * load_per_width / (power * distance)
-        return Films(central, minimum, pressure, film_stiffness, film_distance=distance)
+        return np.asarray(np.exp(factors))
 
     def warn_of_doubt(self) -> None:
         """Say at how many contacts which quantities are not told."""

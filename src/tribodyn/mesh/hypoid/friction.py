@@ -13,12 +13,9 @@ from tribodyn.checks import require_number
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS, hamrock_dowson_minimum, lubrication_regime
 from tribodyn.errors import (
-    Argument,
-    InputError,
     quiet,
     require_between,
     require_one_of,
-    shortened,
 )
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS, CellMotion, cell_motion
@@ -210,14 +207,6 @@ def hypoid_friction(
     >>> round(rubbed.mean_friction_coefficient, 3)
     0.03
     """
-    for name, value, kind, maker in (
-        ("loaded", loaded, HypoidLoadedContact, "what hypoid_loaded_contact returns"),
-        ("lubricant", lubricant, Lubricant, "a Lubricant"),
-    ):
-        if not isinstance(value, kind):
-            raise InputError(
-                f"{name} = {shortened(repr(value))}", Argument(name), f"Wanted: {maker}"
-            )
     speed = require_number("pinion_speed", pinion_speed)
     require_between("pinion_speed", speed, 1e-9, 1e5, "rad/s", remedy="3000 rpm is 314.16 rad/s")
     roughness = require_number("composite_roughness", composite_roughness)

@@ -10,11 +10,8 @@ import numpy as np
 from tribodyn.checks import require_number, require_whole
 from tribodyn.contact import effective_modulus, hertz_line
 from tribodyn.errors import (
-    Argument,
     ComputationError,
-    InputError,
     require_between,
-    shortened,
 )
 from tribodyn.gear import HypoidFlanks, Material, Misalignment
 from tribodyn.gear.hypoid.envelope import cross
@@ -225,16 +222,6 @@ def hypoid_loaded_contact(
     >>> bool(loaded.mean_mesh_stiffness > 4e8)
     True
     """
-    if not isinstance(flanks, HypoidFlanks):
-        what = f"flanks = {shortened(repr(flanks))}"
-        raise InputError(what, Argument("flanks"), "Wanted: what hypoid_flanks returns")
-    for name, value, kind in (
-        ("misalignment", misalignment, Misalignment),
-        ("material", material, Material),
-    ):
-        if not isinstance(value, kind | None):
-            what = f"{name} = {shortened(repr(value))}"
-            raise InputError(what, Argument(name), f"Wanted: a {kind.__name__} or None")
     torque = _required_torque(pinion_torque)
     line_stiffness = require_number("line_stiffness", line_stiffness)
     require_between(

@@ -26,6 +26,7 @@ from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, figu
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.contact import PathOfContact
     from tribodyn.ehl import TransientLineContact
 
 #: Points of a profile, and of the dry pressure: enough for a screen, small as a file.
@@ -225,7 +226,9 @@ def _checked(contacts: Any, path: ArrayLike) -> tuple[list[Any], Array]:
     return solutions, positions
 
 
-def film_along_path(contacts: Any, path: ArrayLike, *, path_of_contact: Any = None) -> Any:
+def film_along_path(
+    contacts: Any, path: ArrayLike, *, path_of_contact: PathOfContact | None = None
+) -> Any:
     """Animate pressure and film of one tooth pair from where it enters to where it leaves.
 
     Parameters

@@ -63,7 +63,9 @@ def _block(corners: Array, factor: Array) -> Array:
     determinant = np.linalg.det(jacobian)
     if determinant.min() <= 0.0:
         raise ComputationError(
-            "the finite element mesh of the gear has an element that is turned inside out"
+            "the finite element mesh of the gear has an element that is turned inside out",
+            why="Root and rim of this gear do not fit into the mesh",
+            remedy="Give a larger bore-to-root distance, or choose another stiffness model",
         )
     # slopes in x and y, scaled so that the square of the strain matrix is the integrand
     slopes = np.linalg.solve(jacobian, np.broadcast_to(local, (*jacobian.shape[:2], 2, 9)))

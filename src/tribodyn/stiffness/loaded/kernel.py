@@ -18,6 +18,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
+from tribodyn.inner_kernels import INNER_OPTIONS
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
@@ -27,7 +28,7 @@ _JIT: dict[str, Any] = {
     "fastmath": {"contract", "nsz"},
     "error_model": "numpy",
 }
-_INNER: dict[str, Any] = {**_JIT, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER: dict[str, Any] = {**_JIT, **INNER_OPTIONS}
 
 #: Residual of a pair over the approach that counts as zero.
 _TIGHT = 1e-13

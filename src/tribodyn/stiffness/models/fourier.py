@@ -61,6 +61,7 @@ def fourier_mesh_stiffness(
             "a coefficient of the Fourier series is not a finite number",
             where=ModelOption("stiffness", "fourier", "cosine, sine"),
             remedy="Give every coefficient in N/m",
+            why="The sum of the series must be finite",
         )
     scan = np.linspace(0.0, 1.0, _POINTS_PER_WAVE * (coefficients.shape[1] + 1))
     least = _series(scan, mean_stiffness, coefficients)

@@ -11,7 +11,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, ModelOption, require_positive
+from tribodyn.errors import (
+    Argument,
+    ComputationError,
+    InputError,
+    ModelOption,
+    require_positive,
+)
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.model import MODELS, MeshState, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
@@ -205,6 +211,10 @@ def potential_energy_stiffness(
     [['187 N/um', '177 N/um']]
     """
     require_positive("normal_force", normal_force, "N")
+    if path.ndim != 2 or in_contact.shape != path.shape:
+        what = f"path has the shape {path.shape}, in_contact {in_contact.shape}"
+        remedy = "Give both for the same phases and pairs"
+        raise InputError(what, Argument("path"), "Both have the shape (phases, pairs)", remedy)
     contacts = _contacts(pair, material, path[in_contact], reference)
     stiffness = np.zeros(path.shape)
     share = in_contact / in_contact.sum(axis=1, keepdims=True)

@@ -61,7 +61,7 @@ def tabulated_stiffness(
 
     x = np.asarray(abscissa, dtype=float)
     y = np.asarray(stiffness, dtype=float)
-    problems = [*_shape_problems(x, y, name), *_order_problems(x, name, unit)]
+    problems = [*(_shape_problems(x, y, name) or _order_problems(x, name, unit))]
     if problems:
         raise InputError(problems)
     require_positive("stiffness of the table", y, "N/m")
@@ -101,7 +101,7 @@ def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
             )
         ]
     falling = np.flatnonzero(np.diff(x) <= 0.0)
-    if x.ndim == 1 and falling.size:
+    if falling.size:
         first = falling[0]
         text = f"{x[first]:.6g} is followed by {x[first + 1]:.6g} {unit}".rstrip()
         return [

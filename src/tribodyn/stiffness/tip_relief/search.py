@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import one_or_more
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import Argument, InputError, Problem, quiet
+from tribodyn.errors import Argument, InputError, Problem, quiet, require_one_of
 from tribodyn.gear import (
     FlankModification,
     Material,
@@ -228,6 +228,7 @@ def with_tip_relief(
     FlankModification(tip_relief 10 um, tip_relief_length 2 mm)
     """
     changed: dict[str, Any] = {}
+    require_one_of("gears", gears, ("both", "pinion", "wheel"))
     for name in _named(gears):
         gear = getattr(pair, name)
         relief = replace(

@@ -160,7 +160,14 @@ def read_text(path: Path) -> str:
         raise InputError(Problem(what, f"{path}:{line}", why, "Save it as UTF-8")) from None
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(Problem(f"the file cannot be read: {reason}", str(path))) from None
+        raise InputError(
+            Problem(
+                f"the file cannot be read: {reason}",
+                str(path),
+                why="A case is a text file in UTF-8",
+                remedy="Give the path of a case file",
+            )
+        ) from None
 
 
 def read_case(text: str, name: str = "") -> Case:
@@ -184,13 +191,17 @@ def read_case(text: str, name: str = "") -> Case:
     ...     read_case("title = 'x'", "my.toml")
     ... except InputError as error:
     ...     print(error.problems[0])
-    my.toml: gears: the table [gears] is missing. Add it with normal_module, \
-normal_pressure_angle, driver, pinion, wheel.
+    my.toml: gears: the table [gears] is missing. The case cannot be computed without it. \
+Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
     """
     data = parse_toml(text, name)
     if not data:
         remedy = "Write a case to start from: tribodyn new my.toml"
-        raise InputError(Problem("the file holds no values", name, "", remedy))
+        raise InputError(
+            Problem(
+                "the file holds no values", name, "A case gives gears, speed and torque", remedy
+            )
+        )
     _place_files(data, Path(name).parent)
     return Case(Source(name or "case", partial(key_lines, text)), **data)
 

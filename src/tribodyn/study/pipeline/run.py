@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tribodyn.errors import ModelWarning, collected
+from tribodyn.errors import ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.coupling import Follow, coupled
@@ -68,7 +69,7 @@ def run(
     """
     result = computed(case, progress, follow=follow)
     for warning in result.warnings:
-        warnings.warn(warning, stacklevel=stacklevel)
+        warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
     return result
 
 

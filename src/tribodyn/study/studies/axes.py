@@ -85,7 +85,14 @@ def member_value(case: Case, key: str, value: Any, by: str) -> Any:
         raise InputError(Problem(f"{key} is a table", _place(by), "", remedy))
     if spec is None:
         case.replace({key: value}, by=by or "over")  # tells which keys there are
-        raise InputError(Problem(f'there is no key "{key}"', _place(by)))
+        raise InputError(
+            Problem(
+                f'there is no key "{key}"',
+                _place(by),
+                why="Axes of a study are keys of the case",
+                remedy="Choose a key that tribodyn explain lists",
+            )
+        )
     try:
         return read_value(spec, key.rpartition(".")[2], value if by else Plain(value))
     except FaultError as fault:
@@ -163,6 +170,8 @@ def operation_values(name: str, given: Any, case: Case) -> list[float]:
     if given is None:
         return [getattr(case.operation, name)]
     several = isinstance(given, Iterable) and not isinstance(given, str)
+    if isinstance(given, np.ndarray) and not given.ndim:
+        given, several = float(given), False
     spec = dict(Operation.specs())[name]
     try:
         return [read_value(spec, name, Plain(item)) for item in (given if several else [given])]

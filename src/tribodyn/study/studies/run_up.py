@@ -81,7 +81,14 @@ def run_up(
     low, high = _ends(case, between)
     count = int(tables)
     if count != tables or count < 1:
-        raise InputError(Problem(f"tables = {tables}", "argument tables", "A whole number >= 1"))
+        raise InputError(
+            Problem(
+                f"tables = {tables}",
+                "argument tables",
+                "A whole number >= 1",
+                remedy="Give 1 or more",
+            )
+        )
     speeds = np.geomspace(low, high, count) if count > 1 else np.array([np.sqrt(low * high)])
     with placed(case), collected():
         systems, per_speed = speed_systems(case, speeds, progress)
@@ -208,7 +215,9 @@ def speed_sweep(
     from tribodyn.dynamics import speed_sweep as compute
 
     if int(tables) != tables or tables < 1:
-        raise InputError(f"tables = {tables}", "argument tables", "A whole number >= 1")
+        raise InputError(
+            f"tables = {tables}", "argument tables", "A whole number >= 1", remedy="Give 1 or more"
+        )
     (axis,) = read_axes(case, {_SPEED: (*between, points)})
     speeds = np.array(axis.values, dtype=float)
     nodes = np.geomspace(speeds[0], speeds[-1], tables) if tables > 1 else [speeds.mean()]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem, shortened
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import TipReliefOptimum
@@ -155,6 +155,9 @@ def _lengths(name: str, given: Any) -> tuple[float, float] | None:
     spec = dict(Modification.specs())["tip_relief" if name == "amount" else "tip_relief_length"]
     try:
         low, high = (float(read_value(spec, name, Plain(item))) for item in given)
+    except (TypeError, ValueError):
+        what, why = f"{name} = {shortened(repr(given))}", "It is a range of lengths"
+        raise InputError(what, Argument(name), why, 'Give ("0 um", "40 um")') from None
     except FaultError as fault:
         raise InputError(replace(fault.problem, where=f"argument {name}")) from None
     return low, high

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, InputError, Problem, quiet
 from tribodyn.members import Members
+from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.run import computed
 from tribodyn.study.studies.axes import Axis, read_axes
@@ -18,6 +20,9 @@ from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result import Result
+
+#: Points from which on a table of solved films costs less than films of their own.
+_MANY = 4
 
 
 def sweep(
@@ -112,7 +117,9 @@ def points_of(
 
     progress.start("Values", len(grid))
     try:
-        over_cases(point, range(len(grid)), done, progress)
+        # Not by what is left: a sweep that goes on has the figures of one that was not stopped.
+        with shared_films() if len(grid) >= _MANY else nullcontext():
+            over_cases(point, range(len(grid)), done, progress)
     except KeyboardInterrupt:
         if not (partial and 0 in done):
             raise

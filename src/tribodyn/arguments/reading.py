@@ -1,0 +1,269 @@
+"""Public functions that read their arguments by their annotations before they compute.
+
+A page of public names ends with :func:`guard`. Its functions, constructors and methods then refuse
+values of another kind than they are annotated with: texts, truth values, complex numbers, numbers
+that are NaN. What passes is computed as ever; whatever a function still stumbles over is told as an
+error of the package, with the argument at fault where one can be named.
+"""
+
+from __future__ import annotations
+
+import builtins
+import functools
+import inspect
+import re
+import sys
+import sysconfig
+import traceback
+import types
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from importlib import import_module
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tribodyn.arguments.annotations import ANYTHING, ValueRefusedError, Wanted, wanted
+from tribodyn.errors import Argument, ComputationError, InputError, Problem, shortened
+
+_FUNCTIONS = (types.FunctionType, functools._lru_cache_wrapper)
+_PATHS = map(sysconfig.get_path, ("stdlib", "purelib", "platlib"))
+#: Where the frames of a traceback lie that are not the user's.
+_HOMES = (str(Path(__file__).parents[1]), *_PATHS, "<")
+#: Parameters of functions that leave files behind.
+_WRITES = {"path", "directory", "folder", "place", "force"}
+_REFUSED = (TypeError, ValueError, OverflowError)
+
+
+class _Names(dict[str, Any]):
+    """Names of modules, those that are imported for type checks alone among them."""
+
+    def __init__(self, modules: Iterable[str]) -> None:
+        self.modules = [sys.modules[module] for module in modules if module in sys.modules]
+
+    def __missing__(self, name: str) -> Any:
+        for module in self.modules:
+            if name in vars(module):
+                return vars(module)[name]
+        for module in self.modules:
+            imports = r"from ([\w.]+) import (\([^)]*\)|.+)"
+            for home, names in re.findall(imports, inspect.getsource(module)):
+                if name in re.findall(r"\w+", names):
+                    return getattr(import_module(home), name)
+        return vars(builtins)[name]
+
+
+def _makes(function: Any) -> bool:
+    return getattr(function, "__name__", "") in ("__init__", "__new__")
+
+
+def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict[str, Wanted]:
+    """What the parameters of a function want, several that share a name too."""
+    homes = [each.__module__ for each in getattr(owner, "__mro__", [])]
+    names = _Names([*homes, getattr(function, "__globals__", {}).get("__name__", "")])
+    wants, makes = {}, _makes(function)
+    for name, parameter in inspect.signature(function).parameters.items():
+        if parameter.kind is parameter.VAR_KEYWORD:
+            continue
+        hint = getattr(parameter.annotation, "__forward_arg__", parameter.annotation)
+        hint = eval(hint, {}, names) if isinstance(hint, str) else hint
+        # Records may hold what is not there; functions take what a quantity may be, unless their
+        # default or their documentation speaks of more.
+        default, entry = parameter.default, _entry(function, name)
+        ends = not (isinstance(default, float) and not np.isfinite(default))
+        sized = 0 if makes or not ends or re.search("infinit|NaN", entry) else 1 + (owner is None)
+        none = hint is inspect.Parameter.empty
+        wants[name] = ANYTHING if none else wanted(hint, sized, strict, several=not makes)
+    return wants
+
+
+def _entry(documented: Any, name: str) -> str:
+    """What a docstring says of one parameter."""
+    pattern = rf"^ *(?:\w+, )*{re.escape(name)}(?:, \w+)* : .*\n +.*(?:\n +[a-z(].*)*"
+    found = re.search(pattern, inspect.getdoc(documented) or "", re.MULTILINE)
+    return re.sub(r"\s+", " ", found[0].partition(" : ")[2].replace("\n", "|", 1)) if found else ""
+
+
+def _fault(documented: Any, name: str, value: Any, want: Wanted) -> Problem | None:
+    """Fault of one argument, with unit and meaning as documented; None if it has none."""
+    try:
+        want.read(value)
+    except ValueRefusedError as refused:
+        why = str(refused)
+    except _REFUSED:
+        why = f"Wanted: {want.words}"
+    else:
+        return None
+    kind, _, text = _entry(documented, name).partition("|")
+    unit, meaning = re.search(r"\[(.+?)\]", kind), re.split(r"[.;:](?:\s|$)", text.strip())[0]
+    remedy = f"Give {name}{f' in {unit[1]}' if unit else ''}{': ' * bool(meaning)}{meaning}"
+    if isinstance(value, str) and "number" in want.words:
+        remedy += f". Functions take numbers in {unit[1] if unit else 'SI units'}, not texts"
+    given = f'"{value[:60]}"' if isinstance(value, str) else _shown(value)
+    owner = f"{documented.__name__}." if isinstance(documented, type) else ""
+    return Problem(f"{name} = {given}", Argument(owner + name), why, remedy)
+
+
+def _shown(value: Any) -> str:
+    try:
+        return shortened(repr(value), 60)
+    except Exception:  # objects of wrong things cannot always be shown
+        return f"an object of the class {type(value).__name__}"
+
+
+def _is_own(error: Exception) -> bool:
+    """Whether an error is one of the package, or a warning that is asked to be an error."""
+    return type(error).__module__.startswith("tribodyn") or isinstance(error, Warning | ImportError)
+
+
+class _Reader:
+    """What one function is given, read by its annotations, and what it stumbles over."""
+
+    def __init__(self, function: Callable[..., Any], owner: type | None) -> None:
+        self.function, self.owner, self.wanted = function, owner, _parameters(function, owner)
+        every = inspect.signature(function).parameters.values()
+        self.names = [each.name for each in every if each.kind <= each.VAR_POSITIONAL]
+        self.several = any(each.kind is each.VAR_POSITIONAL for each in every)
+        self.fits = {name: one.fits() for name, one in self.wanted.items()}
+        self.first = [self.fits[name] for name in self.names]
+
+    def given(self, args: Sequence[Any], named: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+        """Arguments with the names of their parameters."""
+        more = len(args) - len(self.names) if self.several else 0
+        names = [*self.names, *self.names[-1:] * more]
+        return chain(zip(names, args, strict=False), named.items())
+
+    def fitting(self, args: Any, named: dict[str, Any]) -> bool:
+        """Whether a quick look finds the kinds that are wanted."""
+        if self.several:
+            return False
+        for quick, value in zip(self.first, args, strict=False):
+            if not quick(value):
+                return False
+        fits = self.fits
+        return all(fits[name](value) for name, value in named.items() if name in fits)
+
+    def read(self, args: Any, named: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        wants = self.wanted
+        try:
+            first = [wants[name].read(value) for name, value in self.given(args, {})]
+            rest = {k: wants[k].read(v) if k in wants else v for k, v in named.items()}
+        except _REFUSED:
+            refused = InputError(self.faults(args, named, wants))
+        else:
+            return (*first, *args[len(first) :]), rest
+        # What the function itself says of it knows more; what writes is not begun.
+        if not _WRITES & set(wants):
+            try:
+                self.function(*args, **named)
+            except Exception as error:
+                if _is_own(error):
+                    raise
+        raise refused
+
+    def faults(self, args: Any, named: Any, wants: Mapping[str, Wanted]) -> list[Problem]:
+        told = functools.partial(_fault, self.owner if _makes(self.function) else self.function)
+        given = ((n, v, wants[n]) for n, v in self.given(args, named) if n in wants)
+        return [fault for fault in (told(*each) for each in given) if fault]
+
+    def told(self, error: Exception, args: Any, named: dict[str, Any]) -> Exception:
+        """Error of the package that says what a function stumbled over."""
+        name = self.function.__qualname__.removesuffix(".__init__").removesuffix(".__new__")
+        where, what = f"{name}()", f"{type(error).__name__}: {error}"
+        try:
+            inspect.signature(self.function).bind(*args, **named)
+        except TypeError as fault:
+            takes = ", ".join(each for each in self.wanted if each not in ("self", "cls"))
+            return InputError(str(fault), where, f"It takes {takes or 'nothing'}", "Give these")
+        faults = self.faults(args, named, _parameters(self.function, self.owner, strict=True))
+        if faults:
+            return InputError(faults)
+        frames = traceback.extract_tb(error.__traceback__)
+        users = [each for each in frames if not each.filename.startswith(_HOMES)]
+        if users and type(error).__module__ != "builtins":
+            return error  # raised on purpose by what the user wrote
+        if users:
+            place, why = users[-1], "It is called with numbers, and returns numbers"
+            told = f"a function that was given raised {what}"
+            return InputError(told, f"{place.filename}:{place.lineno}", why, "Correct it there")
+        why = "Values or shapes of what it was given do not go together"
+        remedy = f"Hold them against help({name}); if they are as stated there, please report this"
+        return ComputationError(what, where, why, remedy)
+
+
+def checked(function: Callable[..., Any], owner: type | None = None) -> Callable[..., Any]:
+    """Have a function, or a method of the class ``owner``, read its arguments."""
+    made: list[_Reader] = []
+
+    @functools.wraps(function)
+    def reading_arguments(*args: Any, **named: Any) -> Any:
+        if not made:
+            made.append(_Reader(function, owner))
+        reader = made[0]
+        try:
+            if not reader.fitting(args, named):
+                args, named = reader.read(args, named)
+            return function(*args, **named)
+        except Exception as error:
+            if _is_own(error):
+                raise
+            told = reader.told(error, args, named)
+            if told is error:
+                raise
+            raise told from error
+
+    return reading_arguments
+
+
+def guarded(thing: Any, page: str) -> Any:
+    """Have one public function or class read its arguments; anything else is left as it is.
+
+    Parameters
+    ----------
+    thing : object
+        What a page names.
+    page : str
+        Name of its module.
+
+    Returns
+    -------
+    object
+        The function that reads its arguments first, or the same class.
+    """
+    if isinstance(thing, _FUNCTIONS):
+        if getattr(thing, "reads", False):
+            return thing
+        new: Any = checked(thing)
+        new.__module__, new.reads = page, True  # pickled by the name that it is found under
+        return new
+    if isinstance(thing, type) and not issubclass(thing, Exception):
+        for home in thing.__mro__:
+            if home.__module__.startswith("tribodyn") and not getattr(home, "_is_protocol", False):
+                _guard_methods(home)
+    return thing
+
+
+def _guard_methods(owner: type) -> None:
+    """Have the constructor and the public methods of a class read their arguments."""
+    for name, value in list(vars(owner).items()):
+        kind = type(value) if isinstance(value, classmethod | staticmethod) else None
+        method = value.__func__ if kind else value
+        public = not name.startswith("_") or name in ("__init__", "__new__", "__call__")
+        if public and isinstance(method, _FUNCTIONS) and not getattr(method, "reads", False):
+            new: Any = checked(method, owner)
+            new.reads = True
+            setattr(owner, name, kind(new) if kind else new)
+
+
+def guard(page: str) -> None:
+    """Have the public functions, constructors and methods of a page read their arguments.
+
+    Parameters
+    ----------
+    page : str
+        Name of its module; its ``__all__`` says what is public.
+    """
+    module = sys.modules[page]
+    for name in module.__all__:
+        setattr(module, name, guarded(getattr(module, name), page))

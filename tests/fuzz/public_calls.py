@@ -1,0 +1,303 @@
+"""Public functions and classes, each with arguments that it takes, read off the documentation.
+
+The examples in the docstrings are run once; the calls written there, and the objects that come of
+them, give every function and constructor a call that works.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import doctest
+import functools
+import importlib
+import inspect
+import io
+import os
+import sys
+import tempfile
+import tomllib
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from freeze.frozen_surface import PAGES
+from tribodyn.cases import case_files, run
+from tribodyn.contact import path_of_contact
+from tribodyn.drawing import FIGURES, Drawing
+from tribodyn.dynamics import ENGINES, STRUCTURES
+from tribodyn.ehl import FILM_MODELS
+from tribodyn.errors import ModelWarning, TribodynError
+from tribodyn.friction import LAWS
+from tribodyn.stiffness import MODELS
+
+#: What tells faults and the state of a job is called by programs, with texts of their own.
+NO_PAGES = {"tribodyn.errors", "tribodyn.progress"}
+
+#: Names of types for annotations, and what changes the registries of all that follows.
+NO_CALLS = {
+    "dynamics.Entry",
+    "dynamics.MeshForce",
+    "plot.drawing",
+    "study.compare_results",
+    "study.summary_figure",
+    "cli.main",
+}
+
+#: Those whose examples need more than half a second, and what only these examples make.
+_SLOW = """
+cases.PaperComparison cases.compare_with_paper dynamics.Branch dynamics.HypoidSupports
+dynamics.SpecialPoint dynamics.continuation exchange.write_tables gear.HypoidKinematics
+gear.ToothContact gear.hypoid_kinematics gear.tooth_contact mesh.hypoid_loaded_contact
+ehl.MixedLineContact ehl.mixed_line_contact plot.tooth_force mesh.moving_film
+plot.continuation plot.flank_modification plot.friction_claims
+plot.friction_effect plot.friction_harmonics plot.hypoid_contact plot.surrogate
+plot.tip_relief_map stiffness.TipReliefOptimum stiffness.optimize_tip_relief study.DataSet
+study.bifurcation study.friction_experiment study.load_data study.operating_data
+study.optimize_tip_relief study.speed_sweep study.vibration_data variants.StudyState
+surrogate.Squares surrogate.Training surrogate.bpnn_pl surrogate.load
+variants.load_study variants.open_study variants.run_study variants.study_state
+"""
+SLOW = set(_SLOW.split())
+
+#: Pages whose examples need no run, and no compiled solver: those of the draws in a hurry.
+_PAGES = "contact ehl friction gear losses lubricant mesh stiffness surrogate uncertainty units"
+_HEAVY = """
+ehl.balanced_load_share ehl.solve_line_contact ehl.solve_line_contacts ehl.solve_line_contact_moes
+ehl.solve_transient_line_contact mesh.build mesh.comprehensive_stiffness mesh.hypoid_friction
+surrogate.train
+"""
+
+REGISTRIES: list[Any] = [ENGINES, STRUCTURES, FILM_MODELS, LAWS, MODELS, FIGURES]
+_LOSSES = "speed [rpm], torque [N*m], torque_loss [N*m]\n1400, 50, 2.5\n"
+
+Call = tuple[Callable[..., Any], dict[str, Any]]
+
+
+def public() -> dict[str, Any]:
+    """Functions, classes and figures of the pages by name, each once."""
+    things: dict[int, tuple[str, Any]] = {}
+    for page in (page for page in PAGES if page not in NO_PAGES):
+        module = importlib.import_module(page)
+        for name in sorted(module.__all__):
+            thing = getattr(module, name)
+            known = f"{page.removeprefix('tribodyn.')}.{name}"
+            if callable(thing) and known not in NO_CALLS and not is_error(thing):
+                things[id(thing)] = known, thing
+    return dict(things.values())
+
+
+def is_error(thing: Any) -> bool:
+    """Whether a public name is an exception."""
+    return isinstance(thing, type) and issubclass(thing, Exception)
+
+
+def parameters(thing: Any) -> list[inspect.Parameter]:
+    """Parameters of a callable that take one value each."""
+    every = inspect.signature(thing).parameters.values()
+    return [one for one in every if not one.kind.name.startswith("VAR")]
+
+
+def quick(name: str) -> bool:
+    """Whether a public name has an example that needs no time."""
+    heavy = name in SLOW or name in _HEAVY.split()
+    return not heavy and name.partition(".")[0] in _PAGES.split()
+
+
+@functools.cache
+def working_calls(every: bool = True) -> dict[str, Call]:
+    """Public callables, each with named arguments of a call that works; all, or the quick ones."""
+    things = {name: thing for name, thing in public().items() if every or quick(name)}
+    calls: dict[str, Call] = {}
+    objects: dict[type, list[Any]] = {}
+    _collect([dict(registry.all()) for registry in REGISTRIES], objects)
+    with tempfile.TemporaryDirectory() as folder, _inside(folder), warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        for name, thing in things.items():
+            arguments, left = _examples(name, thing)
+            _collect(left, objects)
+            if arguments is not None:
+                calls[name] = thing, arguments
+    for name, thing in things.items():
+        arguments = _drawn(thing, objects) if isinstance(thing, Drawing) else _made(thing, objects)
+        if name not in calls and arguments is not None:
+            calls[name] = thing, arguments
+    kinds = {thing for thing in things.values() if isinstance(thing, type)}
+    _RESULTS[:] = [found[0] for kind, found in objects.items() if kind in kinds]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        return calls | _others(things, objects, calls) if every else calls
+
+
+_RESULTS: list[Any] = []
+
+
+def results() -> list[Any]:
+    """Objects that the examples made, of public classes."""
+    return _RESULTS
+
+
+def methods(kind: type) -> list[str]:
+    """Public methods of a class that neither show nor open anything."""
+    names = [name for name in dir(kind) if not name.startswith("_") or name == "__call__"]
+    left = {"show", "open", "write_image"}.union(dir(tuple))
+    return [name for name in names if callable(getattr(kind, name)) and name not in left]
+
+
+def _others(
+    things: Mapping[str, Any], objects: Mapping[type, list[Any]], calls: Mapping[str, Call]
+) -> dict[str, Call]:
+    """Calls whose arguments are files, or what no example leaves behind."""
+    of = {kind.__name__: found for kind, found in objects.items()}
+    case, result, film = of["Case"][0], of["Result"][0], of["LineContactSolution"][0]
+    functions = result.mesh.functions()
+    build, pair = calls["mesh.build"]
+    mesh = build(**pair | {"film_model": "newton", "film_options": {"nodes": 65}, "steps": 16})
+    text = case_files()["fzg-roughness"].read_text("utf-8")
+    folder = Path(tempfile.mkdtemp())
+    result.save(folder / "result")
+    (folder / "loss.csv").write_text(_LOSSES, "utf-8")
+    motion = path_of_contact(of["SpurPair"][0]).kinematics(np.array([0.0]), 100.0)
+    rexs = folder / "gears.rexs"
+    things["exchange.write_rexs"](case, rexs)
+    gearbox = things["exchange.read_rexs"](rexs)
+    time = np.arange(4000) / 1000.0
+    wave = np.sin(300.0 * time)
+    spread = {"operation.speed": "500 rpm +- 1 %"}
+    study = {"case": case, "path": "study.html", "told": ["one line"], "head": ["a", "b"],
+             "rows": [["1", "2"]]}  # fmt: skip
+    given: dict[str, dict[str, Any]] = {
+        "analysis.Peak": {"frequency": 1.0, "amplitude": 2.0, "phase": 0.5},
+        "cases.load_result": {"directory": folder / "result"},
+        "cli.call": {"arguments": ["cases"]},
+        "contact.Kinematics": _fields(motion),
+        "exchange.GearboxModel": _taken(things["exchange.GearboxModel"], gearbox),
+        "exchange.Load": _taken(things["exchange.Load"], gearbox.loads[0]),
+        "exchange.Stage": _taken(things["exchange.Stage"], gearbox.stages[0]),
+        "exchange.StageGear": _taken(things["exchange.StageGear"], gearbox.stages[0].gear_1),
+        "exchange.case_from_rexs": {"model": gearbox, "stage": gearbox.stages[0].id},
+        "exchange.read_rexs": {"path": rexs},
+        "exchange.write_rexs": {"case": case, "path": "gears.rexs", "force": True},
+        "ehl.asperity_integral": {"separation_ratio": [0.0, 1.0]},
+        "ehl.film_load_share": {"film_ratio": [0.5, 2.0]},
+        "gear.MeshGeometry": _taken(things["gear.MeshGeometry"], of["SpurPair"][0]),
+        "gear.SpurPair": _taken(things["gear.SpurPair"], of["SpurPair"][0]),
+        "losses.read_power_loss_table": {"path": folder / "loss.csv", "gear_loss_factor": 0.19},
+        "measurement.order_map": {
+            "signal": wave,
+            "angle": 100.0 * time,
+            "max_order": 4.0,
+            "sample_rate": 1000.0,
+        },
+        "mesh.MeshColumns": _taken(things["mesh.MeshColumns"], result.mesh),
+        "mesh.MeshFunctions": _fields(functions),
+        "mesh.PhaseFunction": _fields(functions.stiffness),
+        "plot.bands": {"result": things["study.ensemble"](case, spread, 2, seed=1)},
+        "plot.coupling": {"result": run(case.replace({"solver.coupling": "static"}))},
+        "plot.compare_line_contacts": {"solutions": [film], "labels": ["one"]},
+        "plot.film_along_path": {"contacts": [film, film], "path": [0.0, 1e-3]},
+        "plot.film_over_time": {"transient": of["TransientLineContact"][0]},
+        "plot.film_pressure": {"result": mesh},
+        "plot.film_response": {"solution": film, "frequencies": [1.0, 10.0]},
+        "report.render_report": {"result": result},
+        "report.write_report": {"result": result, "path": "run.html"},
+        "report.write_sweep_report": {"found": of["Sweep"][0], "path": "sweep.html"},
+        "report.write_study_report": {**study, "kind": "A study", "figures": []},
+        "report.write_bifurcation_report": {**study, "found": of["Bifurcation"][0], "lead": "One"},
+        "tribodyn.cases": {},
+        "study.Case": tomllib.loads(text),
+        "study.read_case": {"text": text, "name": "my.toml"},
+    }
+    return {name: (things[name], arguments) for name, arguments in given.items() if name in things}
+
+
+def _taken(thing: Any, source: Any) -> dict[str, Any]:
+    """Arguments of a constructor, of the attributes of an object that has them."""
+    names = [one.name for one in parameters(thing)]
+    return {name: getattr(source, name) for name in names if hasattr(source, name)}
+
+
+@contextlib.contextmanager
+def _inside(folder: str) -> Iterator[None]:
+    before = os.getcwd()
+    os.chdir(folder)
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            yield
+    finally:
+        os.chdir(before)
+
+
+def _examples(name: str, thing: Any) -> tuple[dict[str, Any] | None, dict[str, Any]]:
+    """Arguments of the first call in the examples of a docstring, and the names left by them."""
+    function = getattr(thing, "__wrapped__", thing)
+    module = sys.modules.get(getattr(function, "__module__", ""))
+    names = dict(vars(module)) if module else {}
+    before, arguments = set(names), None
+    for example in doctest.DocTestParser().get_examples(inspect.getdoc(thing) or ""):
+        with contextlib.suppress(Exception):
+            for call in ast.walk(ast.parse(example.source)):
+                if arguments is None and isinstance(call, ast.Call) and _calls(call, name):
+                    arguments = _bound(thing, call, names)
+        with contextlib.suppress(Exception):
+            exec(example.source, names)
+    return arguments, {key: value for key, value in names.items() if key not in before}
+
+
+def _calls(call: ast.Call, name: str) -> bool:
+    return ast.unparse(call.func).rpartition(".")[2] == name.rpartition(".")[2]
+
+
+def _bound(thing: Any, call: ast.Call, names: dict[str, Any]) -> dict[str, Any] | None:
+    """Arguments of a call as it is written, by name; None if the call does not work."""
+    text = ast.unparse(ast.Call(ast.Name("_given"), call.args, call.keywords))
+    given = inspect.signature(thing).bind
+    bound = eval(text, names | {"_given": given})
+    try:
+        result = thing(*bound.args, **bound.kwargs)
+    except TribodynError:
+        return None
+    names["_result"] = result
+    several = [one.name for one in inspect.signature(thing).parameters.values()
+               if one.kind.name.startswith("VAR")]  # fmt: skip
+    return {key: value for key, value in bound.arguments.items() if key not in several}
+
+
+def _collect(values: Any, objects: dict[type, list[Any]], depth: int = 4) -> None:
+    """Keep the objects of the package, and what they hold, by class."""
+    if depth < 0:
+        return
+    if isinstance(values, Mapping):
+        values = list(values.values())
+    if isinstance(values, list | tuple):
+        for value in values[:50]:
+            _collect(value, objects, depth - 1)
+    kind = type(values)
+    if not kind.__module__.startswith("tribodyn") or len(objects.get(kind, ())) > 3:
+        return
+    if not any(values is other for other in objects.setdefault(kind, [])):
+        objects[kind].append(values)
+        _collect(_fields(values), objects, depth - 1)
+
+
+def _fields(value: Any) -> dict[str, Any]:
+    """What an object was made of."""
+    return _taken(type(value), value)
+
+
+def _made(thing: Any, objects: Mapping[type, list[Any]]) -> dict[str, Any] | None:
+    """Arguments of the constructor of a class of which there is an object."""
+    return _fields(objects[thing][0]) if thing in objects else None
+
+
+def _drawn(drawing: Drawing, objects: Mapping[type, list[Any]]) -> dict[str, Any] | None:
+    """Result that a figure draws."""
+    for values in objects.values():
+        for value in values:
+            with contextlib.suppress(AttributeError):
+                if not drawing.missing(value):
+                    return {"result": value}
+    return None

@@ -1,0 +1,242 @@
+"""Arguments of every wrong kind end in an error of the package, in every public function."""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import io
+import math
+import pickle
+import signal
+import traceback
+import types
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import ArrayLike
+
+from fuzz.public_calls import SLOW, methods, parameters, public, results, working_calls
+from registries import as_before
+from tribodyn.arguments.reading import checked
+from tribodyn.ehl import dowson_1968_minimum
+from tribodyn.errors import ComputationError, InputError, ModelWarning, TribodynError
+from tribodyn.units import UnitProblemError
+
+#: Seconds of processor time that a call may take that is refused or small.
+PATIENCE = 5.0
+
+WRONG: list[Any] = [
+    None, "", "x", "3 mm", "800 Hz", "y" * 20000, b"x", True, False, 0, 0.0, -1, -1.0, 0.5, 2.5, 3,
+    10**400, 1e308, 1e-320, 1j, math.nan, math.inf, -math.inf, [], (), {}, {"x": 1}, set(), [1.0],
+    [1.0, 2.0, 3.0], (0.0, 0.0), [math.nan, 1.0], [[1.0], [2.0, 3.0]], ["a", "b"], [None],
+    np.array(["a"]), np.array(1.0), np.zeros((0, 2)), np.ones((2, 3)), np.ones(3, dtype=complex),
+    np.array([object()]), np.float32(2.0), np.nan * np.ones(4), object(), object, lambda: 1.0,
+    lambda phase: "text", lambda phase: None, datetime.datetime(2020, 1, 1), Path("nowhere"),
+    types.SimpleNamespace(),
+]  # fmt: skip
+
+#: What is no value of an annotation that stands alone.
+_NO_NUMBER = (str, bytes, complex, list, dict, type(None), type)
+NONSENSE = {
+    "float": lambda value: isinstance(value, (*_NO_NUMBER, bool)),
+    "int": lambda value: isinstance(value, (*_NO_NUMBER, bool)),
+    "bool": lambda value: not isinstance(value, bool | int | float | np.generic),
+    "str": lambda value: not isinstance(value, str),
+}
+
+
+class TooLongError(BaseException):
+    """A call did not end."""
+
+
+@contextlib.contextmanager
+def at_most(seconds: float) -> Iterator[None]:
+    """End a call that needs more processor time."""
+
+    def end(*_: Any) -> None:
+        raise TooLongError
+
+    before = signal.signal(signal.SIGVTALRM, end)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        signal.signal(signal.SIGVTALRM, before)
+
+
+def fault(thing: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
+    """Say what is wrong with how a call ends; empty if it is told well or the result is finite."""
+    kinds = {each.name: each.annotation for each in parameters(thing)}
+    try:
+        with quietly(), at_most(PATIENCE):
+            result = call(thing, sound | wrong)
+    except TribodynError as error:
+        lacks = [problem for problem in error.problems if not problem.remedy or not problem.why]
+        return f"no cause or no remedy: {lacks[0]}" if lacks else ""
+    except UnitProblemError:
+        return ""
+    except TooLongError:
+        return f"needs more than {PATIENCE} s"
+    except Exception as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        return f"{type(error).__name__} at {Path(place.filename).name}:{place.lineno}: {error}"
+    for key, value in wrong.items():
+        if kinds[key] in NONSENSE and NONSENSE[kinds[key]](value):
+            return f"{key} is a {kinds[key]} and took {value!r:.30}"
+    # A function may say that NaN stands for what is not there, as that of the lubrication regime.
+    documented = "NaN" in (thing.__doc__ or "")
+    return "" if documented or is_finite(result) else "a result that is not finite"
+
+
+def call(function: Any, arguments: dict[str, Any]) -> Any:
+    """Call a function that may take some of its arguments by position only."""
+    first = [one.name for one in parameters(function) if one.kind is one.POSITIONAL_ONLY]
+    positional = [arguments[key] for key in first if key in arguments]
+    return function(*positional, **{k: v for k, v in arguments.items() if k not in first})
+
+
+@contextlib.contextmanager
+def quietly() -> Iterator[None]:
+    silent = contextlib.redirect_stdout(io.StringIO())
+    with warnings.catch_warnings(), silent, contextlib.redirect_stderr(io.StringIO()):
+        warnings.simplefilter("ignore", RuntimeWarning)
+        warnings.simplefilter("ignore", ModelWarning)
+        yield
+
+
+def is_finite(result: Any) -> bool:
+    if isinstance(result, float | np.ndarray) and np.asarray(result).dtype.kind in "fc":
+        return bool(np.isfinite(result).all())
+    return True
+
+
+@pytest.fixture(scope="module")
+def calls(request):
+    """Each public callable with sound arguments; the quick ones alone without --runs."""
+    return working_calls(bool(request.config.getoption("--runs")))
+
+
+def test_every_public_callable_has_a_call_that_works(calls, request, tmp_path, monkeypatch):
+    # The draws below would prove nothing of one that no sound argument reaches.
+    monkeypatch.chdir(tmp_path)
+    every = bool(request.config.getoption("--runs"))
+    assert {name for name in public() if name not in calls} <= SLOW if every else len(calls) > 140
+    failed = {}
+    for name, (function, sound) in calls.items():
+        try:
+            with quietly(), as_before():
+                call(function, sound) if name != "tribodyn.compare_results" else None
+        except Exception as error:
+            failed[name] = str(error)
+    assert failed == {}
+
+
+def test_arguments_of_wrong_kinds(calls, draws, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    every = [(name, each.name) for name, (f, _) in calls.items() for each in parameters(f)]
+    failed = []
+    for drawn in draws(200):
+        name, first = drawn.choice(every)
+        wrong = {first: drawn.choice(WRONG)}
+        if drawn.random() < 0.2:
+            second = drawn.choice([key for owner, key in every if owner == name])
+            wrong[second] = drawn.choice(WRONG)
+        with as_before():
+            told = fault(*calls[name], wrong)
+        if told:
+            given = ", ".join(f"{key}={value!r:.30}" for key, value in wrong.items())
+            failed.append(f"{name}({given}): {told}"[:300])
+    assert not failed, "\n".join(failed)
+
+
+def test_methods_of_results_with_arguments_of_wrong_kinds(calls, draws, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    every = [(one, name) for one in results() for name in methods(type(one))]
+    failed = []
+    for drawn in draws(60):
+        one, name = drawn.choice(every)
+        method = getattr(one, name)
+        wanted = [each for each in parameters(method) if each.default is each.empty]
+        rest = [each for each in parameters(method) if each not in wanted]
+        wanted += drawn.sample(rest, min(len(rest), drawn.choice((0, 1, 2))))
+        wrong = {each.name: drawn.choice(WRONG) for each in wanted}
+        told = fault(method, {}, wrong)
+        if told:
+            given = ", ".join(f"{key}={value!r:.30}" for key, value in wrong.items())
+            failed.append(f"{type(one).__name__}.{name}({given}): {told}"[:300])
+    assert not failed, "\n".join(failed)
+
+
+def documented_film(load_per_width: ArrayLike, effective_modulus: ArrayLike) -> Any:
+    """Film of a contact.
+
+    Parameters
+    ----------
+    load_per_width : float or array [N/m]
+        Normal load per face width.
+    effective_modulus : float or array [Pa]
+        That of both bodies.
+    """
+    return np.asarray(load_per_width) * effective_modulus
+
+
+@pytest.mark.parametrize(("value", "part"), [
+    ("1 N/mm", "not texts"), (math.nan, "NaN is none"), (True, "Wanted: numbers"),
+    ([[1.0], [1.0, 2.0]], "even rows"), (2j, "Give load_per_width in N/m"),
+])  # fmt: skip
+def test_what_is_wrong_is_told_with_the_unit_of_the_documentation(value, part):
+    with pytest.raises(InputError) as refused:
+        checked(documented_film)(value, "2 GPa")
+    assert part in str(refused.value)
+    places = [str(problem.where) for problem in refused.value.problems]
+    assert places == ["argument load_per_width", "argument effective_modulus"]
+
+
+def test_what_a_function_stumbles_over_is_told_with_its_cause():
+    names: dict[str, Any] = {}
+    exec('def broken(size: float):\n    return size + "x"', names)
+    broken = names["broken"]
+    with pytest.raises(ComputationError, match="TypeError: unsupported operand") as told:
+        checked(broken)(1.0)
+    assert isinstance(told.value.__cause__, TypeError)
+    with pytest.raises(InputError, match="missing a required argument: 'size'"):
+        checked(broken)()
+
+
+def test_what_a_given_function_raises_is_told_with_its_place():
+    def calls(function: Callable[[float], float]) -> float:
+        return function(1.0)
+
+    class EndedError(Exception):
+        pass
+
+    def end(_):
+        raise EndedError
+
+    with pytest.raises(InputError, match="given raised ZeroDivisionError") as told:
+        checked(calls)(lambda value: value / 0.0)
+    assert "test_arguments.py:" in str(told.value)
+    with pytest.raises(EndedError):  # what the user raises on purpose is left
+        checked(calls)(end)
+    with pytest.raises(InputError, match="a function of 1 value"):
+        checked(calls)(lambda: 1.0)
+
+
+def test_what_is_given_by_position_and_by_name_goes_where_it_belongs():
+    def several(first: int, *rest: float, last: str = "") -> tuple[object, ...]:
+        return first, rest, last
+
+    assert checked(several)(1.0, 2, 3.0, last="x") == (1, (2, 3.0), "x")
+    with pytest.raises(InputError) as refused:
+        checked(several)("a", 2.0, "b", last=5)
+    places = [str(problem.where).split()[-1] for problem in refused.value.problems]
+    assert places == ["first", "rest", "last"]
+
+
+def test_functions_that_read_their_arguments_are_pickled_by_name():
+    assert pickle.loads(pickle.dumps(dowson_1968_minimum)) is dowson_1968_minimum
