@@ -79,8 +79,9 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
 
 def _over_cycle(factor: Array, rows: Array, columns: Array) -> Array:
     """Sum over the cycle of a factor times two directions, for each contact (contacts, n, n)."""
-    left = (factor[..., None] * rows).reshape(-1, *rows.shape[2:]).transpose(1, 2, 0)
-    return np.asarray(left @ columns.reshape(-1, *columns.shape[2:]).transpose(1, 0, 2))
+    shape = (rows.shape[0] * rows.shape[1], *rows.shape[2:])
+    left = (factor[..., None] * rows).reshape(shape).transpose(1, 2, 0)
+    return np.asarray(left @ columns.reshape(shape).transpose(1, 0, 2))
 
 
 def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
