@@ -33,6 +33,7 @@ from tribodyn.study.case.values import (
     read_fields,
     read_value,
 )
+from tribodyn.study.case.write import case_rows, case_table, case_toml
 
 #: Keys whose choice decides which other keys of their table are allowed, beside those that name
 #: models.
@@ -202,8 +203,6 @@ class Case(CaseData, whole=True):
         str
             TOML text with value, unit, symbol, meaning and range of every key.
         """
-        from tribodyn.study.case.write import case_toml
-
         return case_toml(self)
 
     def __eq__(self, other: object) -> bool:
@@ -219,8 +218,6 @@ class Case(CaseData, whole=True):
 
     def __repr__(self) -> str:
         """Show a table of all values with units."""
-        from tribodyn.study.case.write import case_table
-
         return case_table(self)
 
     __str__ = __repr__
@@ -228,7 +225,6 @@ class Case(CaseData, whole=True):
     def _repr_html_(self) -> str:
         """Table of all values for notebooks."""
         from tribodyn.record import html_table
-        from tribodyn.study.case.write import case_rows
 
         return html_table(f"Case: {self.title}", ("key", "value", "origin"), case_rows(self))
 
