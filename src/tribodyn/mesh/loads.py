@@ -44,7 +44,8 @@ def quasi_static_loads(
 ) -> Loads:
     """Share the load among the pairs and find their films."""
     if (tabled := tabled_film(settings, cycle, teeth, pairs)) is not None:
-        with suppress(UntabledError):
+        # What the table cannot settle, films of its own may.
+        with suppress(UntabledError, ComputationError):
             return _under_load(cycle, teeth, settings, tabled)
     film = film_of(settings, cycle, teeth, pairs, pinion_speed, progress)
     return _under_load(cycle, teeth, settings, film)
