@@ -12,8 +12,8 @@ BASES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("time-varying-friction", {}),
     ("fzg-roughness", {"operation.torque": "900 N*m"}),
     ("fzg-roughness", {"operation.torque": "20 N*m", "friction.law": "benedict-kelly"}),
-    ("fzg-roughness", {"friction.law": "constant", "friction.coefficient": 0.06}),
-    ("fzg-roughness", {"friction.law": "none"}),
+    ("fzg-roughness", {"friction.law": "mixed"}),
+    ("hypoid-mixed-ehl", {}),
     ("fzg-roughness", {"gears.composite_roughness": "0.9 um", "friction.law": "benedict-kelly"}),
     ("fzg-stiffness", {}),
 )
