@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_one_shape
+from tribodyn.errors import require_positive
 from tribodyn.gear.mesh_geometry import FlankRange, default_relief_length, flank_ranges
 from tribodyn.gear.modification import FlankModification
 from tribodyn.gear.spur_gear import SpurGear
@@ -213,6 +214,7 @@ def profile_gap(
     >>> [round(float(value) * 1e6, 6) for value in gap]
     [0.0, 5.0, 10.0]
     """
+    require_positive("relief_length", relief_length, "m")
     given = gear.modification
     radius = np.clip(np.asarray(curvature_radius, dtype=float), *flank)
     place = (radius - flank.lowest) / flank.length

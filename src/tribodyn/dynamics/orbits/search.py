@@ -86,7 +86,8 @@ class FlankWatch:
 
     def _along(self, states: Array) -> Array:
         """States (rows, 2 n, k) along the directions, (periods, steps, 2, meshes, k)."""
-        shape = (-1, self._steps, 2, self._direction.shape[2], states.shape[2])
+        periods = (len(states) - 1) // self._steps  # reshape finds none where no mesh has play
+        shape = (periods, self._steps, 2, self._direction.shape[2], states.shape[2])
         q = states[:, : self._size]
         if self._held:  # the same direction all along
             along = np.tensordot(q, self._direction[0, 0], (1, 1)).swapaxes(1, 2)
@@ -119,7 +120,7 @@ class FlankWatch:
         if np.any(room <= 0.0):
             return False
         rates = self.flank(compression)[:, None] * self._along(slopes)
-        rates = rates.reshape(room.size, -1)
+        rates = rates.reshape(room.size, rates.shape[-1])
         first, steepest = float(np.abs(rates @ distance).max(initial=0.0)), 0.0
         if rates.size:
             steepest = float(np.sqrt((rates**2).sum(axis=1).max()))
