@@ -24,6 +24,7 @@ from tribodyn.study.case.provenance import (
 )
 from tribodyn.study.case.section import Table, choices, signature_of
 from tribodyn.study.case.values import Plain, as_meant, as_typed, read_fields
+from tribodyn.study.case.write import case_rows, case_table, case_toml
 
 if TYPE_CHECKING:
     pass
@@ -163,8 +164,6 @@ class Case(CaseData, whole=True):
         str
             TOML text with value, unit, symbol, meaning and range of every key.
         """
-        from tribodyn.study.case.write import case_toml
-
         return case_toml(self)
 
     def __eq__(self, other: object) -> bool:
@@ -180,8 +179,6 @@ class Case(CaseData, whole=True):
 
     def __repr__(self) -> str:
         """Show a table of all values with units."""
-        from tribodyn.study.case.write import case_table
-
         return case_table(self)
 
     __str__ = __repr__
@@ -189,7 +186,6 @@ class Case(CaseData, whole=True):
     def _repr_html_(self) -> str:
         """Table of all values for notebooks."""
         from tribodyn.record import html_table
-        from tribodyn.study.case.write import case_rows
 
         return html_table(f"Case: {self.title}", ("key", "value", "origin"), case_rows(self))
 

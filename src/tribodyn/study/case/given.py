@@ -121,9 +121,7 @@ class Given(dict[str, Any]):
             for table in tables:
                 node = node.setdefault(table, {})
                 if not isinstance(node, dict):
-                    raise InputError(
-                        Problem(f"{table} is a value, not a table", key, "", "Correct the key")
-                    )
+                    raise InputError(f"{table} is a value, not a table", key, "", "Correct the key")
             if value is None or (isinstance(value, Plain) and value.value is None):
                 node.pop(name, None)
             else:
