@@ -197,6 +197,11 @@ def profile_gap(
         Shape of ``curvature_radius``; positive where material is missing. Tip and root relief add
         where they overlap.
 
+    Raises
+    ------
+    InputError
+        If the length is not positive.
+
     Notes
     -----
     With the distance d from the end of the used flank a relief of amount C and length L is
