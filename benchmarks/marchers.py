@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from reference_pair import Pair, elastic, lanes, starting_state, system
 from tribodyn.dynamics import simulate_ensemble
 from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.generated.source import write_source
+from tribodyn.dynamics._engine.lanes import load, store
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 
-__all__ = ["call", "end_displacements", "kernel", "march_once"]
+__all__ = ["call", "end_displacements", "kernel", "march_once", "multiplications", "peak"]
 
 Array = NDArray[np.float64]
 
@@ -142,3 +144,48 @@ def end_displacements(pair: Pair, cycles: int, steps: int) -> Array:
         system(pair), pair.mesh_frequency, cycles, starting_state(pair), steps=steps, averaged=0
     )
     return elastic(end.position[0])
+
+
+def multiplications(pair: Pair) -> int:
+    """Multiplications of one step of one lane, most of which add at the same time.
+
+    Parameters
+    ----------
+    pair : Pair
+
+    Returns
+    -------
+    int
+    """
+    program = compile_for(system(pair), pair.mesh_frequency, 512).program
+    step = write_source(program).partition("def step")[2]
+    head, _, rest = step.partition("for stage in range(4):")
+    stage, _, tail = rest.partition("\n    w[")
+    return head.count(" * ") + 4 * stage.count(" * ") + tail.count(" * ")
+
+
+def peak() -> Callable[[], float]:
+    """Multiply and add in vectors of lanes, from registers alone.
+
+    Returns
+    -------
+    callable
+        Does so some hundred million times and returns how often.
+    """
+    import numba as nb
+
+    width, rounds = 16, 2_000_000
+
+    @nb.njit(fastmath={"contract", "nsz"})
+    def turn(lanes: object, rounds: int, w: Array) -> None:
+        factor, a, b, c = load(lanes, w, 0), load(lanes, w, 1), load(lanes, w, 2), load(lanes, w, 3)
+        for _ in range(rounds):
+            a, b, c = a * factor + factor, b * factor + factor, c * factor + factor
+        store(w, 1, a + b + c)
+
+    def run() -> float:
+        turn((0.0,) * width, rounds, np.full(4 * width, 0.5))
+        return 3.0 * width * rounds
+
+    run()
+    return run

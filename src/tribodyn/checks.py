@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import Argument, InputError, Problem, real_numbers, require_positive, shortened
+from tribodyn.errors import Argument, InputError, real_numbers, require_positive, shortened
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 
@@ -61,7 +61,7 @@ def require_whole(name: str, value: Any, least: int = 1, *, why: str = "") -> in
     if number.ndim or not (float(number).is_integer() and least <= number <= 1e9):
         reason = f"Wanted: {wanted} from {least} to {1e9:g}"
         what, remedy = f"{name} = {shortened(repr(value))}", "Give a number of this range"
-        raise InputError(Problem(what, Argument(name), reason, remedy))
+        raise InputError(what, Argument(name), reason, remedy)
     return int(number)
 
 
@@ -70,7 +70,7 @@ def require_number(name: str, value: Any) -> float:
     number = real_numbers(Argument(name), value, "a number")
     if number.ndim or not np.abs(number) < 1e60:
         what, why = f"{name} = {shortened(repr(value))}", "Wanted: one finite number"
-        raise InputError(Problem(what, Argument(name), why, "Give a number in SI units"))
+        raise InputError(what, Argument(name), why, "Give a number in SI units")
     return float(number)
 
 
@@ -78,5 +78,5 @@ def require_flag(name: str, value: Any) -> bool:
     """Return True or False, or raise :class:`InputError` for anything else."""
     if not isinstance(value, bool | int | np.bool_) or value not in (0, 1):
         what, why = f"{name} = {shortened(repr(value))}", "Wanted: True or False"
-        raise InputError(Problem(what, Argument(name), why, "Give one of the two"))
+        raise InputError(what, Argument(name), why, "Give one of the two")
     return bool(value)

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tribodyn.arguments.reading import checked
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.model import Registry
 
 Writer = TypeVar("Writer", bound=Callable[..., Path])
@@ -256,11 +256,9 @@ def draw(result: Any, name: str = "", *arguments: Any, **options: Any) -> Any:
             if isinstance(figure, Drawing) and kind in figure.of:
                 return figure(result, *arguments, **options)
     raise InputError(
-        Problem(
-            what=f"no figure draws a {kinds[0]}",
-            why="Figures say which classes they draw when they register",
-            remedy=f'Register one with @drawing(..., of="{kinds[0]}")',
-        )
+        f"no figure draws a {kinds[0]}",
+        why="Figures say which classes they draw when they register",
+        remedy=f'Register one with @drawing(..., of="{kinds[0]}")',
     )
 
 
@@ -286,9 +284,7 @@ def write_report_of(result: Any, path: Path) -> Path:
         if kind in REPORTS:
             return REPORTS[kind](result, path)
     raise InputError(
-        Problem(
-            what=f"no report tells of a {kinds[0]}",
-            why="Reports say which class they tell of when they register",
-            remedy=f'Register one with @report_of("{kinds[0]}")',
-        )
+        f"no report tells of a {kinds[0]}",
+        why="Reports say which class they tell of when they register",
+        remedy=f'Register one with @report_of("{kinds[0]}")',
     )

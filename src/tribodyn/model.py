@@ -18,7 +18,7 @@ from importlib.metadata import entry_points
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     from tribodyn.nomenclature import Quantity
@@ -276,18 +276,7 @@ class Registry(Generic[T]):
         self.version = 0  #: rises with everything that is registered
 
     def register(self, name: str) -> Callable[[T], T]:
-        """Decorate a thing to make it known as ``name``.
-
-        Parameters
-        ----------
-        name : str
-            What the user writes.
-
-        Returns
-        -------
-        callable
-            Decorator that returns the thing unchanged.
-        """
+        """Decorate a thing to make it known as ``name``."""
 
         def keep(item: T) -> T:
             self._items[name] = item
@@ -297,25 +286,7 @@ class Registry(Generic[T]):
         return keep
 
     def define(self, name: str, **details: Any) -> Callable[[Callable[..., Any]], Any]:
-        """Decorate a function to make it a model of this kind.
-
-        Parameters
-        ----------
-        name : str
-            What the user writes.
-        **details : object
-            Further arguments of the class of the models: ``source``, ``options``, ``meaning``.
-
-        Returns
-        -------
-        callable
-            Decorator that returns the function unchanged.
-
-        Raises
-        ------
-        TypeError
-            If the things of this registry are no models.
-        """
+        """Decorate a function to make it a model of this kind; details are fields of its class."""
 
         def keep(function: Callable[..., Any]) -> Callable[..., Any]:
             if self.model is None:
@@ -334,23 +305,13 @@ class Registry(Generic[T]):
             self.version += 1
 
     def names(self) -> list[str]:
-        """All names, in order of registration.
-
-        Returns
-        -------
-        list of str
-        """
+        """All names, in order of registration."""
         if not self._searched:
             self._search()
         return list(self._items)
 
     def all(self) -> Mapping[str, T]:
-        """All things by name, in order of registration.
-
-        Returns
-        -------
-        mapping of str to object
-        """
+        """All things by name, in order of registration."""
         if not self._searched:
             self._search()
         return MappingProxyType(self._items)
@@ -373,11 +334,9 @@ class Registry(Generic[T]):
             return self._items[name]
         near = difflib.get_close_matches(str(name), self._items, n=1)
         raise InputError(
-            Problem(
-                what=f'no {self.kind} is called "{name}"',
-                why=f"Known: {', '.join(self._items)}",
-                remedy=f'Did you mean "{near[0]}"?' if near else "Choose one of these",
-            )
+            f'no {self.kind} is called "{name}"',
+            why=f"Known: {', '.join(self._items)}",
+            remedy=f'Did you mean "{near[0]}"?' if near else "Choose one of these",
         )
 
 

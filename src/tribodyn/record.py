@@ -222,11 +222,6 @@ class Record:
         path : str or path
             File to write.
 
-        Returns
-        -------
-        Path
-            The file.
-
         Raises
         ------
         OutputExistsError

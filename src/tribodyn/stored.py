@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     import xarray
@@ -108,11 +108,11 @@ def read_dataset(path: str | PathLike[str], where: Any = "argument path") -> xar
     except Exception as error:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
         remedy = "Give a netCDF 4 file as it was written"
-        raise InputError(Problem(f"{path} cannot be read", where, reason, remedy)) from None
+        raise InputError(f"{path} cannot be read", where, reason, remedy) from None
     if not whole:
         why = "Its checksum belongs to other values: it was damaged or changed after it was written"
         remedy = "Write it anew, or take a copy from before"
-        raise InputError(Problem(f"{path} is not as it was written", where, why, remedy))
+        raise InputError(f"{path} is not as it was written", where, why, remedy)
     return data
 
 

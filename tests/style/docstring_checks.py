@@ -7,6 +7,7 @@ import re
 
 from source_tree import Function, Module, parse_entries
 
+from tribodyn.cli import settings
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.units import parse
 
@@ -34,6 +35,12 @@ PHYSICS = {
     "analysis",
     "nonlinear",
     "signals",
+}
+#: Types of options of commands that bring their own text.
+OPTIONS = {
+    name
+    for name, kind in vars(settings).items()
+    if any(getattr(each, "help", None) for each in getattr(kind, "__metadata__", ()))
 }
 #: Words before a quantity's name that leave its unit alone.
 _PREFIXES = ("pinion_", "wheel_", "mean_", "minimum_", "maximum_", "rms_", "peak_", "nominal_")
@@ -71,18 +78,27 @@ def parameters_differ(module: Module) -> list[str]:
             continue
         documented = list(parse_entries(function.docstring, "Parameters"))
         required = documented or _is_contract(module, function)
-        if required and documented != function.parameters:
-            found.append(f"{_place(module, function)}: {documented} != {function.parameters}")
+        wanted = [
+            name for name in function.parameters if _annotation(function, name) not in OPTIONS
+        ]
+        if required and documented != wanted:
+            found.append(f"{_place(module, function)}: {documented} != {wanted}")
     for node in module.classes():
         documented = list(parse_entries(ast.get_docstring(node) or "", "Parameters"))
-        wanted = _constructor(node)
-        if wanted is None or node.name.startswith("_"):
+        fields = _constructor(node)
+        if fields is None or node.name.startswith("_"):
             continue
         # fields of a base class are documented with the others, wherever they stand
-        own = [name for name in documented if name in wanted] if node.bases else documented
-        if own != wanted and (documented or node.name in module.surface):
-            found.append(f"{module.path}:{node.lineno}: {node.name}: {documented} != {wanted}")
+        own = [name for name in documented if name in fields] if node.bases else documented
+        if own != fields and (documented or node.name in module.surface):
+            found.append(f"{module.path}:{node.lineno}: {node.name}: {documented} != {fields}")
     return found
+
+
+def _annotation(function: Function, name: str) -> str:
+    arguments = function.node.args
+    every = (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
+    return next((ast.unparse(a.annotation) for a in every if a.arg == name and a.annotation), "")
 
 
 def _is_contract(module: Module, function: Function) -> bool:

@@ -48,7 +48,7 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     if kind == "directory":
         inner = path / "case.toml"
         remedy = f"Use {inner}" if inner.is_file() else "Give the path of a TOML file"
-        raise InputError(Problem("this is a directory, not a case file", asked, "", remedy))
+        raise InputError("this is a directory, not a case file", asked, "", remedy)
     if not kind:
         raise InputError(_not_found(asked, path, list(named)))
     if asked in named:

@@ -1,10 +1,12 @@
-"""Words of the command line that change a case: ``--set`` and the ranges of studies."""
+"""Options that commands share, and their words: ``--set`` and the ranges of studies."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from tribodyn.cli.screen import show_warnings
 from tribodyn.errors import InputError, Problem, collected
@@ -12,6 +14,22 @@ from tribodyn.study.studies.range_words import UnreadError, read_range, read_val
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+
+
+Output = Path | None
+Flag = Annotated[bool, Parameter(negative="")]
+Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
+# What these mean is the same in every command, and is told here instead of in its text.
+CaseName = Annotated[str, Parameter(help="Built-in case or path of a case file.")]
+Force = Annotated[bool, Parameter(negative="", help="Replace an earlier result in that directory.")]
+Settings = Annotated[
+    list[str] | None,
+    Parameter(
+        name="--set",
+        negative="",
+        help='Values to change, for example "operation.torque=120 N*m".',
+    ),
+]
 
 
 def check_place(target: Path, force: bool) -> None:

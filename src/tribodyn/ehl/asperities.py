@@ -156,10 +156,6 @@ class Asperities:
             Summits of one flank per area; by default so many that density times radius times rms
             height are 0.05, as for most engineering surfaces.
 
-        Returns
-        -------
-        Asperities
-
         Raises
         ------
         InputError
@@ -193,10 +189,6 @@ class Asperities:
         ----------
         pinion, wheel : RoughnessProfile
             Heights on the sampling that matters: slope and curvature rise as it gets finer.
-
-        Returns
-        -------
-        Asperities
 
         Raises
         ------

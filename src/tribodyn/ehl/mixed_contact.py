@@ -103,10 +103,6 @@ def mixed_line_contact(
     **options : object
         Options of that model, such as ``nodes``.
 
-    Returns
-    -------
-    MixedLineContact
-
     Raises
     ------
     InputError

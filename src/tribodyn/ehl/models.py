@@ -141,10 +141,6 @@ class FilmModel(Model):
         ----------
         kind : str
             The stiffness asked for.
-
-        Returns
-        -------
-        str
         """
         known = f"Its film has: {', '.join(self.stiffness_kinds)}"
         if kind != "approach" or self.central is None:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from tribodyn.errors import (
     Argument,
     InputError,
-    Problem,
     require_one_of,
     require_positive,
     warn,
@@ -152,10 +151,6 @@ class RoughnessProfile:
             CSV file: the first row names the columns, the second has their units, for example
             ``mm,um``; each further row is one point. The straight line of least squares is taken
             away.
-
-        Returns
-        -------
-        RoughnessProfile
 
         Raises
         ------
@@ -349,12 +344,10 @@ def _fault(path: str | PathLike[str], line: int, what: str) -> InputError:
     place = f"{Path(path).name}, line {line}" if line else Path(path).name
     why = "A profile has the columns position and height, their units below, for example mm,um"
     return InputError(
-        Problem(
-            f"{what} ({place})",
-            Argument("roughness_profile"),
-            why,
-            remedy="Give a profile, or the path of a file with the columns position and height",
-        )
+        f"{what} ({place})",
+        Argument("roughness_profile"),
+        why,
+        remedy="Give a profile, or the path of a file with the columns position and height",
     )
 
 

@@ -209,10 +209,6 @@ class GearboxModel:
         number : int, optional
             Number of the component; not needed where there is one stage.
 
-        Returns
-        -------
-        Stage
-
         Raises
         ------
         InputError
@@ -238,10 +234,6 @@ class GearboxModel:
         ----------
         number : int, optional
             Number of the load case.
-
-        Returns
-        -------
-        Load
 
         Raises
         ------

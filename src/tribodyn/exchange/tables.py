@@ -39,11 +39,6 @@ def write_tables(result: Result | Record, folder: str | PathLike[str]) -> Path:
         plotly. Of other results than those of a run: ``table over ...`` and ``figure ...``.
         Figures that the gears or the case have nothing for are left out.
 
-    Returns
-    -------
-    Path
-        The folder.
-
     Raises
     ------
     OutputExistsError

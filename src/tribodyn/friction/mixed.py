@@ -187,10 +187,6 @@ def mixed_solved(
     **shear : object
         Options of :func:`tribodyn.friction.ehl`, such as ``eyring_stress``.
 
-    Returns
-    -------
-    FrictionParts
-
     Raises
     ------
     InputError

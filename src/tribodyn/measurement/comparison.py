@@ -12,7 +12,6 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import (
     Argument,
     InputError,
-    Problem,
     require_between,
     require_one_of,
     require_positive,
@@ -128,10 +127,6 @@ def compare(
     teeth : int, optional
         Teeth of the gear on that shaft.
 
-    Returns
-    -------
-    Comparison
-
     Raises
     ------
     InputError
@@ -194,21 +189,17 @@ def compare(
 def _refuse(measured: Any, channels: Any) -> None:
     if not isinstance(measured, Recording):
         raise InputError(
-            Problem(
-                f"measured = {shortened(repr(measured))}",
-                Argument("measured"),
-                "Wanted: a Recording",
-                "Read it with tribodyn.measurement.read",
-            )
+            f"measured = {shortened(repr(measured))}",
+            Argument("measured"),
+            "Wanted: a Recording",
+            "Read it with tribodyn.measurement.read",
         )
     if not isinstance(channels, Mapping) or not channels:
         raise InputError(
-            Problem(
-                "no channels are compared",
-                Argument("channels"),
-                "A comparison lays channels beside computed signals",
-                'Write {"acc": "acceleration_loa_pinion"}',
-            )
+            "no channels are compared",
+            Argument("channels"),
+            "A comparison lays channels beside computed signals",
+            'Write {"acc": "acceleration_loa_pinion"}',
         )
 
 
@@ -222,12 +213,10 @@ def _frequency(data: Any) -> float:
         return float(data.attrs["mesh_frequency"])
     except (AttributeError, KeyError, TypeError, ValueError):
         raise InputError(
-            Problem(
-                "it has no mesh frequency",
-                Argument("computed"),
-                "Wanted: the result of tribodyn.run, or its data set",
-                "Give the result",
-            )
+            "it has no mesh frequency",
+            Argument("computed"),
+            "Wanted: the result of tribodyn.run, or its data set",
+            "Give the result",
         ) from None
 
 
@@ -238,12 +227,10 @@ def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
         names = [str(each) for each in data]
         known = sorted(each.removesuffix("_spectrum") for each in names if "_spectrum" in each)
         raise InputError(
-            Problem(
-                f'there is no computed signal "{signal}"',
-                Argument("channels"),
-                f"It has {', '.join(known)}" if known else "It is no steady state",
-                "Write one of these" if known else 'Compute with solver.method = "steady"',
-            )
+            f'there is no computed signal "{signal}"',
+            Argument("channels"),
+            f"It has {', '.join(known)}" if known else "It is no steady state",
+            "Write one of these" if known else 'Compute with solver.method = "steady"',
         )
     order = np.asarray(data["order"].values, dtype=float)
     if order.max() < count:
@@ -262,12 +249,10 @@ def _same_unit(given: str, wanted: str, name: str) -> float:
         return float(convert(1.0, given, wanted)) if given else 1.0
     except UnitProblemError as error:
         raise InputError(
-            Problem(
-                f'channel {name} is in "{given}", the computed signal in "{wanted}"',
-                Argument("channels"),
-                str(error),
-                "Give units or sensitivity when reading it",
-            )
+            f'channel {name} is in "{given}", the computed signal in "{wanted}"',
+            Argument("channels"),
+            str(error),
+            "Give units or sensitivity when reading it",
         ) from None
 
 

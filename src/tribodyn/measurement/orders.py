@@ -9,13 +9,14 @@ record was sampled twice as fast as the highest order at the highest speed.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any
 
+import numba as nb
 import numpy as np
 
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
-from tribodyn.measurement.spread import HALF, SHAPE, spread
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.signals.order_map import OrderMap
@@ -30,6 +31,10 @@ WINDOWS = {
 }
 #: Points of the even grid for each of the two sums of a line and its mirror image.
 _OVER = 2.0
+#: Half width of the kernel in grid points, and its shape: relative error about 1e-12 with a grid
+#: twice as fine as needed (2.30 times the width: Barnett et al. 2019, section 3.2).
+_HALF = 7
+_SHAPE = 2.30 * 2 * _HALF
 
 
 @record
@@ -286,7 +291,7 @@ def _uneven_transform(strength: Array, place: Array, count: int) -> ComplexArray
     """
     size, taken = _grid(count)
     grid = np.zeros(size)
-    spread(strength, place, grid)
+    _spread(strength, place, grid)
     return np.asarray(np.fft.rfft(grid)[:count] / taken)
 
 
@@ -295,8 +300,23 @@ def _grid(count: int) -> tuple[int, Array]:
     """Size of the even grid for so many sums, and the transform of the kernel."""
     from scipy.fft import next_fast_len
 
-    size = int(next_fast_len(int(2 * _OVER * count) + 4 * HALF, real=True))
+    size = int(next_fast_len(int(2 * _OVER * count) + 4 * _HALF, real=True))
     nodes, shares = np.polynomial.legendre.leggauss(64)
-    kernel = np.exp(SHAPE * (np.sqrt(1.0 - nodes**2) - 1.0))
-    waves = np.cos(2.0 * np.pi / size * np.outer(np.arange(count), HALF * nodes))
-    return size, np.asarray(waves @ (HALF * shares * kernel))
+    kernel = np.exp(_SHAPE * (np.sqrt(1.0 - nodes**2) - 1.0))
+    waves = np.cos(2.0 * np.pi / size * np.outer(np.arange(count), _HALF * nodes))
+    return size, np.asarray(waves @ (_HALF * shares * kernel))
+
+
+@nb.njit(cache=True, nogil=True)
+def _spread(strength: Array, place: Array, grid: Array) -> None:
+    """Add each strength to the points of a periodic grid around its place, which is 0 to 1."""
+    size = grid.size
+    for index in range(strength.size):
+        on_grid = place[index] * size
+        first = math.ceil(on_grid - _HALF)
+        for step in range(2 * _HALF):
+            away = (first + step - on_grid) / _HALF
+            inner = 1.0 - away * away
+            if inner > 0.0:
+                share = math.exp(_SHAPE * (math.sqrt(inner) - 1.0))
+                grid[(first + step) % size] += strength[index] * share

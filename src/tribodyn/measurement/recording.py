@@ -169,10 +169,6 @@ def read(
         Sensitivity of the sensor of a channel that holds its voltage, such as ``"100 mV/g"``:
         the channel comes back in the SI unit of what was measured.
 
-    Returns
-    -------
-    Recording
-
     Raises
     ------
     InputError
@@ -232,7 +228,7 @@ def _rate(found: Content, names: list[str], given: float | None, path: Any) -> f
         if time.size != size:
             what = f"channel {name} has {size} samples, its times are {time.size}"
             why, remedy = "Each sample has its own time", "Correct the file, or leave the times out"
-            raise InputError(Problem(what, str(path), why, remedy))
+            raise InputError(what, str(path), why, remedy)
         rates[f"times of {name}"] = rate_of(time, path, given)
     if not rates:
         raise InputError(
@@ -287,10 +283,8 @@ def _no_channel(name: object, known: Iterable[str]) -> InputError:
     near = get_close_matches(str(name), names, 1)
     meant = f' Did you mean "{near[0]}"?' if near else ""
     return InputError(
-        Problem(
-            f"there is no channel {shortened(repr(name))}",
-            Argument("channels"),
-            f"It has {', '.join(names[:20])}{meant}",
-            "Write the name as it stands there",
-        )
+        f"there is no channel {shortened(repr(name))}",
+        Argument("channels"),
+        f"It has {', '.join(names[:20])}{meant}",
+        "Write the name as it stands there",
     )

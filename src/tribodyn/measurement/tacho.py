@@ -12,7 +12,6 @@ from tribodyn.errors import (
     Argument,
     ComputationError,
     InputError,
-    Problem,
     require_one_of,
     require_positive,
     warn,
@@ -131,13 +130,11 @@ def edges(values: Array, threshold: float | None, edge: str = "rising") -> tuple
     last = rises[np.searchsorted(rises, turns, side="left") - 1] if rises.size else rises
     if last.size < 4:
         raise ComputationError(
-            Problem(
-                f"{last.size} pulses found",
-                Argument("tacho"),
-                f"At least four are needed; looked for edges through {level:.4g}, with levels "
-                f"{_HYSTERESIS * height:.4g} below and above",
-                "Give the threshold, the other edge, or a longer record",
-            )
+            f"{last.size} pulses found",
+            Argument("tacho"),
+            f"At least four are needed; looked for edges through {level:.4g}, with levels "
+            f"{_HYSTERESIS * height:.4g} below and above",
+            "Give the threshold, the other edge, or a longer record",
         )
     low, high = values[last], values[last + 1]
     steep = np.median(high - low) > _STEEP * height

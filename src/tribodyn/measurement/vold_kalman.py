@@ -110,10 +110,6 @@ def track_orders(
     unit : str
         Unit of the signal, for display.
 
-    Returns
-    -------
-    TrackedOrders
-
     Raises
     ------
     InputError

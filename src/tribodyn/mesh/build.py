@@ -13,11 +13,12 @@ from tribodyn.contact import Kinematics, path_of_contact
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ModelWarning, collected, require_positive, warn
 from tribodyn.friction import pitch_point
-from tribodyn.gear import Material, SpurPair
+from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact, mesh_cycle, pairs_in_contact
 from tribodyn.mesh.film.film_columns import as_columns, friction_columns
+from tribodyn.mesh.gears import Gears
 from tribodyn.mesh.loads import (
     Loads,
     quasi_static_loads,
@@ -40,7 +41,7 @@ from tribodyn.types import Array, Mask
 
 
 def build(
-    pair: SpurPair,
+    pair: Gears,
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
@@ -61,7 +62,7 @@ def build(
 
     Parameters
     ----------
-    pair, material : SpurPair, Material
+    pair, material : gear pair, Material
         Both gears in their working position with the one that drives, and their material.
     stiffness_model, stiffness_options
         Name in ``tribodyn.stiffness.MODELS``, and options of that model.
@@ -141,7 +142,7 @@ def build(
 
 
 def mesh_table(
-    pair: SpurPair,
+    pair: Gears,
     settings: ToothContact,
     *,
     pinion_speed: float,
@@ -162,7 +163,7 @@ def mesh_table(
 class LoadedMesh:
     """A mesh under its quasi-static load, with its films, before anything rubs."""
 
-    pair: SpurPair
+    pair: Gears
     settings: ToothContact
     cycle: MeshCycle
     pairs: PairsInContact
@@ -220,7 +221,7 @@ class LoadedMesh:
 
 
 def loaded_mesh(
-    pair: SpurPair,
+    pair: Gears,
     settings: ToothContact,
     operation: tuple[float, float],
     *,
@@ -245,7 +246,7 @@ def loaded_mesh(
 
 
 def _teeth(
-    pair: SpurPair, settings: ToothContact, torque: float, steps: int | None, loading: Array | None
+    pair: Gears, settings: ToothContact, torque: float, steps: int | None, loading: Array | None
 ) -> tuple[MeshCycle, Teeth]:
     """Teeth under load over one mesh cycle: the same object at every speed and with every oil."""
     usual = _steps(pair, settings.stiffness_model)  # registers the models of others, too
@@ -274,13 +275,13 @@ def _known_teeth(*given: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]]:
 
 
 @lru_cache(maxsize=8)
-def _cycle(pair: SpurPair, steps: int) -> MeshCycle:
+def _cycle(pair: Gears, steps: int) -> MeshCycle:
     """Pairs over the mesh cycle: the same object under every load."""
     return mesh_cycle(path_of_contact(pair), steps)
 
 
 def _loaded_teeth(
-    pair: SpurPair, model: ToothModel, torque: float, steps: int, loading: Array | None = None
+    pair: Gears, model: ToothModel, torque: float, steps: int, loading: Array | None = None
 ) -> tuple[MeshCycle, Teeth]:
     cycle = _cycle(pair, steps)
     places = (cycle.grid.phase, cycle.path, cycle.in_contact)
@@ -288,7 +289,7 @@ def _loaded_teeth(
     return cycle, teeth_of(cycle.contact, places, model, torque / pair.pinion.base_radius, over)
 
 
-def _steps(pair: SpurPair, model: str) -> int:
+def _steps(pair: Gears, model: str) -> int:
     together = MODELS[model].coupled or pair.has_modification
     return 1024 if together else 512
 

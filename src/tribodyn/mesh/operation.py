@@ -12,11 +12,12 @@ from tribodyn.checks import one_or_more
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line, path_of_contact
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import InputError, require_between
-from tribodyn.gear import Material, SpurPair
+from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.build import mesh_table
 from tribodyn.mesh.cycle import PathPositions, path_positions
 from tribodyn.mesh.film.film_columns import as_columns, film_places
+from tribodyn.mesh.gears import Gears
 from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
@@ -99,7 +100,7 @@ class FilmOverOperation(Record):
 
 
 def film_over_operation(
-    pair: SpurPair,
+    pair: Gears,
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
@@ -201,12 +202,12 @@ def _masked(columns: dict[str, Array], touches: Mask) -> dict[str, Array]:
     return {name: np.where(touches, column, np.nan) for name, column in columns.items()}
 
 
-def _roll_angle(pair: SpurPair, motion: Kinematics) -> Array:
+def _roll_angle(pair: Gears, motion: Kinematics) -> Array:
     radius = getattr(motion, f"{pair.driver}_curvature_radius")[0]
     return np.asarray(radius / pair.driving.base_radius)
 
 
-def _shares(pair: SpurPair, settings: ToothContact, places: PathPositions, torque: Array) -> Array:
+def _shares(pair: Gears, settings: ToothContact, places: PathPositions, torque: Array) -> Array:
     """Load share of the pair at each position for each torque (torques, positions)."""
     contact, age = path_of_contact(pair), places.sided_age
     number = np.floor(age).astype(int)
@@ -233,7 +234,7 @@ class ComprehensiveStiffness(Record):
 
     Parameters
     ----------
-    gear_pair : SpurPair
+    gear_pair : gear pair
         Both gears in their working position.
     kind : str
         ``"approach"``, ``"tangent"``, ``"secant"`` or ``"seed"``.
@@ -265,7 +266,7 @@ class ComprehensiveStiffness(Record):
         Stiffness of the whole mesh with its films.
     """
 
-    gear_pair: SpurPair
+    gear_pair: Gears
     kind: str = fact()
     stiffness_model: str = fact()
     film_model: str = fact()
@@ -317,7 +318,7 @@ class ComprehensiveStiffness(Record):
 
 
 def comprehensive_stiffness(
-    pair: SpurPair,
+    pair: Gears,
     *,
     material: Material,
     stiffness_model: str = "potential-energy",

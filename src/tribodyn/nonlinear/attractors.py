@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics._engine.blocks import march, marching_on, on_gpu
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
@@ -32,6 +32,8 @@ LONGEST_PERIOD = 8
 _PART = 2 * LONGEST_PERIOD
 #: Lanes of the kernel.
 _LANES = 16
+#: Lanes that a graphics processor marches at a time: enough to fill it.
+_MANY_LANES = 16384
 #: A motion this much smaller than its start is at rest.
 _REST = 1e-6
 #: Points that differ by less than this, relative to their size, are the same.
@@ -158,7 +160,7 @@ class _Block:
         self.earlier = np.full((LONGEST_PERIOD + 1, width, reduced), np.nan)
         points = LONGEST_PERIOD * self.steps + 1
         self.record = None
-        self.lanes = min(width, _LANES)
+        self.lanes = width if on_gpu() else min(width, _LANES)
         if points * size * self.lanes <= _MOST_RECORDED:
             self.record = np.empty((points, size, self.lanes))
 
@@ -277,7 +279,7 @@ class _Block:
         lost = []
         for lane in np.flatnonzero(self.job >= 0):
             one = slice(lane, lane + 1)
-            with suppress(ComputationError):
+            with suppress(ComputationError), marching_on("cpu"):
                 m.march(index[one], self.state[one], _PART, self.force[one], threads=1)
                 continue
             lost.append(int(lane))
@@ -301,6 +303,8 @@ def settle(
     progress: Progress = SILENT,
 ) -> None:
     """March motions until they repeat, or over the whole transient."""
+    if on_gpu():
+        width, threads = min(len(indices), _MANY_LANES), 1
     motions.queue(indices)
     motions.progress = progress
     count = 1 if width == 1 and len(indices) == 1 else threads or os.cpu_count() or 1

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tribodyn.dynamics._engine.blocks import Backend, marching_on
 from tribodyn.dynamics.equations.step_limit import LIMIT, rate_on_grid
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start
@@ -68,6 +69,7 @@ def parameter_map(
     verdict: bool = True,
     keep_partial: bool = False,
     progress: Progress = SILENT,
+    backend: Backend | None = None,
 ) -> ParameterMap:
     """Map period, rms and contact loss over two parameters.
 
@@ -103,6 +105,8 @@ def parameter_map(
         Return what is finished when interrupted (Ctrl-C), see ``finished``.
     progress : Progress
         Told about the motions.
+    backend : "cpu" or "cuda", optional
+        The processor that marches, as in :func:`tribodyn.dynamics.simulate_ensemble`.
 
     Raises
     ------
@@ -145,7 +149,8 @@ def parameter_map(
     kept = signal if systems[0].contacts else name
     survey = map_survey(transient, cycles, kept, keep_partial)
     progress.start("Motions", points.count * (1 + bool(verdict)))
-    outcomes, words = surveyed(points, number, survey, begin, verdict, progress)
+    with marching_on(backend):
+        outcomes, words = surveyed(points, number, survey, begin, verdict, progress)
     progress.finish()
     return ParameterMap(
         names=axes.names,

@@ -113,11 +113,6 @@ def write_report(result: Result, path: str | os.PathLike[str]) -> Path:
     path : path
         File to write; an existing one is replaced.
 
-    Returns
-    -------
-    Path
-        The file.
-
     Raises
     ------
     InputError

@@ -51,13 +51,8 @@ def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
     ----------
     found : Sweep
         What :func:`tribodyn.sweep` returns.
-    path : path
-        File to write; an existing one is replaced.
-
-    Returns
-    -------
-    Path
-        The file.
+    path
+        As :func:`write_report` takes it.
 
     Raises
     ------
@@ -121,8 +116,8 @@ def write_bifurcation_report(
         What :func:`tribodyn.bifurcation` returns.
     case : Case
         The case that was varied.
-    path : path
-        File to write; an existing one is replaced.
+    path
+        As :func:`write_report` takes it.
     lead : str
         What varies, in a line.
     told : sequence of str
@@ -131,11 +126,6 @@ def write_bifurcation_report(
         Head of the table.
     rows : sequence of sequence of str
         Its rows.
-
-    Returns
-    -------
-    Path
-        The file.
 
     Raises
     ------
@@ -176,8 +166,8 @@ def write_study_report(
     ----------
     case : Case or None
         The case that was studied; None for a study of measurements alone.
-    path : path
-        File to write; an existing one is replaced.
+    path
+        As :func:`write_report` takes it.
     kind : str
         What kind of study it is.
     told : sequence of str
@@ -186,11 +176,6 @@ def write_study_report(
         Heading, plotly figure and caption of each.
     head, rows : sequence of str, sequence of sequence of str
         The table.
-
-    Returns
-    -------
-    Path
-        The file.
 
     Raises
     ------
@@ -217,25 +202,7 @@ def write_study_report(
 
 @report_of("FrictionExperiment")
 def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
-    """Write the claims and figures of a friction experiment to a file.
-
-    Parameters
-    ----------
-    found : FrictionExperiment
-        What :func:`tribodyn.friction_experiment` returns.
-    path : path
-        File to write; an existing one is replaced.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        If the place cannot be written to.
-    """
+    """Write the claims and figures of a friction experiment to a file."""
     figures = (plot.friction_effect, plot.friction_claims, plot.friction_harmonics)
     blocks = [
         drawn_block(each.name, each.heading, each(found), each.caption_of(found))
@@ -260,25 +227,7 @@ def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
 
 @report_of("PaperComparison")
 def write_paper_report(found: Any, path: str | os.PathLike[str]) -> Path:
-    """Write printed tables beside what is computed to a file.
-
-    Parameters
-    ----------
-    found : PaperComparison
-        What :func:`tribodyn.cases.compare_with_paper` returns.
-    path : path
-        File to write; an existing one is replaced.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        If the place cannot be written to.
-    """
+    """Write printed tables beside what is computed to a file."""
     one = len(found.papers) == 1
     counts = Counter(row["verdict"] for row in found.rows)
     origins = zip(found.table(), found.rows, strict=True)

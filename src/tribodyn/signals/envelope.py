@@ -21,10 +21,8 @@ def envelope(
 
     Parameters
     ----------
-    signal : (n,) array
-        Equally spaced samples, in any unit.
-    sampling_rate : float
-        Samples per second [Hz].
+    signal, sampling_rate
+        As :func:`spectrum` takes them [Hz].
     band : tuple of two float, optional
         Lower and upper end of the band that carries the modulation [Hz]; the whole signal less
         its mean by default.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, require_one_of
+from tribodyn.errors import Argument, InputError, require_one_of
 from tribodyn.surrogate.measures import ErrorMeasures
 from tribodyn.surrogate.preparation import Prepared, prepare
 from tribodyn.types import Array
@@ -70,7 +70,7 @@ def _learned(part: str) -> Any:
     except ImportError:
         what, why = "scikit-learn is not installed", "Gaussian process and boosted trees are its"
         remedy = 'Install it: pip install "tribodyn[learn]", or leave these two out'
-        raise InputError(Problem(what, Argument("kinds"), why, remedy)) from None
+        raise InputError(what, Argument("kinds"), why, remedy) from None
 
 
 #: Models to compare a network with, by name.

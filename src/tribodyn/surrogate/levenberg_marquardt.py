@@ -61,10 +61,6 @@ def levenberg_marquardt(
     patience : int
         Steps in a row after which a validation that does not fall ends the search.
 
-    Returns
-    -------
-    Fit
-
     Notes
     -----
     M. T. Hagan and M. B. Menhaj, IEEE Trans. Neural Networks 5 (1994) 989. Without damping the

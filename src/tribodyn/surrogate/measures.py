@@ -43,10 +43,6 @@ class ErrorMeasures:
         Parameters
         ----------
         true, predicted : (n,) array
-
-        Returns
-        -------
-        ErrorMeasures
         """
         error = np.abs(predicted - true)
         square, variance, there = float(np.mean(error**2)), float(np.var(true)), true != 0.0

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, real_numbers, warn
+from tribodyn.errors import Argument, InputError, real_numbers, warn
 from tribodyn.interrupt import in_threads
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.stored import read_dataset
@@ -171,7 +171,7 @@ class Surrogate(Record):
             except ValueError:
                 what = f"features of the shapes {[each.shape for each in columns]}"
                 remedy = "Give each one value, or arrays of one shape"
-                raise InputError(Problem(what, Argument("inputs"), "", remedy)) from None
+                raise InputError(what, Argument("inputs"), "", remedy) from None
         elif hasattr(inputs, "keys"):
             whole = columns_of(inputs, names, "inputs")
         else:
@@ -179,7 +179,7 @@ class Surrogate(Record):
         if not whole.ndim or whole.shape[-1] != len(names) or not np.all(np.isfinite(whole)):
             what = f"inputs of the shape {whole.shape}, or values that are not finite"
             why = f"Wanted: {len(names)} features, {', '.join(names)}"
-            raise InputError(Problem(what, Argument("inputs"), why, "Give finite values of each"))
+            raise InputError(what, Argument("inputs"), why, "Give finite values of each")
         return whole.reshape(-1, len(names)), whole.shape[:-1]
 
     def _warn_of_range(self, rows: Array, beyond: Any) -> None:
@@ -224,10 +224,6 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
     path : str or path
         The netCDF file.
 
-    Returns
-    -------
-    Surrogate
-
     Raises
     ------
     InputError
@@ -236,7 +232,7 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
     data = read_dataset(path)
     if data.attrs.get("kind") != _KIND:
         why = "It was not written by the save method of a surrogate"
-        raise InputError(Problem(f"{path} holds no surrogate", Argument("path"), why, "Train one"))
+        raise InputError(f"{path} holds no surrogate", Argument("path"), why, "Train one")
     try:
         fields: dict[str, Any] = {name: np.asarray(data[name].values) for name in _STORED}
         fields |= {name: int(data.attrs[name]) for name in _COUNTS}
@@ -249,7 +245,7 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
         )
     except (KeyError, ValueError) as error:
         what, why = f"{path} is no whole surrogate", f"It lacks {error}"
-        raise InputError(Problem(what, Argument("path"), why, "Train it anew")) from None
+        raise InputError(what, Argument("path"), why, "Train it anew") from None
     return Surrogate(**fields)
 
 

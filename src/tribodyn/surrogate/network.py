@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, InputError, Problem, require_one_of
+from tribodyn.errors import Argument, InputError, require_one_of
 from tribodyn.types import Array
 
 #: Rows that are worked on at a time, so that they stay in the cache of the processor.
@@ -63,17 +63,17 @@ class Network:
     def __post_init__(self) -> None:
         if not all(isinstance(each, tuple | list) for each in (self.hidden, self.activations)):
             what = f"hidden = {self.hidden!r}, activations = {self.activations!r}"
-            raise InputError(Problem(what, Argument("hidden"), "", "Give both as tuples"))
+            raise InputError(what, Argument("hidden"), "", "Give both as tuples")
         for count in (self.inputs, *self.hidden):
             require_whole("hidden", count)
         for name in self.activations:
             require_one_of("activations", name, ACTIVATIONS)
         if not self.hidden or len(self.hidden) != len(self.activations):
             what = f"{len(self.hidden)} hidden layers and {len(self.activations)} activations"
-            raise InputError(Problem(what, Argument("hidden"), "Each layer has one", "Give both"))
+            raise InputError(what, Argument("hidden"), "Each layer has one", "Give both")
         if self.size > _MOST_WEIGHTS:
             what, why = f"a network of {self.size} weights", f"At most {_MOST_WEIGHTS} are trained"
-            raise InputError(Problem(what, Argument("hidden"), why, "Take fewer neurons"))
+            raise InputError(what, Argument("hidden"), why, "Take fewer neurons")
 
     @property
     def shapes(self) -> list[tuple[int, int]]:

@@ -16,7 +16,6 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import (
     Argument,
     InputError,
-    Problem,
     real_numbers,
     require_positive,
     shortened,
@@ -91,11 +90,11 @@ def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
     if not listed or len(set(map(str, listed))) != len(listed):
         what = f"{argument} = {shortened(repr(names))}"
         why = "Wanted: a list of names, each once"
-        raise InputError(Problem(what, Argument(argument), why, "Name columns of the data"))
+        raise InputError(what, Argument(argument), why, "Name columns of the data")
     table = data.to_xarray() if isinstance(data, Record) else data
     if not all(hasattr(table, name) for name in ("keys", "__getitem__")):
         why = "Wanted: arrays by name, a data set of xarray or a table of pandas"
-        raise InputError(Problem(f"a {type(table).__name__}", Argument("data"), why, "Give one"))
+        raise InputError(f"a {type(table).__name__}", Argument("data"), why, "Give one")
     known = {str(key): np.shape(table[key]) for key in table}
     rows = max((shape[0] for shape in known.values() if len(shape) == 1), default=0)
     for name in map(str, listed):
@@ -103,12 +102,10 @@ def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
             near = difflib.get_close_matches(str(name), known, n=1)
             remedy = f'Did you mean "{near[0]}"?' if near else f"It has {', '.join(known)}"
             raise InputError(
-                Problem(
-                    f'no column "{name}"',
-                    Argument(argument),
-                    "Names are those of the columns",
-                    remedy,
-                )
+                f'no column "{name}"',
+                Argument(argument),
+                "Names are those of the columns",
+                remedy,
             )
     return np.stack([_column(table[name], str(name), rows) for name in listed], axis=1)
 
@@ -121,7 +118,7 @@ def _column(given: Any, name: str, rows: int) -> Array:
     if values.shape != (rows,) or np.any(np.isinf(values)):
         what = f'the column "{name}" has the shape {np.shape(given)}, or holds no finite numbers'
         why = f"Every column has one number for each of the {rows} rows"
-        raise InputError(Problem(what, Argument("data"), why, "NaN stands for what is missing"))
+        raise InputError(what, Argument("data"), why, "NaN stands for what is missing")
     return values
 
 
@@ -165,16 +162,16 @@ def split_rows(
     parts = real_numbers(Argument("shares"), shares)
     if parts.shape != (3,) or not np.all(np.isfinite(parts) & (parts > 0.0)):
         why = "Wanted: three positive numbers"
-        raise InputError(Problem(f"shares = {shares}", Argument("shares"), why, "Give (8, 1, 1)"))
+        raise InputError(f"shares = {shares}", Argument("shares"), why, "Give (8, 1, 1)")
     labels = np.arange(count) if groups is None else np.asarray(groups)
     if labels.shape != (count,):
         what, why = f"groups have the shape {labels.shape}", f"There are {count} rows"
-        raise InputError(Problem(what, Argument("groups"), why, "Give one label for each row"))
+        raise InputError(what, Argument("groups"), why, "Give one label for each row")
     names, of_row = np.unique(labels, return_inverse=True)
     if names.size < 3:
         what = f"{names.size} group{'s' if names.size != 1 else ''} of rows"
         why = "Training, validation and test need one each"
-        raise InputError(Problem(what, Argument("groups"), why, "Give more data"))
+        raise InputError(what, Argument("groups"), why, "Give more data")
     random = np.random.default_rng(require_whole("seed", seed, 0))
     held = np.maximum(np.round(parts[1:] / parts.sum() * names.size), 1).astype(int)
     drawn = random.permutation(names.size)
@@ -255,17 +252,17 @@ def prepare(
     inputs, outputs = columns_of(data, features, "features"), columns_of(data, targets, "targets")
     if overlap := set(features) & set(targets):
         what = f"{', '.join(sorted(overlap))} is both feature and target"
-        raise InputError(Problem(what, Argument("targets"), "", "Leave it out of one of them"))
+        raise InputError(what, Argument("targets"), "", "Leave it out of one of them")
     labels = columns_of(data, [groups], "groups")[:, 0] if groups else None
     if labels is not None and np.any(np.isnan(labels)):
-        raise InputError(Problem("a row has no group", Argument("groups"), "", "Fill the column"))
+        raise InputError("a row has no group", Argument("groups"), "", "Fill the column")
     window = require_whole("moving_average", moving_average)
     there = ~np.any(np.isnan(outputs), axis=1)
     inputs, outputs = inputs[there], outputs[there]
     labels = None if labels is None else labels[there]
     if len(inputs) < 3 or np.any(np.all(np.isnan(inputs), axis=0)):
         what = f"{len(inputs)} rows with targets, or a feature without any value"
-        raise InputError(Problem(what, Argument("data"), "", "Give more data"))
+        raise InputError(what, Argument("data"), "", "Give more data")
     split = split_rows(len(inputs), shares, seed=seed, groups=labels)
     inputs = Scaling.of(inputs[split.training]).filled(inputs)
     kept = _kept(np.hstack([inputs, outputs]), split, outlier_limit)
@@ -295,7 +292,7 @@ def _kept(columns: Array, split: Split, limit: float | None) -> Mask:
         kept[split.training] = ~Scaling.of(training).outliers(training, float(limit))
         if np.sum(kept[split.training]) < 2:
             what = "fewer than two rows are left for training"
-            raise InputError(Problem(what, Argument("outlier_limit"), "", "Widen the limit"))
+            raise InputError(what, Argument("outlier_limit"), "", "Widen the limit")
     return kept
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_number, require_whole
-from tribodyn.errors import Argument, InputError, Problem, require_between
+from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.progress import SILENT, Progress
 from tribodyn.surrogate.levenberg_marquardt import Fit, Squares, levenberg_marquardt
 from tribodyn.surrogate.model import Surrogate
@@ -73,7 +73,7 @@ class Training:
         require_between("level", self.level, 0.5, 0.9999)
         if require_number("damping", self.damping) < 0.0:
             what = f"damping = {self.damping:g}"
-            raise InputError(Problem(what, Argument("damping"), "", "Give 0 or more"))
+            raise InputError(what, Argument("damping"), "", "Give 0 or more")
         Network(1, self.hidden, self.activations)  # refuses layers that do not fit
 
 
@@ -196,7 +196,7 @@ def bpnn_pl(
     """
     sizes = [require_whole("neurons", count) for count in neurons]
     if not sizes:
-        raise InputError(Problem("no size to try", Argument("neurons"), "", "Give one or more"))
+        raise InputError("no size to try", Argument("neurons"), "", "Give one or more")
     ready = _prepared(data, features, targets, seed, groups, training)
     progress.start("Networks", len(sizes) * len(targets))
     fits, search = [], {}

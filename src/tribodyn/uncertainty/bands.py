@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_flag, require_whole
-from tribodyn.errors import Argument, InputError, Problem, real_numbers, require_between
+from tribodyn.errors import Argument, InputError, real_numbers, require_between
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
@@ -67,10 +67,6 @@ def bootstrap_band(
     unit : str
         Unit of the samples, for display.
 
-    Returns
-    -------
-    Band
-
     Raises
     ------
     InputError
@@ -98,12 +94,10 @@ def bootstrap_band(
     whole = require_flag("simultaneous", simultaneous)
     if given.ndim < 1 or given.shape[0] < 3 or not given.size or not np.all(np.isfinite(given)):
         raise InputError(
-            Problem(
-                f"samples have the shape {given.shape}, or are not all finite",
-                Argument("samples"),
-                "At least three repeats of finite values are needed, the repeats first",
-                "Repeat the measurement, or leave out what is missing",
-            )
+            f"samples have the shape {given.shape}, or are not all finite",
+            Argument("samples"),
+            "At least three repeats of finite values are needed, the repeats first",
+            "Repeat the measurement, or leave out what is missing",
         )
     repeats, shape = given.shape[0], given.shape[1:]
     flat = given.reshape(repeats, -1)

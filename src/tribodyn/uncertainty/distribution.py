@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, shortened
+from tribodyn.errors import InputError, shortened
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, parse, split
@@ -119,7 +119,7 @@ def _wrong(name: str, given: Any, why: str = "", meant: str = "") -> InputError:
         f'Write {meant}"0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
         "or give data or a SciPy distribution"
     )
-    return InputError(Problem(what, name, why or "It is none of the kinds that are known", remedy))
+    return InputError(what, name, why or "It is none of the kinds that are known", remedy)
 
 
 class _Data:

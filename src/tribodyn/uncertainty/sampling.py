@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, ComputationError, InputError, Problem, require_one_of, warn
+from tribodyn.errors import Argument, ComputationError, InputError, require_one_of, warn
 from tribodyn.types import Array
 from tribodyn.uncertainty.distribution import distribution
 
@@ -70,18 +70,16 @@ def sample(
     """
     if not isinstance(distributions, Mapping) or not distributions:
         raise InputError(
-            Problem(
-                "no quantity is spread",
-                Argument("distributions"),
-                "Wanted: a mapping of names",
-                'Write {"friction.coefficient": "0.05 +- 0.83 %"}',
-            )
+            "no quantity is spread",
+            Argument("distributions"),
+            "Wanted: a mapping of names",
+            'Write {"friction.coefficient": "0.05 +- 0.83 %"}',
         )
     made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     count = require_whole("size", size)
     if count * len(made) > _MOST:
         why = f"At most {_MOST:g} numbers are drawn at once"
-        raise InputError(Problem(f"size = {count}", Argument("size"), why, "Draw several samples"))
+        raise InputError(f"size = {count}", Argument("size"), why, "Draw several samples")
     shares = uniform(count, len(made), method, require_whole("seed", seed, 0))
     values = {
         name: np.asarray(each.ppf(column), dtype=float)
@@ -90,7 +88,7 @@ def sample(
     for name, drawn in values.items():
         if not np.all(np.isfinite(drawn)):
             what = "the distribution gives values that are not finite"
-            raise ComputationError(Problem(what, name, "", "Look at its parameters, or cut it"))
+            raise ComputationError(what, name, "", "Look at its parameters, or cut it")
     return values
 
 

@@ -57,10 +57,6 @@ def sobol_indices(
     seed : int
         The same seed gives the same indices.
 
-    Returns
-    -------
-    SobolIndices
-
     Raises
     ------
     InputError
@@ -86,14 +82,12 @@ def sobol_indices(
         what = Problem("no input is spread", Argument("distributions"), "", "Give one or more")
         raise InputError(what)
     if not callable(function):
-        raise InputError(
-            Problem("it cannot be called", Argument("function"), "", "Give a function")
-        )
+        raise InputError("it cannot be called", Argument("function"), "", "Give a function")
     count = require_whole("size", size, 2)
     if count & (count - 1):
         why = "A Sobol sequence is even in powers of two only"
         near = 1 << (count.bit_length() - 1)
-        raise InputError(Problem(f"size = {count}", Argument("size"), why, f"Take {near}"))
+        raise InputError(f"size = {count}", Argument("size"), why, f"Take {near}")
     made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     total = 0
 
@@ -103,12 +97,10 @@ def sobol_indices(
         found = np.asarray(function(dict(zip(made, columns, strict=True))))
         if found.shape != (columns.shape[1],) or found.dtype.kind not in "biuf":
             raise InputError(
-                Problem(
-                    f"the function returns {found.dtype} values of the shape {found.shape}",
-                    Argument("function"),
-                    f"It was given {columns.shape[1]} values of each input",
-                    "Return one number for each",
-                )
+                f"the function returns {found.dtype} values of the shape {found.shape}",
+                Argument("function"),
+                f"It was given {columns.shape[1]} values of each input",
+                "Return one number for each",
             )
         if not np.all(np.isfinite(found)):
             raise ComputationError(

@@ -157,13 +157,16 @@ def _motions(case: Case, columns: Columns, progress: Progress) -> Part:
 def _marched(
     case: Case, values: Mapping[str, Array], count: int, progress: Progress
 ) -> dict[str, Array]:
+    from tribodyn.dynamics._engine.blocks import marching_on
     from tribodyn.nonlinear.parameter_map import SCALES, map_survey, stepped, surveyed
+    from tribodyn.study.pipeline.motion import engine_arguments
     from tribodyn.study.uncertain.lanes import lanes_of
 
     lanes = lanes_of(case, values or {SCALES[0]: np.ones(count)})
     systems = [member.system for member in lanes.members]
     points, number = stepped(systems, lanes.mesh_frequency, lanes.factors)
-    outcomes, words = surveyed(points, number, map_survey())
+    with marching_on(engine_arguments(case).get("backend")):
+        outcomes, words = surveyed(points, number, map_survey())
     progress.advance(count)
     return {
         "period": np.where(np.isfinite(outcomes.rms), outcomes.period, np.nan),

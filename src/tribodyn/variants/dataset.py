@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.errors import Argument, InputError
 from tribodyn.variants.compute import KINDS
 from tribodyn.variants.members import Grid
 from tribodyn.variants.store import Manifest, chunk_path, read_chunk
@@ -115,7 +115,7 @@ def _column(manifest: Manifest, chunk: str, name: str) -> Any:
     if content is None:
         what = f"{chunk_path(manifest.folder, chunk)} is not as it was written"
         why, remedy = "It was damaged, changed or removed", "Run the study again: it is mended"
-        raise InputError(Problem(what, Argument("path"), why, remedy))
+        raise InputError(what, Argument("path"), why, remedy)
     with h5py.File(io.BytesIO(content)) as file:
         if name in file:
             column = file[name]

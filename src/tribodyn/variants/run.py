@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import tribodyn
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import alone
 from tribodyn.progress import SILENT, Progress
 from tribodyn.variants.compute import Job, Part
@@ -92,7 +92,7 @@ def _give_up(missing: dict[str, str], none_done: bool) -> None:
         what = f"none of the first {len(missing)} chunks can be computed"
         why = next(iter(missing.values()))
         remedy = "Mend it on the machines that compute; the same command goes on"
-        raise ComputationError(Problem(what, "", why, remedy))
+        raise ComputationError(what, "", why, remedy)
 
 
 def _here(jobs: Jobs, progress: Progress) -> Results:
@@ -121,7 +121,7 @@ def compute_alone(version: str, job: Job) -> Part:
     """Compute a chunk in one thread of a worker."""
     if version != tribodyn.__version__:
         what = f"a worker has version {tribodyn.__version__} of tribodyn, the study {version}"
-        raise InputError(Problem(what, "", "", "Install the same version on all machines"))
+        raise InputError(what, "", "", "Install the same version on all machines")
     with alone():
         return job.compute()
 
@@ -134,7 +134,7 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
         from distributed.comm.addressing import parse_host_port
     except ImportError:
         remedy = 'Install it: pip install "tribodyn[cluster]"'
-        raise InputError(Problem("Dask is not installed", "--scheduler", "", remedy)) from None
+        raise InputError("Dask is not installed", "--scheduler", "", remedy) from None
     try:
         # A client that finds nobody takes long to tell it.
         socket.create_connection(parse_host_port(address.split("://")[-1]), _PATIENCE).close()
@@ -142,7 +142,7 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
     except (OSError, ValueError, TypeError, OverflowError) as error:
         what, why = f"no Dask scheduler answers at {address}", str(error).strip()
         remedy = "Start one with: dask scheduler; it tells its address"
-        raise InputError(Problem(what, "--scheduler", why, remedy)) from None
+        raise InputError(what, "--scheduler", why, remedy) from None
 
     def compute(jobs: Jobs, progress: Progress) -> Results:
         try:
@@ -152,7 +152,7 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
                 raise
             what, why = f"the Dask scheduler at {address} is gone", "What is finished is stored"
             remedy = "Start a scheduler; the same command goes on with it"
-            raise ComputationError(Problem(what, "--scheduler", why, remedy)) from None
+            raise ComputationError(what, "--scheduler", why, remedy) from None
 
     with client:
         yield compute

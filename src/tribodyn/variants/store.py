@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import Argument, InputError, OutputExistsError, Problem, quiet
+from tribodyn.errors import Argument, InputError, OutputExistsError, quiet
 from tribodyn.files import lock, whole
 from tribodyn.members import NAME, Members, read_lines
 from tribodyn.stored import read_bytes
@@ -96,7 +96,7 @@ class Manifest:
             lines, _ = read_lines(self.folder / NAME)
         except OSError as error:
             what = f"{path} cannot be read: {error.strerror}"
-            raise InputError(Problem(what, Argument("path"))) from None
+            raise InputError(what, Argument("path")) from None
         self.lines = lines[1:]
         values = {line["name"]: line["value"] for line in self.lines}
         if not str(lines[0].get("study", "") if lines else "").startswith("study ") or (
@@ -104,7 +104,7 @@ class Manifest:
         ):
             what, why = f"{path} is no store of a study", f"It has no {NAME} of one"
             remedy = "Give the directory that tribodyn study wrote"
-            raise InputError(Problem(what, Argument("path"), why, remedy))
+            raise InputError(what, Argument("path"), why, remedy)
         self.kind = str(lines[0]["study"]).removeprefix("study ")
         self.facts: Mapping[str, Any] = values["facts"]
         self.stages = stages_in(values)
@@ -142,10 +142,6 @@ def study_state(path: str | os.PathLike[str]) -> StudyState:
     ----------
     path : str or path
         Directory that :func:`run_study` or ``tribodyn study`` wrote, or writes at the moment.
-
-    Returns
-    -------
-    StudyState
 
     Raises
     ------
@@ -279,6 +275,4 @@ def _check_place(folder: Path) -> None:
     else:
         there = "It is no directory" if folder.exists() or folder.is_symlink() else ""
     if there:
-        raise OutputExistsError(
-            Problem("this exists already", str(folder), there, "Choose another")
-        )
+        raise OutputExistsError("this exists already", str(folder), there, "Choose another")

@@ -113,10 +113,6 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     path : str or path
         TOML file; what it may hold is told on the page on scale of the documentation.
 
-    Returns
-    -------
-    Study
-
     Raises
     ------
     InputError
@@ -134,10 +130,6 @@ def read_study(content: str, name: str = "study.toml") -> Study:
         TOML text.
     name : str
         Path of the file, for messages; files that it names are looked for beside it.
-
-    Returns
-    -------
-    Study
 
     Raises
     ------
@@ -361,7 +353,7 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
             _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
         )
         if twice := flat.keys() & inner.keys():
-            raise InputError(Problem(f"{min(twice)} is given twice", "", "", "Keep one of them"))
+            raise InputError(f"{min(twice)} is given twice", "", "", "Keep one of them")
         flat |= inner
     return flat
 
@@ -391,7 +383,7 @@ def _factors(key: str, given: Any) -> Axis:
     values = [_factor(key, each) for each in (given[:2] if isinstance(given, tuple) else given)]
     if isinstance(given, tuple) and not (values[0] < values[1] and 2 <= given[2] <= MOST):
         what, why = f"{key} has {given[2]} points", "A range rises, and has at least two"
-        raise InputError(Problem(f"{what} from {values[0]} to {values[1]}", "", why, _EXAMPLE))
+        raise InputError(f"{what} from {values[0]} to {values[1]}", "", why, _EXAMPLE)
     if isinstance(given, tuple):
         values = np.linspace(values[0], values[1], given[2]).tolist()
     return Axis(key, tuple(values))
@@ -401,7 +393,7 @@ def _rows(given: Any) -> list[tuple[str, dict[str, Any]]]:
     """Members that stand in the study file itself."""
     if not isinstance(given, list) or not given or not all(isinstance(row, dict) for row in given):
         what = f"cases = {written(given)}"
-        raise InputError(Problem(what, "", "It has one table for each member", "Write [[cases]]"))
+        raise InputError(what, "", "It has one table for each member", "Write [[cases]]")
     rows = [(f"member {number}", _flat(row)) for number, row in enumerate(given, 1)]
     _check_rows(rows)
     return rows
@@ -415,20 +407,18 @@ def _read_csv(path: Path) -> list[tuple[str, dict[str, Any]]]:
         table = [row for row in enumerate(csv.reader(lines), 1) if any(map(str.strip, row[1]))]
     except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Problem(f"{path} cannot be read: {reason}", "", "", remedy)) from None
+        raise InputError(f"{path} cannot be read: {reason}", "", "", remedy) from None
     if len(table) < 2:
-        raise InputError(Problem(f"{path} has no members", "", "", remedy))
+        raise InputError(f"{path} has no members", "", "", remedy)
     heads = [[part.strip() for part in head.rstrip("] ").split("[")] for head in table[0][1]]
     keys, units = [head[0] for head in heads], [" ".join(head[1:]) for head in heads]
     if not all(keys) or len(set(keys)) < len(keys):
-        raise InputError(
-            Problem(f"{path}:{table[0][0]}: keys are missing or twice", "", "", remedy)
-        )
+        raise InputError(f"{path}:{table[0][0]}: keys are missing or twice", "", "", remedy)
     rows = []
     for line, cells in table[1:]:
         if len(cells) != len(keys):
             what = f"{path}:{line}: {len(cells)} values under {len(keys)} keys"
-            raise InputError(Problem(what, "", "", "Give every member one value of each key"))
+            raise InputError(what, "", "", "Give every member one value of each key")
         row = {
             key: f"{cell.strip()} {unit}" if unit else toml_value(cell.strip())
             for key, unit, cell in zip(keys, units, cells, strict=True)
@@ -443,4 +433,4 @@ def _check_rows(rows: list[tuple[str, dict[str, Any]]]) -> None:
         if not row or set(row) != keys:
             odd = ", ".join(sorted(set(row) ^ keys)) or "no key"
             why = "All members have the same keys"
-            raise InputError(Problem(f"{place}: {odd}", "", why, "Give every member each key"))
+            raise InputError(f"{place}: {odd}", "", why, "Give every member each key")

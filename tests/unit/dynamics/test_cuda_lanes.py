@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from known_systems import reference_system
+from tribodyn.analysis import parameter_map
 from tribodyn.dynamics import (
     Contact,
     LaneParameters,
@@ -66,6 +67,13 @@ def _motions(backend: str) -> dict[str, np.ndarray]:
     for name in _SIGNALS:
         each = getattr(many, name)
         found |= {f"{name} {key}": getattr(each, key) for key in vars(each)}
+    push = lambda phase: 0.3 + np.sin(2 * np.pi * phase)[:, None]  # noqa: E731
+    swinging = System([[1.0]], [[0.9]], [[2.0]], push, [Contact([1.0], 3.0, gap=0.1)])
+    over = (("mesh_frequency", [0.2]), ("gap_scale", [1.0, 2.0]))
+    chart = parameter_map(
+        swinging, over=over, transient=16, cycles=2, steps=32, verdict=False, backend=backend
+    )
+    found |= {"rms": chart.rms, "share": chart.contact_loss_share, "period": chart.period}
     growing = System([[1.0]], [[-170.0]], [[40.0]], [1.0])
     with pytest.raises(ComputationError, match="beyond all bounds") as lost:
         simulate_ensemble(growing, [1.0, 1.0], 5, ([1.0], [0.0]), steps=64, backend=backend)

@@ -101,11 +101,6 @@ class PaperComparison(Record):
         force : bool
             Replace an earlier result.
 
-        Returns
-        -------
-        Path
-            The directory.
-
         Raises
         ------
         InputError

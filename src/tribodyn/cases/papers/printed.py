@@ -9,7 +9,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 
 #: What is expected of a row, and what its figures can say: the printed value, its trend, neither.
 VERDICTS = VALUE, TREND, NEITHER = "value", "trend", "cannot-reproduce"
@@ -61,9 +61,7 @@ def printed_rows(paper: str) -> tuple[PrintedRow, ...]:
     if paper not in known:
         why = f"There are tables for {', '.join(known)}"
         raise InputError(
-            Problem(
-                f'no printed tables are known for "{paper}"', "", why, "Take one of them, or --all"
-            )
+            f'no printed tables are known for "{paper}"', "", why, "Take one of them, or --all"
         )
     tables = tomllib.loads(known[paper].read_text(encoding="utf-8"))["tables"]
     return tuple(_row(paper, table, row) for table in tables for row in table["rows"])

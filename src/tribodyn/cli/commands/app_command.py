@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from tribodyn.cli.screen import tell
-from tribodyn.errors import InputError, Problem
+from tribodyn.cli.settings import Flag
+from tribodyn.errors import InputError
 
 
 def app(
@@ -19,7 +17,7 @@ def app(
     folder: Path = Path(),
     host: str = "127.0.0.1",
     port: int = 8050,
-    no_browser: Annotated[bool, Parameter(negative="")] = False,
+    no_browser: Flag = False,
 ) -> None:
     """Serve a page for the whole job, on this machine alone, until Ctrl-C.
 
@@ -41,9 +39,9 @@ def app(
 
     if find_spec("dash") is None:
         why, remedy = "The page is drawn by Dash", 'Install it with pip install "tribodyn[app]"'
-        raise InputError(Problem("Dash is not installed", "tribodyn app", why, remedy))
+        raise InputError("Dash is not installed", "tribodyn app", why, remedy)
     if not 0 <= port <= 65535:
-        raise InputError(Problem(f"port = {port}", "--port", "Ports are 0 to 65535"))
+        raise InputError(f"port = {port}", "--port", "Ports are 0 to 65535")
     from tribodyn.app.server import Page
 
     page = Page(folder, case, host, port)

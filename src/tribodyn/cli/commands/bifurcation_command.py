@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
-
-from cyclopts import Parameter
+from typing import Any, Literal
 
 from tribodyn.cli.screen import say, say_json, show_resumed, tell
-from tribodyn.cli.settings import RANGE, changed_case, check_place, read_ranges
+from tribodyn.cli.settings import (
+    RANGE,
+    CaseName,
+    Flag,
+    Force,
+    Settings,
+    changed_case,
+    check_place,
+    read_ranges,
+)
+from tribodyn.errors import InputError
 
 #: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.
 _INTERRUPTED = 130
 
 
 def bifurcation(
-    case: str,
+    case: CaseName,
     /,
     *over: str,
     sweep: Literal["up", "down", "both", "independent"] = "up",
@@ -23,16 +31,14 @@ def bifurcation(
     transient: int = 300,
     steps: int | None = None,
     out: Path | None = None,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    set_: Settings = None,
+    force: Force = False,
+    json: Flag = False,
 ) -> int:
     """Follow the motion of a case over one value; tell periods, jumps and step errors.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     over : str
         What varies: "operation.speed=400..3500 rpm:300".
     sweep : str
@@ -46,17 +52,8 @@ def bifurcation(
         Steps per mesh cycle.
     out : Path
         Directory to write; by default that of the case with "-bifurcation".
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write what was found in SI as one JSON object to stdout.
-
-    Returns
-    -------
-    int
-        Exit code.
     """
     from tribodyn.cli.bar import progress_bar
     from tribodyn.members import Members
@@ -107,20 +104,16 @@ def bifurcation(
 
 def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
     """The one key that varies."""
-    from tribodyn.errors import InputError, Problem
-
     ranges = read_ranges(over, lists=False)
     if len(ranges) > 1:
         what = f"{len(ranges)} keys vary: {', '.join(ranges)}"
-        raise InputError(Problem(what, "", "A diagram goes over one of them", RANGE))
+        raise InputError(what, "", "A diagram goes over one of them", RANGE)
     return next(iter(ranges.items()))
 
 
 def _check_lengths(cycles: int, transient: int) -> None:
     """Refuse mesh cycles that make no diagram."""
-    from tribodyn.errors import InputError, Problem
-
     for name, value, least in (("cycles", cycles, 2), ("transient", transient, 0)):
         if value < least:
             why = f"At least {least} are needed" if least else "It is a count"
-            raise InputError(Problem(f"{value} mesh cycles", f"--{name}", why, "Give more of them"))
+            raise InputError(f"{value} mesh cycles", f"--{name}", why, "Give more of them")

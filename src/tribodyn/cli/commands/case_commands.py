@@ -8,11 +8,11 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import figures, say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import changed_case
-from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case
+from tribodyn.errors import InputError, OutputExistsError
 
 
-def cases(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+def cases(*, json: Flag = False) -> None:
     """List the built-in cases.
 
     Parameters
@@ -30,20 +30,16 @@ def cases(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
 
 
 def check(
-    case: str,
+    case: CaseName,
     /,
     *,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    set_: Settings = None,
+    json: Flag = False,
 ) -> None:
     """Check a case, rehearse its run and show the geometry that follows from it.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
     json : bool
         Write one flat JSON object in SI to stdout.
     """
@@ -73,8 +69,8 @@ def new(
     /,
     *,
     from_: Annotated[str | None, Parameter(name="--from")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Write a commented case file to start from.
 
@@ -96,9 +92,9 @@ def new(
 
     if path.exists() and (path.is_dir() or not force):
         remedy = "Choose another name" + ("" if path.is_dir() else ", or add --force to replace it")
-        raise OutputExistsError(Problem("this exists already", str(path), "", remedy))
+        raise OutputExistsError("this exists already", str(path), "", remedy)
     if not path.parent.is_dir():
-        raise InputError(Problem("there is no such directory", str(path.parent), "", "Create it"))
+        raise InputError("there is no such directory", str(path.parent), "", "Create it")
     write_file(path, load_case(from_).to_toml() if from_ else start_toml())
     if json:
         say_json({"path": str(path)})

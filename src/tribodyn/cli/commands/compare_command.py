@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table
-from tribodyn.cli.settings import check_place
-from tribodyn.errors import InputError, Problem
+from tribodyn.cli.settings import Flag, check_place
+from tribodyn.errors import InputError
 from tribodyn.stored import plain_number
 
 Words = Annotated[list[str] | None, Parameter(negative="")]
@@ -24,8 +24,8 @@ def compare(
     gain: str = "1",
     harmonics: int = 5,
     out: Path | None = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Show how two results differ, or how a result differs from a measured recording.
 
@@ -76,7 +76,7 @@ def _pairs(words: list[str] | None) -> tuple[dict[str, str], dict[str, str]]:
         if not sign or not name.strip() or not signal.strip() or (comma and not sensor.strip()):
             what, why = f'"{word}" names no pair', "A sign of equality parts channel and signal"
             remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g"'
-            raise InputError(Problem(what, "--channel", why, remedy))
+            raise InputError(what, "--channel", why, remedy)
         signals[name.strip()] = signal.strip()
         if comma:
             sensitivity[name.strip()] = sensor.strip()
@@ -97,10 +97,10 @@ def _with_recording(
     out, force, json = output
     if not channels:
         remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g", one for each channel'
-        raise InputError(Problem("no channel of the recording is named", "--channel", "", remedy))
+        raise InputError("no channel of the recording is named", "--channel", "", remedy)
     number = plain_number(gain)
     if number is None and gain != "fit":
-        raise InputError(Problem(f'gain = "{gain}"', "--gain", "", 'Give a number, or "fit"'))
+        raise InputError(f'gain = "{gain}"', "--gain", "", 'Give a number, or "fit"')
     if out is not None:
         check_place(out, force)
     result = load_result(first)

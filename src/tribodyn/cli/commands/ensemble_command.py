@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
-from cyclopts import Parameter
 
-from tribodyn.cli.commands.study_commands import Flag, Output, Words, begun, finish
+from tribodyn.cli.commands.study_commands import begun, finish
+from tribodyn.cli.settings import Flag, Output, Words
 
 #: Part of the variants between the ends that are told.
 _SHARE = 0.95
@@ -23,7 +23,7 @@ def ensemble(
     out: Output = None,
     set_: Words = None,
     force: Flag = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    json: Flag = False,
 ) -> None:
     """Compute many variants of a case whose inputs are spread, and draw every figure with bands.
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table, tell
-from tribodyn.cli.settings import changed_case, read_changes
-from tribodyn.errors import InputError, OutputExistsError, Problem
+from tribodyn.cli.settings import Flag, changed_case, read_changes
+from tribodyn.errors import InputError, OutputExistsError
 
 if TYPE_CHECKING:
     from tribodyn.exchange import GearboxModel, Load, Stage
@@ -26,8 +26,8 @@ def import_(
     stage: int | None = None,
     load_case: int | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
     """List the stages and loads of a REXS gearbox model, and write a case of one stage.
 
@@ -62,9 +62,9 @@ def import_(
         return
     if out.exists() and (out.is_dir() or not force):
         remedy = "Choose another name" + ("" if out.is_dir() else ", or add --force to replace it")
-        raise OutputExistsError(Problem("this exists already", str(out), "", remedy))
+        raise OutputExistsError("this exists already", str(out), "", remedy)
     if not out.parent.is_dir():
-        raise InputError(Problem("there is no such directory", str(out.parent), "", "Create it"))
+        raise InputError("there is no such directory", str(out.parent), "", "Create it")
     case = case_from_rexs(model, stage, load_case, changes=read_changes(set_ or []))
     write_file(out, case.to_toml())
     if json:
@@ -82,8 +82,8 @@ def export(
     rexs: Path | None = None,
     tables: Path | None = None,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Write a case as a REXS gearbox model, or all tables and figures of a result.
 

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.commands.sweep_command import INTERRUPTED, ended, kept_study
 from tribodyn.cli.screen import say, say_json, table, tell
-from tribodyn.cli.settings import changed_case
+from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, read_ranges
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,15 +21,15 @@ _EXPERIMENTS = ("friction",)
 
 def experiment(
     kind: str,
-    case: str = "fzg-roughness",
+    case: CaseName = "fzg-roughness",
     /,
     *,
     roughness: str = "",
     laws: str = "",
     out: Path | None = None,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    set_: Settings = None,
+    force: Force = False,
+    json: Flag = False,
 ) -> int:
     """Compare friction laws and roughnesses on one pair, and judge five published claims.
 
@@ -37,25 +37,14 @@ def experiment(
     ----------
     kind : str
         What is studied: friction.
-    case : str
-        Built-in case or path of a case file.
     roughness : str
         Composite roughnesses such as "0.325,0.53,0.991 um".
     laws : str
         Friction laws such as "constant,xu-2007"; "none" is always among them.
     out : Path
         Directory to write; by default that of the case with "-friction".
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write claims and all figures in SI as one JSON object to stdout.
-
-    Returns
-    -------
-    int
-        Exit code.
     """
     if kind not in _EXPERIMENTS:
         remedy = f"Write: tribodyn experiment {_EXPERIMENTS[0]}"
@@ -96,8 +85,6 @@ def _keys(found: FrictionExperiment) -> list[str]:
 
 def _options(roughness: str, laws: str) -> dict[str, Any]:
     """Words of the command line as arguments; what is left out stays at its default."""
-    from tribodyn.cli.settings import read_ranges
-
     options: dict[str, Any] = {}
     if roughness:
         given = read_ranges([f"roughness={roughness}"])["roughness"]
@@ -117,8 +104,8 @@ def paper(
     *,
     all_: Annotated[bool, Parameter(name="--all", negative="")] = False,
     out: Path | None = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    force: Force = False,
+    json: Flag = False,
 ) -> int:
     """Lay the printed tables of a source beside what is computed, with a verdict for each figure.
 
@@ -130,15 +117,8 @@ def paper(
         All sources on one page.
     out : Path
         Directory to write; by default that of the case with "-paper", or "papers".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write the rows as one JSON list to stdout.
-
-    Returns
-    -------
-    int
-        Exit code.
     """
     from tribodyn.cases.papers.printed import papers, printed_rows
 

@@ -6,11 +6,10 @@ import difflib
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any
-
-from cyclopts import Parameter
+from typing import Any
 
 from tribodyn.cli.screen import say, say_json, table
+from tribodyn.cli.settings import Flag
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.values import Word, listed, word
 
@@ -24,7 +23,7 @@ def explain(
     symbol: str,
     /,
     *more: str,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    json: Flag = False,
 ) -> None:
     """Explain a symbol, quantity, key, model, law, warning code or summary value.
 
@@ -41,7 +40,7 @@ def explain(
     asked = " ".join((symbol, *more)).strip().strip("[]")
     if not asked:
         remedy = "Give a name, for example: tribodyn explain backlash"
-        raise InputError(Problem("there is nothing to explain", "", "", remedy))
+        raise InputError("there is nothing to explain", "", "", remedy)
     if asked.lower() == "friction":
         _friction_laws(json)
         return
@@ -225,7 +224,7 @@ def _unknown(symbol: str) -> Problem:
     )
 
 
-def units(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+def units(*, json: Flag = False) -> None:
     """List the units of all quantities and the spellings that are understood besides.
 
     Parameters
@@ -254,8 +253,8 @@ def cite(
     result: Path,
     /,
     *,
-    bibtex: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    bibtex: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Print the papers behind a result.
 
@@ -276,7 +275,7 @@ def cite(
     if not file.is_file():
         why = "It holds no case.toml" if result.is_dir() else "There is no such directory"
         remedy = "Give the directory that tribodyn run wrote"
-        raise InputError(Problem("this is no result", str(result), why, remedy))
+        raise InputError("this is no result", str(result), why, remedy)
     case = load_case(file)
     if json:
         say_json([{"key": key, **entry} for key, entry in papers(case).items()])

@@ -9,9 +9,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.cli.commands.study_commands import Flag, Output, Words, begun, finish
+from tribodyn.cli.commands.study_commands import begun, finish
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import check_place, read_changes, read_ranges
+from tribodyn.cli.settings import (
+    CaseName,
+    Flag,
+    Force,
+    Output,
+    Words,
+    check_place,
+    read_changes,
+    read_ranges,
+)
 from tribodyn.errors import InputError, Problem, collected
 from tribodyn.model import Option, number
 from tribodyn.study.case.values import FaultError, read_value
@@ -25,7 +34,7 @@ _EXAMPLES = {"torque": "50,150,300 N*m", "speed": "400..3500 rpm:8"}
 
 
 def losses(
-    case: str,
+    case: CaseName,
     /,
     *,
     torque: Text = None,
@@ -33,15 +42,13 @@ def losses(
     rig: Text = None,
     out: Output = None,
     set_: Words = None,
-    force: Flag = False,
+    force: Force = False,
     json: Flag = False,
 ) -> None:
     """Find losses and efficiency of a case over torque and speed; no motion is computed.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     torque : str
         "50,150,300 N*m" or "50..300 N*m:6"; by default 8 up to twice that of the case.
     speed : str
@@ -53,8 +60,6 @@ def losses(
         Directory to write; by default that of the case with "-losses".
     set_ : list of str
         Values to change, for example "losses.pinion.bearing=NJ 406".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write losses and efficiency in SI as one JSON object to stdout.
     """
@@ -146,7 +151,7 @@ def friction_from_loss(
     case: Text = None,
     set_: Words = None,
     out: Output = None,
-    force: Flag = False,
+    force: Force = False,
     json: Flag = False,
 ) -> None:
     """Find friction coefficients from the torque losses of a rig, each with its uncertainty.
@@ -164,8 +169,6 @@ def friction_from_loss(
         other_loss_uncertainty and gear_loss_factor_uncertainty, as in "no_load_torque=5 N*m".
     out : Path
         Directory to write; by default called like the file, with "-friction".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write the coefficients in SI as one JSON object to stdout.
     """

@@ -9,33 +9,27 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import figures, say, say_json, show_warnings, tell
-from tribodyn.cli.settings import changed_case, check_place
+from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, check_place
 
 
 def run(
-    case: str,
+    case: CaseName,
     /,
     *,
     out: Path | None = None,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
-    quiet: Annotated[bool, Parameter(negative="")] = False,
+    set_: Settings = None,
+    force: Force = False,
+    quiet: Flag = False,
     open_: Annotated[bool, Parameter(name="--open", negative="")] = False,
-    csv: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    csv: Flag = False,
+    json: Flag = False,
 ) -> None:
     """Compute a case; write its report and its data into a new directory.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     out : Path
         Directory to write; by default it is called like the case.
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
-    force : bool
-        Replace an earlier result in that directory.
     quiet : bool
         Leave the table of values out; warnings and the place of the report are still told.
     open_ : bool

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribodyn.cli.bar import counted, left, progress_bar
-from tribodyn.cli.commands.study_commands import Flag, Output
 from tribodyn.cli.commands.sweep_command import INTERRUPTED
 from tribodyn.cli.screen import say, say_json, tell
+from tribodyn.cli.settings import Flag, Output
 from tribodyn.errors import quiet
 
 if TYPE_CHECKING:
@@ -52,11 +52,6 @@ def study(
         Replace another study in that place.
     json : bool
         Write how far it has come as one JSON object to stdout.
-
-    Returns
-    -------
-    int
-        Exit code.
     """
     from tribodyn.variants import run_study, study_state
 

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from tribodyn.cli.screen import say, say_json, table, tell
-from tribodyn.cli.settings import changed_case, check_place, read_ends
+from tribodyn.cli.settings import (
+    CaseName,
+    Flag,
+    Force,
+    Output,
+    Settings,
+    Words,
+    changed_case,
+    check_place,
+    read_ends,
+)
 
 if TYPE_CHECKING:
     from tribodyn.report.answers import Answer
     from tribodyn.study.case.case import Case
-
-Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
-Flag = Annotated[bool, Parameter(negative="")]
-Output = Path | None
 
 
 def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
@@ -40,29 +44,23 @@ def finish(kind: str, case: Case, target: Path, found: Answer, force: bool, json
 
 
 def modes(
-    case: str,
+    case: CaseName,
     /,
     between: str | None = None,
     *,
     out: Output = None,
-    set_: Words = None,
-    force: Flag = False,
+    set_: Settings = None,
+    force: Force = False,
     json: Flag = False,
 ) -> None:
     """Find natural frequencies and critical speeds of a case; no motion is computed.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     between : str
         Speeds of the Campbell diagram: "400..3500 rpm".
     out : Path
         Directory to write; by default that of the case with "-modes".
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write the modes in SI as one JSON object to stdout.
     """
@@ -76,28 +74,24 @@ def modes(
 
 
 def harris(
-    case: str,
+    case: CaseName,
     /,
     *torque: str,
     out: Output = None,
     set_: Words = None,
-    force: Flag = False,
+    force: Force = False,
     json: Flag = False,
 ) -> None:
     """Find the static transmission error of a case over the torque (Harris map).
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     torque : str
         Torques such as "60 N*m" "120 N*m"; by default 20 up to twice that of the case.
     out : Path
         Directory to write; by default that of the case with "-harris".
     set_ : list of str
         Values to change, for example "gears.pinion.modification.tip_relief=10 um".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write transmission errors and stiffness over the torque in SI to stdout.
     """
@@ -108,21 +102,19 @@ def harris(
 
 
 def relief(
-    case: str,
+    case: CaseName,
     /,
     *torque: str,
     gears: str = "both",
     out: Output = None,
     set_: Words = None,
-    force: Flag = False,
+    force: Force = False,
     json: Flag = False,
 ) -> None:
     """Find the tip relief of a case that leaves least transmission error; write the better case.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     torque : str
         Torques such as "60 N*m" "120 N*m"; by default from half that of the case to all of it.
     gears : str
@@ -131,8 +123,6 @@ def relief(
         Directory to write; by default that of the case with "-relief". It holds best.toml.
     set_ : list of str
         Values to change, for example "stiffness.model=analytic".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write amount, length and transmission errors in SI to stdout.
     """
@@ -144,23 +134,21 @@ def relief(
 
 
 def run_up(
-    case: str,
+    case: CaseName,
     between: str,
     /,
     *,
     duration: float = 10.0,
     down: Flag = False,
     out: Output = None,
-    set_: Words = None,
-    force: Flag = False,
+    set_: Settings = None,
+    force: Force = False,
     json: Flag = False,
 ) -> None:
     """March a case while its speed rises; tell where it vibrates most.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     between : str
         Lowest and highest speed: "400..3500 rpm".
     duration : float
@@ -169,10 +157,6 @@ def run_up(
         Let the speed fall back as it rose.
     out : Path
         Directory to write; by default that of the case with "-run-up".
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
-    force : bool
-        Replace an earlier result in that directory.
     json : bool
         Write levels over the speed in SI to stdout.
     """

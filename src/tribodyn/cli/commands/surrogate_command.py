@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from tribodyn.cli.commands.study_commands import Flag, Output, Words
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import changed_case, read_changes
+from tribodyn.cli.settings import Flag, Output, Words, changed_case, read_changes
 from tribodyn.errors import InputError, OutputExistsError, Problem, collected
 
 if TYPE_CHECKING:

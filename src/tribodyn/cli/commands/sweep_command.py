@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tribodyn.cli.screen import say, say_json, show_resumed, table, tell
-from tribodyn.cli.settings import changed_case, check_place, read_ranges
+from tribodyn.cli.settings import (
+    CaseName,
+    Flag,
+    Force,
+    Settings,
+    changed_case,
+    check_place,
+    read_ranges,
+)
 
 if TYPE_CHECKING:
     from tribodyn.study.studies.sweep_result import Sweep
@@ -23,39 +29,28 @@ INTERRUPTED = 130
 
 
 def sweep(
-    case: str,
+    case: CaseName,
     /,
     *over: str,
     out: Path | None = None,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
-    force: Annotated[bool, Parameter(negative="")] = False,
+    set_: Settings = None,
+    force: Force = False,
     show: str = "",
-    json: Annotated[bool, Parameter(negative="")] = False,
+    json: Flag = False,
 ) -> int:
     """Compute a case at many values of its keys; write a table and a report.
 
     Parameters
     ----------
-    case : str
-        Built-in case or path of a case file.
     over : str
         What varies: "operation.speed=400..3500 rpm:60" or "operation.torque=50,150,300 N*m".
         Several make a grid.
     out : Path
         Directory to write; by default that of the case with "-sweep".
-    set_ : list of str
-        Values to change, for example "operation.torque=120 N*m".
-    force : bool
-        Replace an earlier result in that directory.
     show : str
         Figures of the table on the screen, such as "minimum_film_ratio,efficiency".
     json : bool
         Write all figures in SI as one JSON object to stdout.
-
-    Returns
-    -------
-    int
-        Exit code.
     """
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)

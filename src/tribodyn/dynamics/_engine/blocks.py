@@ -35,6 +35,11 @@ Backend = Literal["cpu", "cuda"]
 _backend: ContextVar[Backend] = ContextVar("backend", default="cpu")
 
 
+def on_gpu() -> bool:
+    """Whether lanes march on a graphics processor."""
+    return _backend.get() == "cuda"
+
+
 @contextmanager
 def marching_on(backend: Backend | None) -> Iterator[None]:
     """March all lanes inside the block there; None: where it is said outside."""
@@ -116,7 +121,7 @@ def march(
     # Whoever gives parameters has looked whether the steps are short enough for them.
     lanes = state.shape[0]
     run = _Run(compiled, method, parameters, period, state, extra_force)
-    if _backend.get() == "cuda":
+    if on_gpu():
         from tribodyn.dynamics._engine.generated.cuda import march_on_gpu
 
         new, ended = march_on_gpu(

@@ -74,10 +74,6 @@ def speed_sweep(
     progress : Progress
         Told about the speeds.
 
-    Returns
-    -------
-    SpeedSweep
-
     Raises
     ------
     InputError

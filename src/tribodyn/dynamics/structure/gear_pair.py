@@ -108,18 +108,6 @@ def _kept(direction: Callable[[Array], Array], supports: bool) -> slice | list[i
     return [4, 10] if in_space else [2, 5]
 
 
-def _spins_in_space(supports: bool) -> list[int]:
-    """Rotations of both gears among the twelve coordinates of a mesh in space."""
-    if supports:
-        raise InputError(
-            "the mesh has directions in space",
-            where="argument mesh",
-            why="Its forces have six components on each gear, and this structure lies in a plane",
-            remedy="Take the structure hypoid-14dof, or torsional, whose supports are rigid",
-        )
-    return [4, 10]
-
-
 def with_error_of(mesh: object, error: Entry) -> Entry:
     """Error of a contact: the one prescribed, and that of a mesh that has one of its own."""
     of_mesh = getattr(mesh, "error", None)

@@ -97,8 +97,6 @@ _HIGHEST_PRESSURE = 4.05e9
 _GREATEST_GROWTH = 450.0
 #: Load numbers that the solvers were tried on, with room.
 _LOADS = (1e-4, 5e3)
-#: Film over radius beyond which the film is no thin film.
-_THICKEST = 0.1
 
 
 @dataclass(frozen=True, eq=False)

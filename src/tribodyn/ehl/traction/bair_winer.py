@@ -25,12 +25,8 @@ def bair_winer_shear_stress(
 
     Parameters
     ----------
-    viscosity : float or array [Pa*s]
-        Viscosity under the local pressure at small shear stress.
-    sliding_speed : float or array [m/s]
-        Difference of the surface speeds.
-    film_thickness : float or array [m]
-        Distance of the surfaces.
+    viscosity, sliding_speed, film_thickness : float or array [Pa*s], [m/s], [m]
+        As for :func:`ree_eyring_shear_stress`.
     pressure : float or array [Pa]
         Pressure above ambient.
     limiting_stress : float [Pa]

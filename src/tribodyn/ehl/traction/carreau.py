@@ -37,12 +37,8 @@ def carreau_shear_stress(
 
     Parameters
     ----------
-    viscosity : float or array [Pa*s]
-        Viscosity under the local pressure at small shear stress.
-    sliding_speed : float or array [m/s]
-        Difference of the surface speeds.
-    film_thickness : float or array [m]
-        Distance of the surfaces.
+    viscosity, sliding_speed, film_thickness : float or array [Pa*s], [m/s], [m]
+        As for :func:`ree_eyring_shear_stress`.
     carreau_stress : float [Pa]
         Stress ``G`` from which the oil thins.
     carreau_exponent : float

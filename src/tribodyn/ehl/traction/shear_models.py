@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
+from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.model import NO_OPTIONS, Model, Registry, number
 from tribodyn.types import Array
 
@@ -50,12 +50,10 @@ class ShearModel(Model):
         known = {**self.declared, **(LIMIT if given.keys() & LIMIT.keys() else {})}
         for name in sorted(given.keys() - known.keys()):
             raise InputError(
-                Problem(
-                    f'{name} does not belong to shear_model = "{self.name}"',
-                    Argument(name),
-                    f"Its numbers are: {', '.join({**known, **LIMIT})}",
-                    "Remove it, or choose another shear model",
-                )
+                f'{name} does not belong to shear_model = "{self.name}"',
+                Argument(name),
+                f"Its numbers are: {', '.join({**known, **LIMIT})}",
+                "Remove it, or choose another shear model",
             )
         require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
         values = {**{n: o.default for n, o in known.items()}, "eyring_stress": eyring_stress}

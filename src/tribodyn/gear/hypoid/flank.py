@@ -130,11 +130,6 @@ class HypoidFlanks(Record):
             File to write, in mm; an existing one is replaced at once.
         gear : str
             ``"pinion"`` or ``"wheel"``.
-
-        Returns
-        -------
-        Path
-            The file.
         """
         position, normal = self.points(gear)
         rows = np.hstack([1e3 * position.reshape(-1, 3), normal.reshape(-1, 3)])
@@ -149,15 +144,8 @@ class HypoidFlanks(Record):
 
         Parameters
         ----------
-        path : str or path
-            File to write, in mm; an existing one is replaced at once.
-        gear : str
-            ``"pinion"`` or ``"wheel"``.
-
-        Returns
-        -------
-        Path
-            The file.
+        path, gear
+            As :meth:`to_csv` takes them.
         """
         position, normal = self.points(gear)
         a, b, c, d = (
@@ -226,10 +214,6 @@ def hypoid_flanks(
         What the pinion has less than its conjugate; nothing by default.
     points : int
         Points along the face and over the working depth, from 5 on.
-
-    Returns
-    -------
-    HypoidFlanks
 
     Raises
     ------

@@ -89,10 +89,6 @@ def hypoid_kinematics(
         ``"contact"`` takes the velocities of both surfaces relative to the contact line, which
         moves over them; ``"fixed_frame"`` is the shortcut of the literature, which leaves that out.
 
-    Returns
-    -------
-    HypoidKinematics
-
     Raises
     ------
     InputError

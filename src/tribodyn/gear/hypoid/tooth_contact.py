@@ -130,10 +130,6 @@ def tooth_contact(
     cells : int
         Places along each contact line, at least 5.
 
-    Returns
-    -------
-    ToothContact
-
     Raises
     ------
     InputError

@@ -5,6 +5,5 @@
 | ``recognised`` | which reader a file needs |
 | ``content`` | what every reader gives; whether times are evenly spaced |
 | ``text`` | CSV and other columns of numbers |
-| ``matlab`` | MAT, versions 4 to 7.3 |
-| ``binary`` | WAV, UFF 58, TDMS, HDF5 and netCDF |
+| ``binary`` | WAV, UFF 58, TDMS, MAT of versions 4 to 7.3, HDF5 and netCDF |
 """

@@ -1,15 +1,16 @@
-"""WAV, UFF 58, TDMS, HDF5 and netCDF, each by the library that knows it best."""
+"""WAV, UFF 58, TDMS, MAT, HDF5 and netCDF, each by the library that knows it best."""
 
 from __future__ import annotations
 
 import logging
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.measurement.readers.content import (
     Content,
     from_arrays,
@@ -53,7 +54,7 @@ def uff(path: Path) -> Content:
         file.seek(-min(200, path.stat().st_size), 2)
         if not file.read().rstrip(b"\0\r\n\t ").endswith(b"-1"):
             why, remedy = "Its last dataset has no end", "Take it from the measuring system again"
-            raise InputError(Problem("is cut short", str(path), why, remedy))
+            raise InputError("is cut short", str(path), why, remedy)
     sets = pyuff.UFF(str(path))
     kinds = list(sets.get_set_types())
     channels: dict[str, Array] = {}
@@ -191,10 +192,44 @@ def _library(name: str, path: Path) -> Any:
         return importlib.import_module(name)
     except ImportError:
         raise InputError(
-            Problem(
-                f"{name} is needed to read this file",
-                str(path),
-                "It is not installed",
-                'Run: pip install "tribodyn[io]"',
-            )
+            f"{name} is needed to read this file",
+            str(path),
+            "It is not installed",
+            'Run: pip install "tribodyn[io]"',
         ) from None
+
+
+def mat(path: Path) -> Content:
+    """Channels of a MAT file of any version: vectors, matrices, cells and structures of them."""
+    with open(path, "rb") as file:
+        head = file.read(128)
+    if head.startswith(b"MATLAB 7.3"):
+        return hdf5(path)  # which refuses tables as we do
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatlabOpaque
+
+    held = loadmat(path, squeeze_me=True, struct_as_record=True)
+    named: dict[str, Any] = {}
+    for name, value in held.items():
+        if isinstance(value, MatlabOpaque) or name == "None":
+            kinds = value["s2"].reshape(-1).tolist() if value.dtype.names else [""]
+            refuse_table(kinds[0], path)
+        elif not name.startswith("__"):
+            named |= dict(_fields(name, value))
+    return from_arrays(named, path)
+
+
+def _fields(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, Any]]:
+    """Structures as names with points, items of arrays of them and of cells by their number."""
+    kind = getattr(value, "dtype", np.dtype(float))
+    fields = kind.names
+    if not (fields or kind.kind == "O") or depth > _DEEPEST:
+        yield name, value
+        return
+    for number, item in enumerate(np.asarray(value).reshape(-1), 1):
+        if fields:
+            place = name if value.size == 1 else f"{name}({number})"
+            for each in fields:
+                yield from _fields(f"{place}.{each}", item[each], depth + 1)
+        else:
+            yield from _fields(f"{name}{{{number}}}", item, depth + 1)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 
@@ -60,7 +60,7 @@ def in_seconds(values: Array, unit: str, path: Any) -> Array:
         return values * convert(1.0, unit, "s")
     except UnitProblemError as error:
         what, remedy = f'its times are in "{unit}"', "Write their unit as s, ms, us or min"
-        raise InputError(Problem(what, str(path), str(error), remedy)) from None
+        raise InputError(what, str(path), str(error), remedy) from None
 
 
 def rate_of(time: Array, path: Any, given: float | None = None) -> float:
@@ -190,7 +190,7 @@ def _one(rates: Mapping[str, float], path: Path) -> float:
     if any(abs(rate - first) > 1e-5 * first for rate in rates.values()):
         told = ", ".join(f"{name} {rate:.7g} Hz" for name, rate in rates.items())
         remedy = "Correct one of them in the file"
-        raise InputError(Problem("tells different sampling rates", str(path), told, remedy))
+        raise InputError("tells different sampling rates", str(path), told, remedy)
     return first
 
 
@@ -209,10 +209,8 @@ def refuse_table(kind: Any, path: Path) -> None:
     if told not in _TABLES:
         return
     raise InputError(
-        Problem(
-            "holds a table, timetable or other object of MATLAB",
-            str(path),
-            "MATLAB keeps how these are written to itself",
-            'In MATLAB: s = table2struct(T, "ToScalar", true); save("s.mat", "-struct", "s")',
-        )
+        "holds a table, timetable or other object of MATLAB",
+        str(path),
+        "MATLAB keeps how these are written to itself",
+        'In MATLAB: s = table2struct(T, "ToScalar", true); save("s.mat", "-struct", "s")',
     )

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from tribodyn.errors import Argument, InputError, Problem, TribodynError
-from tribodyn.measurement.readers import binary, matlab, text
+from tribodyn.errors import Argument, InputError, TribodynError
+from tribodyn.measurement.readers import binary, text
 from tribodyn.measurement.readers.content import Content
 from tribodyn.stored import LARGEST, file_kind
 
@@ -34,7 +34,7 @@ _TEXT = Format(
 FORMATS = (
     Format("WAV", (".wav",), lambda head: head[:4] in (b"RIFF", b"RIFX", b"RF64"), binary.wav),
     Format("TDMS", (".tdms",), lambda head: head[:4] in (b"TDSm", b"TDSh"), binary.tdms),
-    Format("MAT", (".mat",), lambda head: head[:6] == b"MATLAB", matlab.content),
+    Format("MAT", (".mat",), lambda head: head[:6] == b"MATLAB", binary.mat),
     Format("HDF5", (".h5", ".hdf5", ".nc", ".hdf"), lambda head: _HDF5 in head, binary.hdf5),
     Format("UFF", (".uff", ".unv", ".uf"), lambda head: head.lstrip()[:2] == b"-1", binary.uff),
     Format("text that is compressed", (".gz",), lambda head: head[:2] == b"\x1f\x8b", text.content),
@@ -63,12 +63,10 @@ def content_of(path: str | os.PathLike[str]) -> Content:
         told = f"{error}" if " " in f"{error}" else f"{type(error).__name__} {error}".strip()
         reason = getattr(error, "strerror", None) or told
         raise InputError(
-            Problem(
-                f"cannot be read as {found.name}",
-                str(path),
-                reason,
-                "The file is damaged or cut short: take it from the measuring system again",
-            )
+            f"cannot be read as {found.name}",
+            str(path),
+            reason,
+            "The file is damaged or cut short: take it from the measuring system again",
         ) from None
 
 
@@ -79,22 +77,20 @@ def _head(place: Path) -> bytes:
         told = f"it is larger than {LARGEST['recording'] / 1e9:.3g} GB"
     if told != "file":
         reason = {"": "there is no such file", "directory": "it is a directory"}.get(told, told)
-        raise InputError(Problem("cannot be read", str(place), reason, "Give the path of a file"))
+        raise InputError("cannot be read", str(place), reason, "Give the path of a file")
     try:
         with open(place, "rb") as file:
             head = file.read(1024)
     except OSError as error:
         reason = os.strerror(error.errno or errno.EIO)
         raise InputError(
-            Problem(
-                "cannot be read",
-                str(place),
-                reason,
-                remedy="Check that the file is whole, and what wrote it",
-            )
+            "cannot be read",
+            str(place),
+            reason,
+            remedy="Check that the file is whole, and what wrote it",
         ) from None
     if not head.strip():
-        raise InputError(Problem("is empty", str(place), "", "Take it from the system again"))
+        raise InputError("is empty", str(place), "", "Take it from the system again")
     return head
 
 
@@ -110,5 +106,5 @@ def _format(place: Path, head: bytes) -> Format:
         known = ", ".join(each.suffixes[0] for each in FORMATS)
         kind = f"no {named.name} file" if named else "no known recording"
         remedy = f"Name it {found.suffixes[0]}" if found else f"Known: {known}"
-        raise InputError(Problem(f"is {kind}", str(place), told, remedy))
+        raise InputError(f"is {kind}", str(place), told, remedy)
     return found

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.measurement.readers.content import MEASURED, Content, in_seconds, is_time
 from tribodyn.stored import LARGEST
 from tribodyn.types import Array
@@ -243,10 +243,8 @@ def _refuse_cut(rows: Sequence[str], layout: _Layout, path: Path) -> None:
     shorter = np.mean(np.array(places[:-1]) <= places[-1]) if len(places) > 20 else 1.0
     if shorter == 0.0 or (shorter < 0.05 and places[-1] < 0.5 * np.median(places)):
         raise InputError(
-            Problem(
-                f"seems to be cut short in its last row: {rows[-1][:80]!r}",
-                str(path),
-                "The number there has fewer digits than those above, and no line ends after it",
-                "Take the file from the measuring system again, or end its last line",
-            )
+            f"seems to be cut short in its last row: {rows[-1][:80]!r}",
+            str(path),
+            "The number there has fewer digits than those above, and no line ends after it",
+            "Take the file from the measuring system again, or end its last line",
         )

@@ -175,10 +175,6 @@ def hypoid_friction(
     entrainment : str
         ``"contact"`` or ``"fixed_frame"``, as in :func:`tribodyn.gear.hypoid_kinematics`.
 
-    Returns
-    -------
-    HypoidFriction
-
     Raises
     ------
     InputError

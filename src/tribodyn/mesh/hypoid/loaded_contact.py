@@ -140,10 +140,6 @@ class HypoidLoadedContact(Record):
         pinion_torque : float
             Torque on the pinion in its running sense [N*m].
 
-        Returns
-        -------
-        HypoidLoadedContact
-
         Raises
         ------
         InputError
@@ -193,10 +189,6 @@ def hypoid_loaded_contact(
         Intervals of the mesh cycle, at least 16.
     cells : int
         Cells of each contact line, at least 4.
-
-    Returns
-    -------
-    HypoidLoadedContact
 
     Raises
     ------

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.plot.film.line_contact import (
     Scales,
     contact_scales,
@@ -205,23 +205,19 @@ def _checked(contacts: Any, path: ArrayLike) -> tuple[list[Any], Array]:
     kept = getattr(contacts, "solutions", contacts)
     if kept is not contacts and np.size(kept) == 0:
         raise InputError(
-            Problem(
-                what="the batch holds no pressure and film",
-                where="argument contacts",
-                why="A batch keeps the solutions on request only",
-                remedy="Call solve_line_contacts with keep_solutions=True",
-            )
+            "the batch holds no pressure and film",
+            where="argument contacts",
+            why="A batch keeps the solutions on request only",
+            remedy="Call solve_line_contacts with keep_solutions=True",
         )
     solutions = list(np.ravel(np.asarray(kept, dtype=object)))
     positions = np.ravel(np.asarray(path, dtype=float))
     if len(solutions) != len(positions) or len(solutions) < 2:
         raise InputError(
-            Problem(
-                what=f"{len(solutions)} contacts and {len(positions)} positions",
-                where="argument path",
-                why="Each contact has one position, and a way needs two of them at least",
-                remedy="Give as many positions as contacts, from where the pair enters",
-            )
+            f"{len(solutions)} contacts and {len(positions)} positions",
+            where="argument path",
+            why="Each contact has one position, and a way needs two of them at least",
+            remedy="Give as many positions as contacts, from where the pair enters",
         )
     return solutions, positions
 
@@ -291,12 +287,10 @@ def _snapshots(transient: TransientLineContact) -> tuple[list[_Snapshot], Array]
     """Kept instants, at most as many as there are frames, and their times [s]."""
     if len(transient.kept) < 2:
         raise InputError(
-            Problem(
-                what=f"{len(transient.kept)} instants have a pressure and a film",
-                where="argument transient",
-                why="An animation needs two of them at least",
-                remedy="Solve with keep_every = 1, or with a larger number for long series",
-            )
+            f"{len(transient.kept)} instants have a pressure and a film",
+            where="argument transient",
+            why="An animation needs two of them at least",
+            remedy="Solve with keep_every = 1, or with a larger number for long series",
         )
     # Width and pressure of the dry contact follow the square root of load times radius.
     strength = transient.load_per_width * transient.equivalent_radius

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
@@ -31,12 +31,10 @@ def transit_frequency(solution: LineContactSolution) -> float:
 def _frequencies(solution: LineContactSolution, asked: ArrayLike | None) -> Array:
     if solution.lubricant is None:
         raise InputError(
-            Problem(
-                what="a contact without units has no frequencies",
-                where="argument solution",
-                why="The numbers of Moes leave speed and size open",
-                remedy="Solve the contact with solve_line_contact",
-            )
+            "a contact without units has no frequencies",
+            where="argument solution",
+            why="The numbers of Moes leave speed and size open",
+            remedy="Solve the contact with solve_line_contact",
         )
     if asked is None:
         spread = np.geomspace(_LOWEST, _HIGHEST, _POINTS)
@@ -130,12 +128,10 @@ def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None)
         films = np.asarray(steady, dtype=float)
         if films.shape != transient.time.shape:
             raise InputError(
-                Problem(
-                    what=f"{films.size} steady films and {transient.time.size} instants",
-                    where="argument steady",
-                    why="Each instant has one steady film to be compared with",
-                    remedy="Give the central films of solve_line_contacts at the same instants",
-                )
+                f"{films.size} steady films and {transient.time.size} instants",
+                where="argument steady",
+                why="Each instant has one steady film to be compared with",
+                remedy="Give the central films of solve_line_contacts at the same instants",
             )
         rows.append(("in the centre, steady", films, MUTED, "dash"))
     return [

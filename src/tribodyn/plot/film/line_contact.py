@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.drawing import drawing
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line, marked
@@ -81,12 +81,10 @@ def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales
     """Choose the units for contacts that share their axes."""
     if not solutions:
         raise InputError(
-            Problem(
-                what="there is no contact to draw",
-                where="argument solutions",
-                why="The sequence is empty",
-                remedy="Give at least one solution of solve_line_contact",
-            )
+            "there is no contact to draw",
+            where="argument solutions",
+            why="The sequence is empty",
+            remedy="Give at least one solution of solve_line_contact",
         )
     if not all(hasattr(solution, "lubricant") for solution in solutions):
         why = "Solutions of line contacts have pressure, film and lubricant"
@@ -95,12 +93,10 @@ def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales
     bare = [solution.lubricant is None for solution in solutions]
     if any(bare) and not all(bare) and not dimensionless:
         raise InputError(
-            Problem(
-                what=f"{sum(bare)} of {len(bare)} contacts have no unit, the others have",
-                where="argument solutions",
-                why="solve_line_contact_moes gives numbers without unit, which fit no common axis",
-                remedy="Set dimensionless=True",
-            )
+            f"{sum(bare)} of {len(bare)} contacts have no unit, the others have",
+            where="argument solutions",
+            why="solve_line_contact_moes gives numbers without unit, which fit no common axis",
+            remedy="Set dimensionless=True",
         )
     if dimensionless or all(bare):
         return [_unitless(solution) for solution in solutions]
@@ -287,12 +283,10 @@ def _checked(solutions: Iterable[Any], labels: Iterable[str]) -> tuple[list[Any]
     contacts, names = list(solutions), [str(label) for label in labels]
     if len(contacts) != len(names):
         raise InputError(
-            Problem(
-                what=f"{len(contacts)} contacts and {len(names)} labels",
-                where="argument labels",
-                why="Each contact has one name in the legend",
-                remedy="Give as many labels as solutions",
-            )
+            f"{len(contacts)} contacts and {len(names)} labels",
+            where="argument labels",
+            why="Each contact has one name in the legend",
+            remedy="Give as many labels as solutions",
         )
     return contacts, names
 

@@ -64,17 +64,7 @@ def _missing(mesh: MeshTable) -> str:
     missing=_missing,
 )
 def lubrication(mesh: MeshTable) -> Any:
-    """Draw film ratio, load share and the parts of the friction force over the roll angle.
-
-    Parameters
-    ----------
-    mesh : MeshTable
-        Contact of one mesh cycle with an oil film between rough flanks.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw film ratio, load share and the parts of the friction force over the roll angle."""
     path = Path(mesh)
     ratio, share = path.life("film_ratio"), path.life("film_load_share")
     low, high = min(_SHOWN[0], 0.8 * np.nanmin(ratio)), max(_SHOWN[1], 1.2 * np.nanmax(ratio))

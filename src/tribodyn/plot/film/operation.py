@@ -82,17 +82,7 @@ def _no_map(found: FilmOverOperation) -> str:
     missing=_no_map,
 )
 def lubrication_map(found: FilmOverOperation) -> Any:
-    """Draw the lubrication regime over speed and torque.
-
-    Parameters
-    ----------
-    found : FilmOverOperation
-        What :func:`tribodyn.film_over_operation` returns, for several torques and speeds.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the lubrication regime over speed and torque."""
     ratio = np.nanmin(np.asarray(found.film_ratio), axis=2)
     turn, pull = display_unit("pinion_speed"), display_unit("torque")
     low, high = REGIME_LIMITS

@@ -58,17 +58,7 @@ def _panel(blank: HypoidBlank, gear: str, color: str) -> Row:
     made_by="tribodyn.gear.hypoid_blank makes one.",
 )
 def hypoid_blank(blank: HypoidBlank) -> Any:
-    """Draw the sections of both blanks.
-
-    Parameters
-    ----------
-    blank : HypoidBlank
-        Both blanks.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the sections of both blanks."""
     rows = [_panel(blank, "pinion", PINION), _panel(blank, "wheel", WHEEL)]
     rows[1].axis["scaleanchor"] = "y2"
     title = (

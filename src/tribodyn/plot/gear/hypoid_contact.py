@@ -105,17 +105,7 @@ def _error(contact: ToothContact) -> Panel:
     made_by="tribodyn.gear.tooth_contact makes one.",
 )
 def hypoid_contact(contact: ToothContact) -> Any:
-    """Draw contact pattern, path of contact and transmission error.
-
-    Parameters
-    ----------
-    contact : ToothContact
-        The contact.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw contact pattern, path of contact and transmission error."""
     flank = [_outline(contact), _lines(contact), _pattern(contact), *_path(contact)]
     rows = [
         Row(

@@ -127,17 +127,7 @@ def _scene(eye: tuple[float, float, float], **axes: str) -> dict[str, Any]:
     made_by=_MADE_BY,
 )
 def hypoid_pair(flanks: HypoidFlanks) -> Any:
-    """Draw both gears in mesh.
-
-    Parameters
-    ----------
-    flanks : HypoidFlanks
-        One side of the pair; the other is made with the same ease-off.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw both gears in mesh."""
     order = (flanks.side, "coast" if flanks.side == "drive" else "drive")
     with quiet():
         sides = [
@@ -168,17 +158,7 @@ def hypoid_pair(flanks: HypoidFlanks) -> Any:
     made_by=_MADE_BY,
 )
 def ease_off(flanks: HypoidFlanks) -> Any:
-    """Draw the ease-off over the flank.
-
-    Parameters
-    ----------
-    flanks : HypoidFlanks
-        One side of the pair.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the ease-off over the flank."""
     x = np.broadcast_to(flanks.along[:, None], flanks.across.shape) * 1e3
     y, gap = flanks.across * 1e3, flanks.gap * 1e6
     colors = [[0.0, "#f2f6fa"], [1.0, PINION]]

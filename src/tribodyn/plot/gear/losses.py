@@ -134,17 +134,7 @@ def _bars(found: GearboxLosses) -> Any:
     made_by="Call tribodyn.loss_map(case) and its plot method.",
 )
 def losses(found: GearboxLosses) -> Any:
-    """Draw the efficiency over torque and speed, and the parts of the loss.
-
-    Parameters
-    ----------
-    found : GearboxLosses
-        What :func:`tribodyn.loss_map` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the efficiency over torque and speed, and the parts of the loss."""
     if found.total.size == 1:
         return _bars(found)
     counted = [words for part, words in PARTS.items() if np.any(getattr(found, part))]
@@ -174,17 +164,7 @@ _SINKS = (
     made_by="Call tribodyn.rig_power_flow(case) and its plot method.",
 )
 def power_flow(found: RigPowerFlow) -> Any:
-    """Draw where the power of the motor goes, as bands as wide as it.
-
-    Parameters
-    ----------
-    found : RigPowerFlow
-        What :func:`tribodyn.rig_power_flow` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw where the power of the motor goes, as bands as wide as it."""
     place = {part: number for number, part in enumerate(found.part)}
     lost = np.array(
         [found.loss[:, [place[part] for part in parts]].sum(axis=1) for _, parts, _ in _SINKS]
@@ -248,17 +228,7 @@ def _pale(color: str) -> str:
     made_by="Call tribodyn.losses.friction_from_power_loss(table) and its plot method.",
 )
 def friction_from_loss(found: FrictionFromLoss) -> Any:
-    """Draw friction coefficients with their bands over the torque, one curve for each speed.
-
-    Parameters
-    ----------
-    found : FrictionFromLoss
-        What :func:`tribodyn.losses.friction_from_power_loss` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw friction coefficients with their bands over the torque, one curve for each speed."""
     turns = np.round(displayed("speed", found.speed), 1)
     torque, traces = displayed("torque", found.torque), []
     sound = np.array([verdict == "sound" for verdict in found.verdict])

@@ -19,7 +19,8 @@ from tribodyn.gear import Material, gear_outline
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
-    from tribodyn.gear import SpurGear, SpurPair
+    from tribodyn.gear import SpurGear
+    from tribodyn.gear.mesh_geometry import MeshGeometry
     from tribodyn.stiffness import LoadedContact
 
 #: Array of each tooth: enough for a smooth trochoid on the screen.
@@ -28,7 +29,7 @@ _TOOTH_POINTS = 60
 _LOADED, _TEETH = 1e-3, 2
 
 
-def on_line_of_action(pair: SpurPair, path: Any) -> Array:
+def on_line_of_action(pair: MeshGeometry, path: Any) -> Array:
     """Place positions on the line of action in the plane."""
     angle, radius = pair.operating_pressure_angle, pair.pinion.base_radius
     along = np.asarray(path, dtype=float)
@@ -37,7 +38,7 @@ def on_line_of_action(pair: SpurPair, path: Any) -> Array:
     return np.array([x, y])
 
 
-def tooth_angles(pair: SpurPair, path: float) -> tuple[float, float]:
+def tooth_angles(pair: MeshGeometry, path: float) -> tuple[float, float]:
     """Directions of the two teeth that touch at a position."""
     x, y = on_line_of_action(pair, path)
     places = ((pair.pinion, x, y), (pair.wheel, x - pair.center_distance, y))
@@ -105,12 +106,15 @@ def loads_at(contact: LoadedContact, phase: int, torque: int = 0) -> list[Load]:
 
 
 def _bent(
-    pair: SpurPair, name: str, angle: float, given: list[tuple[int, float, float]], reference: str
+    gear: SpurGear,
+    center: float,
+    angle: float,
+    given: list[tuple[int, float, float]],
+    reference: str,
 ) -> tuple[ComplexArray, ComplexArray]:
     """Outline and displacement of one gear, whose tooth 0 points into a direction."""
     from tribodyn.stiffness.fe2d import deformed_gear
 
-    gear = getattr(pair, name)
     # Models of the literature that know no reference are drawn as held at the bore.
     held = "rim" if reference == "rim" or gear.bore_diameter == 0.0 else "bore"
     middle = gear.base_radius * gear.roll_angle(0.5 * (gear.form_radius + gear.tip_radius))
@@ -120,15 +124,12 @@ def _bent(
     outline, moved = deformed_gear(gear, Material(), [*given, *rest], reference=held)
     # There the right flank is loaded, here the left one.
     turn = cmath.exp(1j * (angle - 0.5 * math.pi))
-    center = 0.0 if name == "pinion" else pair.center_distance
     return center + turn * (-outline[0] + 1j * outline[1]), turn * (-moved[0] + 1j * moved[1])
 
 
-def _touched(pair: SpurPair, name: str, angle: float, tooth: int, radius: float) -> complex:
+def _touched(gear: SpurGear, center: float, angle: float, tooth: int, radius: float) -> complex:
     """Place on the loaded flank of one gear with a radius of curvature."""
-    gear = getattr(pair, name)
     distance = min(math.hypot(gear.base_radius, radius), gear.tip_radius)
-    center = 0.0 if name == "pinion" else pair.center_distance
     direction = angle + 2.0 * math.pi * tooth / gear.teeth
     return center + cmath.rect(distance, direction + float(gear.half_tooth_angle(distance)))
 
@@ -140,7 +141,7 @@ def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
     middle = 0.5 * (path.A + path.E)
     anchor = float(contact.path[phase, np.argmin(np.abs(contact.path[phase] - middle))])
     steps = [round((load.path - anchor) / pair.base_pitch) for load in loads]
-    width = pair.common_face_width
+    width, centers = pair.common_face_width, {"pinion": 0.0, "wheel": pair.center_distance}
     outline, moved, angles = (
         {},
         {},
@@ -155,15 +156,16 @@ def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
             (sense * step, radius, load.force / width)
             for step, radius, load in zip(steps, radii, loads, strict=True)
         ]
-        outline[name], moved[name] = _bent(pair, name, angles[name], given, contact.reference)
-        places[name] = [_touched(pair, name, angles[name], *each[:2]) for each in given]
+        placed = getattr(pair, name), centers[name], angles[name]
+        outline[name], moved[name] = _bent(*placed, given, contact.reference)
+        places[name] = [_touched(*placed, *each[:2]) for each in given]
         nearest = [int(np.argmin(np.abs(outline[name] - place))) for place in places[name]]
         shifts[name] = [complex(moved[name][at]) for at in nearest]
     normal = cmath.rect(1.0, 0.5 * math.pi - pair.operating_pressure_angle)
     forces = np.array([load.force for load in loads])
     apart = (np.array(shifts["wheel"]) - np.array(shifts["pinion"])) * normal.conjugate()
     turn = float(np.average(apart.real, weights=forces)) / pair.driving.base_radius
-    driver, center = pair.driver, 0.0 if pair.driver == "pinion" else pair.center_distance
-    moved[driver] = moved[driver] + 1j * turn * (outline[driver] - center)
+    driver = pair.driver
+    moved[driver] = moved[driver] + 1j * turn * (outline[driver] - centers[driver])
     driven = "wheel" if driver == "pinion" else "pinion"
     return BentMesh(outline, moved, np.array(places[driven]), np.array(shifts[driven]), loads)

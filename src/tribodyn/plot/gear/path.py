@@ -13,7 +13,7 @@ from tribodyn.plot.look.style import MUTED, Trace
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.gear import SpurPair
+    from tribodyn.mesh.gears import Gears
 
 #: Part of the way that a shade takes at least to be named.
 _NAMED_SHADE = 0.03
@@ -22,7 +22,7 @@ _SHADE = "rgba(107, 119, 133, 0.13)"
 _WORDS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
 
 
-def roll_angle_of(pair: SpurPair, age: Any) -> Array:
+def roll_angle_of(pair: Gears, age: Any) -> Array:
     """Roll angle of the driving gear at an age of a tooth pair."""
     contact = path_of_contact(pair)
     first = contact.A if pair.driver == "pinion" else pair.line_of_action_length - contact.A
@@ -30,12 +30,12 @@ def roll_angle_of(pair: SpurPair, age: Any) -> Array:
     return np.asarray(radius / pair.driving.base_radius)
 
 
-def roll_label(pair: SpurPair) -> str:
+def roll_label(pair: Gears) -> str:
     """Label of an axis of roll angles."""
     return axis_label("roll_angle", f"Roll angle of the driving gear ({pair.driver})")
 
 
-def pair_letters(pair: SpurPair) -> list[tuple[str, float]]:
+def pair_letters(pair: Gears) -> list[tuple[str, float]]:
     """Positions A to E and further changes of sharing, as roll angles in the display unit."""
     contact = path_of_contact(pair)
     ratio = contact.contact_ratio
@@ -50,7 +50,7 @@ def pair_letters(pair: SpurPair) -> list[tuple[str, float]]:
     ]
 
 
-def mesh_marks(pair: SpurPair, repeats: int) -> list[tuple[str, float]]:
+def mesh_marks(pair: Gears, repeats: int) -> list[tuple[str, float]]:
     """Mesh phases at which a tooth pair reaches A, leaves at E or passes the pitch point."""
     contact = path_of_contact(pair)
     pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
@@ -61,7 +61,7 @@ def mesh_marks(pair: SpurPair, repeats: int) -> list[tuple[str, float]]:
     return [*placed, ("A", float(repeats))]
 
 
-def corner_shades(pair: SpurPair, first: float, last: float) -> dict[str, list[Trace]]:
+def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trace]]:
     """Shade and name the places before A and after E, where a tip corner bears."""
     shapes, notes = [], []
     for start, stop in ((first, 0.0), (pair.transverse_contact_ratio, last)):

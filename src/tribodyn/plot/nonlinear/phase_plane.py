@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.plot.look.labels import scaled, unit_of
 from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import (
@@ -156,7 +156,7 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
     names = tuple(section.names)
     if isinstance(coordinate, str) and coordinate not in names:
         what, remedy = f'no coordinate is called "{coordinate}"', f"Choose from: {', '.join(names)}"
-        raise InputError(Problem(what, "argument coordinate", "", remedy))
+        raise InputError(what, "argument coordinate", "", remedy)
     column = names.index(coordinate) if isinstance(coordinate, str) else coordinate
     name, place, speed = names[column], section.position[:, column], section.velocity[:, column]
     x_factor, x_unit = scaled(place, unit_of(name))

@@ -28,18 +28,7 @@ _DASHES = ("solid", "dash", "dot", "dashdot")
     made_by="Call tribodyn.measurement.read(path) and its plot method.",
 )
 def recording(recording: Recording) -> Any:
-    """Draw the channels over time, one panel each.
-
-    Parameters
-    ----------
-    recording : Recording
-        What :func:`tribodyn.measurement.read` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-        With at most eight channels.
-    """
+    """Draw the channels over time, one panel each, at most eight."""
     names = list(recording.channels)
     panels = []
     for name in names[:_PANELS]:
@@ -74,17 +63,7 @@ def _outline(time: Array, values: Array) -> tuple[Array, Array]:
     made_by="Call tribodyn.measurement.order_spectrum(...) and its plot method.",
 )
 def order_spectrum(spectrum: OrderSpectrum) -> Any:
-    """Draw the amplitudes over the orders of a shaft.
-
-    Parameters
-    ----------
-    spectrum : OrderSpectrum
-        What :func:`tribodyn.measurement.order_spectrum` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the amplitudes over the orders of a shaft."""
     top = 1 + int(np.argmax(spectrum.amplitudes[1:]))
     order, size = spectrum.orders[1:], spectrum.amplitudes[1:]
     if size.size > 2 * _POINTS:
@@ -110,17 +89,7 @@ def order_spectrum(spectrum: OrderSpectrum) -> Any:
     made_by="Call tribodyn.measurement.track_orders(...) and its plot method.",
 )
 def tracked_orders(tracked: TrackedOrders) -> Any:
-    """Draw the amplitudes of the followed orders, and the speed of the shaft, over time.
-
-    Parameters
-    ----------
-    tracked : TrackedOrders
-        What :func:`tribodyn.measurement.track_orders` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the amplitudes of the followed orders, and the speed of the shaft, over time."""
     curves: list[Trace] = []
     for number, (order, size) in enumerate(zip(tracked.order, tracked.amplitude, strict=True)):
         time, values = _outline(tracked.time, size)
@@ -151,17 +120,7 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
     made_by="Call tribodyn.measurement.compare(result, recording, channels) and its plot method.",
 )
 def comparison(comparison: Comparison) -> Any:
-    """Draw the measured spectra with the computed mesh harmonics on them.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        What :func:`tribodyn.measurement.compare` returns.
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-    """
+    """Draw the measured spectra with the computed mesh harmonics on them."""
     panels, ends = [], []
     for name, lines in comparison.lines.items():
         unit = str(comparison.unit[comparison.channel == name][0])

@@ -160,8 +160,8 @@ def _amount(meaning: str, low: float = 0.0) -> Any:
 
 
 def _shift(meaning: str, most: float = 2e-3, unit: str = "m", shown: str = "mm") -> Any:
-    return number(0.0, -most, most, "the gap is taken to first order", unit=unit,
-                  display_unit=shown, example=f'"0.1 {shown}"', meaning=meaning)  # fmt: skip
+    of = {"unit": unit, "display_unit": shown, "example": f'"0.1 {shown}"', "meaning": meaning}
+    return number(0.0, -most, most, "the gap is taken to first order", **of)
 
 
 class EaseOffData(Section):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribodyn import units
-from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.errors import Argument, InputError
 from tribodyn.stored import plain_number, read_bytes
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _FORM = (
 
 def _fault(path: str, line: int, what: str, why: str, remedy: str) -> InputError:
     place = f"{Path(path).name}, line {line}" if line else Path(path).name
-    return InputError(Problem(f"{what} ({place})", Argument("profile_map"), why, remedy))
+    return InputError(f"{what} ({place})", Argument("profile_map"), why, remedy)
 
 
 def read_profile_map(path: str, interpolation: str) -> ProfileMap:

@@ -157,16 +157,14 @@ def read_text(path: Path) -> str:
         line = error.object.count(b"\n", 0, error.start) + 1
         what = f"byte 0x{error.object[error.start]:02x} is not UTF-8"
         why = "A case file is text in UTF-8"
-        raise InputError(Problem(what, f"{path}:{line}", why, "Save it as UTF-8")) from None
+        raise InputError(what, f"{path}:{line}", why, "Save it as UTF-8") from None
     except OSError as error:
         reason = error.strerror or str(error)
         raise InputError(
-            Problem(
-                f"the file cannot be read: {reason}",
-                str(path),
-                why="A case is a text file in UTF-8",
-                remedy="Give the path of a case file",
-            )
+            f"the file cannot be read: {reason}",
+            str(path),
+            why="A case is a text file in UTF-8",
+            remedy="Give the path of a case file",
         ) from None
 
 
@@ -198,9 +196,7 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
     if not data:
         remedy = "Write a case to start from: tribodyn new my.toml"
         raise InputError(
-            Problem(
-                "the file holds no values", name, "A case gives gears, speed and torque", remedy
-            )
+            "the file holds no values", name, "A case gives gears, speed and torque", remedy
         )
     _place_files(data, Path(name).parent)
     return Case(Source(name or "case", partial(key_lines, text)), **data)

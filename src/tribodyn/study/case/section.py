@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from inspect import Parameter, Signature
 from typing import Any, ClassVar, NamedTuple
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.model import Model, Models, Option
 
 
@@ -80,7 +80,7 @@ class Section:
             return
         what = f"{name} cannot be set: a case does not change"
         remedy = 'Make a changed one: case = case.replace({"operation.torque": "120 N*m"})'
-        raise InputError(Problem(what, name, "", remedy))
+        raise InputError(what, name, "", remedy)
 
     def __eq__(self, other: object) -> bool:
         """Tables are equal when all their values are."""

@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import tribodyn
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.model import Model
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys
@@ -156,5 +156,5 @@ def cite(case: Case, style: str = "text") -> str:
     if style == "text":
         return "\n".join(_text(entry) for entry in found.values())
     raise InputError(
-        Problem(f'style = "{style}"', "argument style", f"Known: {', '.join(STYLES)}", "Choose one")
+        f'style = "{style}"', "argument style", f"Known: {', '.join(STYLES)}", "Choose one"
     )

@@ -81,17 +81,7 @@ class Computed(Record):
         return 0.5 * self.case.backlash
 
     def static_error(self, phase: Array | float) -> Array:
-        """Transmission error without load: prescribed, or a column of the mesh table.
-
-        Parameters
-        ----------
-        phase : float or array
-            Mesh phase.
-
-        Returns
-        -------
-        array [m]
-        """
+        """Transmission error without load: prescribed, or a column of the mesh table."""
         own, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
         return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 

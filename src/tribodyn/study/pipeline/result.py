@@ -16,6 +16,9 @@ from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.computed import Computed
 from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.pipeline.series import parts_of, stored, to_csv
+from tribodyn.study.pipeline.summary import SUMMARY, by_topic, summarize
+from tribodyn.study.pipeline.words import in_words
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes
@@ -58,8 +61,6 @@ class Result(Computed):
 
     @cached_property
     def _summary(self) -> dict[str, float]:
-        from tribodyn.study.pipeline.summary import summarize
-
         return summarize(self)
 
     def summary(self) -> dict[str, float]:
@@ -109,8 +110,6 @@ class Result(Computed):
 
     def _parts(self) -> Parts:
         """Parts of the motion, ramps of a force law as one contact, and the summary."""
-        from tribodyn.study.pipeline.series import parts_of
-
         return parts_of(self, self._summary)
 
     def to_csv(self) -> str:
@@ -121,8 +120,6 @@ class Result(Computed):
         str
             One line for each step; units are in brackets in the first line.
         """
-        from tribodyn.study.pipeline.series import stored, to_csv
-
         return to_csv(stored(self.to_xarray(), self.response))
 
     def cite(self, style: str = "text") -> str:
@@ -159,11 +156,6 @@ class Result(Computed):
         csv : bool
             Write the motion as ``response.csv`` as well.
 
-        Returns
-        -------
-        Path
-            The directory.
-
         Raises
         ------
         OutputExistsError
@@ -171,8 +163,6 @@ class Result(Computed):
         InputError
             If the place cannot be written to.
         """
-        from tribodyn.study.pipeline.series import stored
-
         target = Path(directory)
         with new_directory(target, force=force) as place:
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
@@ -186,9 +176,6 @@ class Result(Computed):
 
     def _repr_html_(self) -> str:
         """Table of the summary by topic for notebooks."""
-        from tribodyn.study.pipeline.summary import SUMMARY, by_topic
-        from tribodyn.study.pipeline.words import in_words
-
         rows = [
             (topic, in_words(name), SUMMARY[name].show(self._summary[name]), SUMMARY[name].meaning)
             for topic, names in by_topic(self._summary).items()

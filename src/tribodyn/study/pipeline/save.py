@@ -46,28 +46,24 @@ def check_target(
         raise InputError(cannot_write(target, error)) from None
     if parent.exists() and not parent.is_dir():
         raise InputError(
-            Problem("this is a file, not a directory", str(target.parent), "", "Choose another")
+            "this is a file, not a directory", str(target.parent), "", "Choose another"
         )
     if not parent.is_dir():
-        raise InputError(
-            Problem("there is no such directory", str(target.parent), "", "Create it first")
-        )
+        raise InputError("there is no such directory", str(target.parent), "", "Create it first")
     if not os.access(parent, os.W_OK):
-        raise InputError(
-            Problem("no permission to write", str(target.parent), "", "Choose another place")
-        )
+        raise InputError("no permission to write", str(target.parent), "", "Choose another place")
     if not (target.exists() or target.is_symlink()):
         return
     if target.is_file():
         remedy = "Choose another name, or move the file away"
-        raise OutputExistsError(Problem("a file is in the way", str(target), "", remedy))
+        raise OutputExistsError("a file is in the way", str(target), "", remedy)
     strange = _strangers(target)
     if strange:
         why = f"It is no result of tribodyn: it {strange}"
         problem = Problem("this exists already", str(target), why, "Choose another name")
         raise OutputExistsError(problem)
     if not force:
-        raise OutputExistsError(Problem("this exists already", str(target), "", remedy))
+        raise OutputExistsError("this exists already", str(target), "", remedy)
 
 
 def _strangers(target: Path) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import section_at
 from tribodyn.study.case.sections import Operation
@@ -73,7 +73,7 @@ def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple
         remedy = 'Take a number such as "operation.speed", or list the values for a sweep'
         if by == "sweep":
             remedy = f'List the values that it shall take, as in "{key}=A,B,C"'
-        raise InputError(Problem(what, _place(by), why, remedy))
+        raise InputError(what, _place(by), why, remedy)
     return tuple(float(value) for value in found)
 
 
@@ -82,16 +82,14 @@ def member_value(case: Case, key: str, value: Any, by: str) -> Any:
     spec = spec_of(case, key)
     if spec is None and section_at(tuple(key.split("."))) is not None:
         remedy = f"Name one of its keys, such as {key}.{_first_key(case, key)}"
-        raise InputError(Problem(f"{key} is a table", _place(by), "", remedy))
+        raise InputError(f"{key} is a table", _place(by), "", remedy)
     if spec is None:
         case.replace({key: value}, by=by or "over")  # tells which keys there are
         raise InputError(
-            Problem(
-                f'there is no key "{key}"',
-                _place(by),
-                why="Axes of a study are keys of the case",
-                remedy="Choose a key that tribodyn explain lists",
-            )
+            f'there is no key "{key}"',
+            _place(by),
+            why="Axes of a study are keys of the case",
+            remedy="Choose a key that tribodyn explain lists",
         )
     try:
         return read_value(spec, key.rpartition(".")[2], value if by else Plain(value))
@@ -100,7 +98,7 @@ def member_value(case: Case, key: str, value: Any, by: str) -> Any:
         where, remedy = f"{by} {key}".strip(), told.remedy
         if by and spec.unit and isinstance(value, int | float):
             remedy = f"Write the unit behind the last number. {_example(by)}"
-        raise InputError(Problem(told.what, where, told.why, remedy)) from None
+        raise InputError(told.what, where, told.why, remedy) from None
 
 
 def _example(by: str) -> str:
@@ -120,7 +118,7 @@ def _first_key(case: Case, key: str) -> str:
 def read_axes(case: Case, over: Mapping[str, Any], *, by: str = "") -> tuple[Axis, ...]:
     """Read the keys that vary."""
     if not over:
-        raise InputError(Problem("nothing varies", "argument over", "", _EXAMPLE))
+        raise InputError("nothing varies", "argument over", "", _EXAMPLE)
     axes = tuple(read_axis(case, key, values, by) for key, values in over.items())
     _check_number(math.prod(len(axis.values) for axis in axes), by)
     return axes
@@ -129,7 +127,7 @@ def read_axes(case: Case, over: Mapping[str, Any], *, by: str = "") -> tuple[Axi
 def _check_number(points: int, by: str) -> None:
     if points > _MOST:
         why = f"Each is a computation by itself; at most {_MOST} are taken in one go"
-        raise InputError(Problem(f"{points} values", _place(by), why, "Take fewer points"))
+        raise InputError(f"{points} values", _place(by), why, "Take fewer points")
 
 
 def read_axis(case: Case, key: str, given: Any, by: str) -> Axis:
@@ -140,11 +138,11 @@ def read_axis(case: Case, key: str, given: Any, by: str) -> Axis:
         values = tuple(member_value(case, key, value, by) for value in given)
     else:
         why = "It is (first, last, points), a tuple, or a list of values"
-        raise InputError(Problem(f"{key} = {given!r}", _place(by), why, _example(by)))
+        raise InputError(f"{key} = {given!r}", _place(by), why, _example(by))
     if len(values) < 2:
         what = f"{key} has {len(values)} value{'s' if not values else ''}"
         remedy = "Give more values, or change the one in the case itself"
-        raise InputError(Problem(what, _place(by), "A sweep needs at least two", remedy))
+        raise InputError(what, _place(by), "A sweep needs at least two", remedy)
     spec = spec_of(case, key)
     unit, shown = (spec.unit, spec.display_unit) if spec else ("", "")
     return Axis(key, values, unit, shown)
@@ -155,13 +153,13 @@ def _range(case: Case, key: str, given: tuple[Any, ...], by: str) -> tuple[float
     if isinstance(points, bool) or int(points) != points or points < 2:
         why = "A range has at least two points, both ends included"
         what = f"{key} has {points} point{'s' if points != 1 else ''}"
-        raise InputError(Problem(what, _place(by), why, _example(by)))
+        raise InputError(what, _place(by), why, _example(by))
     _check_number(int(points), by)
     low, high = ends_of(case, key, (first, last), by=by)
     if not low < high:
         why, remedy = "A range goes from the smaller value to the larger", "Exchange the two ends"
         what = f"{key} goes from {first} to {last}"
-        raise InputError(Problem(what, _place(by), why, remedy))
+        raise InputError(what, _place(by), why, remedy)
     return tuple(np.linspace(low, high, int(points)).tolist())
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, collected
+from tribodyn.errors import InputError, collected
 from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
@@ -137,12 +137,10 @@ def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int,
     """Values of the key in SI; the two ends are checked like the key of the case."""
     if between is None or len(between) != 2 or int(points) != points or points < 2:
         raise InputError(
-            Problem(
-                f"between = {between}, points = {points}",
-                "argument between",
-                "A diagram goes from one value to another in at least two points",
-                'Write, for example, between=("400 rpm", "3500 rpm")',
-            )
+            f"between = {between}, points = {points}",
+            "argument between",
+            "A diagram goes from one value to another in at least two points",
+            'Write, for example, between=("400 rpm", "3500 rpm")',
         )
     first, last = ends_of(case, over, between, by=by)
     return np.linspace(first, last, int(points))

@@ -127,15 +127,9 @@ class FrictionExperiment(Sweep):
         return judged(self)
 
     def claim_rows(self) -> Iterator[tuple[str, ...]]:
-        """Table of the claims under ``CLAIM_HEAD``.
-
-        Yields
-        ------
-        tuple of str
-        """
-        for each in self.claims:
-            yield (each.case, each.statement, each.printed, each.computed, each.verdict,
-                   each.where, each.why)  # fmt: skip
+        """Table of the claims under ``CLAIM_HEAD``."""
+        names = ("case", "statement", "printed", "computed", "verdict", "where", "why")
+        yield from (tuple(getattr(each, name) for name in names) for each in self.claims)
 
     def nearest(self) -> list[int]:
         """Places of each law with friction, at the roughness nearest to that of the case."""
@@ -148,12 +142,7 @@ class FrictionExperiment(Sweep):
         return [k for law, k in chosen.items() if law != NONE]
 
     def effect_rows(self) -> Iterator[tuple[str, ...]]:
-        """Table under ``EFFECT_HEAD``: figures by law, driver and held torque as in the case.
-
-        Yields
-        ------
-        tuple of str
-        """
+        """Table under ``EFFECT_HEAD``: figures by law, driver and held torque as in the case."""
         row, column = (
             axis.values.index(value)
             for axis, value in zip(
@@ -175,58 +164,18 @@ class FrictionExperiment(Sweep):
         return f"{len(self.points)} of {self.failed.size} steady states{lost}"
 
     def plot(self, figure: str = "friction_effect", **options: Any) -> Any:
-        """Draw the experiment.
-
-        Parameters
-        ----------
-        figure : str
-            ``"friction_effect"``, ``"friction_claims"`` or ``"friction_harmonics"``.
-        **options
-            None are known.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-        """
+        """Draw ``"friction_effect"``, ``"friction_claims"`` or ``"friction_harmonics"``."""
         return draw(self, figure, **options)
 
     def change(self, figure: str) -> Array:
-        """Relative change of a figure by friction, over the grid.
-
-        Parameters
-        ----------
-        figure : str
-            Name in the summary.
-
-        Returns
-        -------
-        array (2, 3, frictions)
-            Over the same pair without friction, less 1.
-        """
+        """Relative change of a figure of the summary by friction, over the grid."""
         values = self[figure]
         plain = values[:, :, self.index(NONE)]
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(values / plain[:, :, None] - 1.0)
 
     def index(self, law: str, **wanted: Any) -> int:
-        """Place of a friction: the first of a law with given properties.
-
-        Parameters
-        ----------
-        law : str
-            Friction law.
-        **wanted : object
-            Properties of :class:`Rubbing`.
-
-        Returns
-        -------
-        int
-
-        Raises
-        ------
-        InputError
-            If it was not computed.
-        """
+        """Place of the first friction of a law with given properties of :class:`Rubbing`."""
         for place, one in enumerate(self.rubbing):
             if one.law == law and all(getattr(one, k) == v for k, v in wanted.items()):
                 return place

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, collected
+from tribodyn.errors import InputError, collected
 from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import mesh_law_of, placed
@@ -143,7 +143,7 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
     if case.gears.kind != "spur":
         remedy = "Take a case of spur gears"
         what, why = f'gears.kind = "{case.gears.kind}"', "The experiment solves films of spur gears"
-        raise InputError(Problem(what, "argument case", why, remedy))
+        raise InputError(what, "argument case", why, remedy)
     changes: dict[str, Any] = {}
     solved = FILM_MODELS[case.film.model].method
     if any(KNOWN[name].needs_film for name in laws) and not solved:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, collected
+from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import effective
@@ -82,12 +82,10 @@ def run_up(
     count = int(tables)
     if count != tables or count < 1:
         raise InputError(
-            Problem(
-                f"tables = {tables}",
-                "argument tables",
-                "A whole number >= 1",
-                remedy="Give 1 or more",
-            )
+            f"tables = {tables}",
+            "argument tables",
+            "A whole number >= 1",
+            remedy="Give 1 or more",
         )
     speeds = np.geomspace(low, high, count) if count > 1 else np.array([np.sqrt(low * high)])
     with placed(case), collected():
@@ -119,23 +117,19 @@ def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
     """Both speeds in SI, checked like the key of the case."""
     if between is None or len(between) != 2:
         raise InputError(
-            Problem(
-                f"between = {between}",
-                "argument between",
-                "A run-up goes from one speed to another",
-                'Write, for example, between=("400 rpm", "3500 rpm")',
-            )
+            f"between = {between}",
+            "argument between",
+            "A run-up goes from one speed to another",
+            'Write, for example, between=("400 rpm", "3500 rpm")',
         )
     found = [effective(case.replace({_SPEED: end})).get(_SPEED) for end in between]
     low, high = cast("float", found[0]), cast("float", found[1])
     if not low < high:
         raise InputError(
-            Problem(
-                f"between = {between}",
-                "argument between",
-                "The first speed is the lowest",
-                "Turn them round; down=True adds the way back",
-            )
+            f"between = {between}",
+            "argument between",
+            "The first speed is the lowest",
+            "Turn them round; down=True adds the way back",
         )
     return low, high
 
@@ -185,11 +179,8 @@ def speed_sweep(
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
     points : int
         Speeds, evenly spaced, the ends included.
-    tables : int
-        Speeds, evenly spaced in the logarithm, at which the tooth contact is computed; film and
-        friction follow the speed between them in straight lines.
-    progress : Progress
-        Told how far the study has come; silent by default.
+    tables, progress
+        As :func:`run_up` takes them.
     **options : object
         ``directions``, ``steps``, ``periods``, ``patience`` and ``tolerance`` of
         :func:`tribodyn.dynamics.speed_sweep`.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, shortened
+from tribodyn.errors import Argument, InputError, shortened
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import TipReliefOptimum
@@ -238,13 +238,8 @@ def film_over_operation(
     ----------
     case : Case
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
-    torque : float, str or list, optional
-        Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
-        That of the case where absent.
-    speed : float, str or list, optional
-        Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
-    progress : Progress
-        Told how many films are solved; silent by default.
+    torque, speed, progress
+        As :func:`comprehensive_stiffness` takes them.
 
     Returns
     -------
@@ -270,7 +265,7 @@ def film_over_operation(
 
     if case.film.model == "none":
         remedy = 'Choose one: case.replace({"film.model": "newton"})'
-        raise InputError(Problem('film.model = "none"', "argument case", "No film", remedy))
+        raise InputError('film.model = "none"', "argument case", "No film", remedy)
     pair = case.gear_pair
     with placed(case):
         return compute(

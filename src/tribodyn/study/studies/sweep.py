@@ -8,7 +8,7 @@ from contextlib import nullcontext
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import ComputationError, InputError, Problem, quiet
+from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.members import Members
 from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.progress import SILENT, Progress
@@ -144,11 +144,11 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
     if isinstance(over, str):
         if between is None or len(between) != 2:
             remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
-            raise InputError(Problem(f"between = {between}", "argument between", "", remedy))
+            raise InputError(f"between = {between}", "argument between", "", remedy)
         return {over: (*between, points)}
     if between is not None:
         why = "Several keys have their ends in over"
-        raise InputError(Problem(f"between = {between}", "argument between", why, "Remove it"))
+        raise InputError(f"between = {between}", "argument between", why, "Remove it")
     return over
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.drawing import draw, write_report_of
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.stored import write_dataset
 from tribodyn.study.pipeline.save import new_directory
@@ -104,11 +104,9 @@ class Sweep(Record):
             near = difflib.get_close_matches(name, self.figures, n=1)
             remedy = f'Did you mean "{near[0]}"?' if near else f"It has: {', '.join(self.figures)}"
             raise InputError(
-                Problem(
-                    f'there is no figure "{name}" in this sweep',
-                    remedy=remedy,
-                    why="A sweep shows the figures that its points have",
-                )
+                f'there is no figure "{name}" in this sweep',
+                remedy=remedy,
+                why="A sweep shows the figures that its points have",
             )
         values = np.full(prod(self.shape), np.nan)
         values[: len(self.points)] = [p.figures.get(name, np.nan) for p in self.points]
@@ -279,15 +277,8 @@ class Sweep(Record):
 
         Parameters
         ----------
-        directory : str or path
-            Directory to make.
-        force : bool
-            Replace an earlier result there.
-
-        Returns
-        -------
-        Path
-            The directory.
+        directory, force
+            As :meth:`tribodyn.Result.save` takes them.
 
         Raises
         ------

@@ -6,15 +6,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics._engine.blocks import marching_on
 from tribodyn.dynamics.equations.motion import Forces, Scales, forces, with_middles
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
-from tribodyn.errors import ComputationError, Problem, warn
+from tribodyn.errors import ComputationError, warn
 from tribodyn.mesh import MeshTable
 from tribodyn.nonlinear.attractors import settle
 from tribodyn.nonlinear.survey import Outcomes, Points
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.pipeline.motion import engine_arguments
 from tribodyn.study.pipeline.series import centre_column
 from tribodyn.study.uncertain.lanes import Lanes
 from tribodyn.types import Array, Index
@@ -45,6 +47,11 @@ class Cycles(NamedTuple):
 
 def steady_cycles(lanes: Lanes, places: int, progress: Progress = SILENT) -> Cycles:
     """March every lane until it repeats, and take one mesh cycle of it."""
+    with marching_on(engine_arguments(lanes.members[0].case).get("backend")):
+        return _steady_cycles(lanes, places, progress)
+
+
+def _steady_cycles(lanes: Lanes, places: int, progress: Progress) -> Cycles:
     systems = [member.system for member in lanes.members]
     points = Points(systems, lanes.mesh_frequency, lanes.steps, lanes.factors)
     outcomes = Outcomes(lanes.count, 1, points.size)
@@ -60,7 +67,7 @@ def steady_cycles(lanes: Lanes, places: int, progress: Progress = SILENT) -> Cyc
         settle(motions, np.arange(group.size), _TRANSIENT, tolerance=_TOLERANCE, width=_WIDTH)
         if lost := int(np.sum(~np.all(np.isfinite(motions.state), axis=1))):
             what = f"{lost} of {lanes.count} variants grew beyond all bounds"
-            raise ComputationError(Problem(what, "", "", "Narrow the inputs, or add damping"))
+            raise ComputationError(what, "", "", "Narrow the inputs, or add damping")
         restless += int(np.sum(motions.period != 1))
         for begin in range(0, group.size, _HELD):
             part = np.arange(begin, min(begin + _HELD, group.size))
@@ -83,7 +90,7 @@ def steady_cycles(lanes: Lanes, places: int, progress: Progress = SILENT) -> Cyc
             "ensemble-period",
             f"{restless} of {lanes.count} variants do not repeat after one "
             "mesh cycle; one cycle of their motion was taken.",
-            stacklevel=3,
+            stacklevel=4,
         )
     return Cycles(phase, signals, figures)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, OutputExistsError, Problem
+from tribodyn.errors import Argument, InputError, OutputExistsError
 from tribodyn.files import whole
 from tribodyn.record import Parts, Record, fact, record
 from tribodyn.stored import read_dataset
@@ -47,7 +47,7 @@ class DataSet(Record):
         """Return one column."""
         if name not in self.columns:
             remedy = f"It has {', '.join(self.columns)}"
-            raise InputError(Problem(f'no column "{name}"', "", "", remedy))
+            raise InputError(f'no column "{name}"', "", "", remedy)
         return self.columns[name]
 
     def where(self, kept: Mask) -> DataSet:
@@ -56,10 +56,6 @@ class DataSet(Record):
         Parameters
         ----------
         kept : (rows,) bool array
-
-        Returns
-        -------
-        DataSet
         """
         columns = {name: values[kept] for name, values in self.columns.items()}
         return DataSet(columns, self.units, self.case, self.settings, self.version)
@@ -78,11 +74,6 @@ class DataSet(Record):
         path : str or path
             File to write.
 
-        Returns
-        -------
-        Path
-            The file.
-
         Raises
         ------
         OutputExistsError
@@ -95,7 +86,7 @@ class DataSet(Record):
             import pyarrow.parquet
         except ImportError:
             why, remedy = "It writes Parquet", 'pip install "tribodyn[learn]", or use save()'
-            raise InputError(Problem("pyarrow is not installed", "", why, remedy)) from None
+            raise InputError("pyarrow is not installed", "", why, remedy) from None
         target = Path(path)
         if target.exists():
             what, why = f"{target} exists already", "An existing file is never overwritten"
@@ -121,10 +112,6 @@ def load_data(path: str | os.PathLike[str]) -> DataSet:
     path : str or path
         The netCDF file.
 
-    Returns
-    -------
-    DataSet
-
     Raises
     ------
     InputError
@@ -134,7 +121,7 @@ def load_data(path: str | os.PathLike[str]) -> DataSet:
     facts = {name: str(data.attrs.get(name, "")) for name in ("case", "settings", "version")}
     if not facts["settings"] or "row" not in data.sizes:
         why = "It was not written by the save method of a data set"
-        raise InputError(Problem(f"{path} holds no data set", Argument("path"), why, "Give one"))
+        raise InputError(f"{path} holds no data set", Argument("path"), why, "Give one")
     columns = {str(name): np.asarray(data[name].values) for name in data.data_vars}
     units = {name: str(data[name].attrs.get("units", "1")) for name in columns}
     return DataSet(columns, units, **facts)

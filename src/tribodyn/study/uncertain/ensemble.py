@@ -11,7 +11,7 @@ import numpy as np
 from tribodyn.checks import require_whole
 from tribodyn.drawing import draw as drawn
 from tribodyn.drawing import figures_of
-from tribodyn.errors import Argument, InputError, Problem, quiet, require_one_of
+from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
@@ -82,7 +82,7 @@ class CaseEnsemble(Record):
         factors = [key for key in keys if "." not in key]
         if self.case is None or factors:
             why = f"{', '.join(factors) or 'It'}: of no case"
-            raise InputError(Problem("no whole results of this ensemble", "", why, "Spread keys"))
+            raise InputError("no whole results of this ensemble", "", why, "Spread keys")
         count = len(self.value)
         chosen = np.unique(np.linspace(0, count - 1, min(count, _WHOLE)).round().astype(int))
         # The case has its own values; what others spread is taken in the middle of the draws.
@@ -151,7 +151,7 @@ class CaseEnsemble(Record):
         count = require_whole("harmonics", harmonics)
         if count >= self.phase.size // 2:
             what, why = f"harmonics = {count}", f"There are {self.phase.size} places in a cycle"
-            raise InputError(Problem(what, Argument("harmonics"), why, "Ask for fewer"))
+            raise InputError(what, Argument("harmonics"), why, "Ask for fewer")
         lines = np.fft.rfft(values, axis=1)[:, 1 : count + 1]
         return np.asarray(2.0 * np.abs(lines) / self.phase.size)
 
@@ -175,10 +175,6 @@ class CaseEnsemble(Record):
             Of so many harmonics; 0: of the curve over the mesh phase.
         simultaneous : bool
             Whether the band holds the whole curve with that probability, not each point of it.
-
-        Returns
-        -------
-        Band
 
         Raises
         ------
@@ -253,10 +249,6 @@ def ensemble(
     progress : Progress
         Told how far the computation has come; silent by default.
 
-    Returns
-    -------
-    CaseEnsemble
-
     Raises
     ------
     InputError
@@ -287,7 +279,7 @@ def ensemble(
     given = dict(case.uncertain if distributions is None else distributions)
     if not given:
         why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
-        raise InputError(Problem("nothing is spread", Argument("distributions"), why, remedy))
+        raise InputError("nothing is spread", Argument("distributions"), why, remedy)
     drawn = draw(case, given, require_whole("size", size, 3), method=method, seed=seed)
     lanes = lanes_of(case, drawn, progress)
     signals = steady_cycles(lanes, _PLACES, progress)

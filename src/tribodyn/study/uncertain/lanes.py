@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.dynamics.equations.program import compile_system
-from tribodyn.errors import Argument, InputError, Problem, quiet
+from tribodyn.errors import Argument, InputError, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
@@ -106,7 +106,7 @@ def _check_key(case: Case, key: str, column: Array) -> None:
     if spec is None or isinstance(value, bool | str) or spec.kind == "file":
         where = Argument("distributions")
         what, why = f"{key} cannot be spread", "Numbers of the case can, and the factors "
-        raise InputError(Problem(what, where, why + ", ".join(SCALES), "Name one of these"))
+        raise InputError(what, where, why + ", ".join(SCALES), "Name one of these")
     for end in (np.min(column), np.max(column)):
         case.replace({key: float(end)})
 

@@ -13,7 +13,6 @@ from tribodyn.checks import require_flag, require_whole
 from tribodyn.errors import (
     Argument,
     InputError,
-    Problem,
     collected,
     require_one_of,
     require_positive,
@@ -21,6 +20,7 @@ from tribodyn.errors import (
 )
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.pipeline.motion import engine_arguments
 from tribodyn.study.uncertain.cycles import SIGNALS, signals_at, steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
 from tribodyn.study.uncertain.lanes import Lanes, draw, lanes_of
@@ -112,7 +112,7 @@ def vibration_data(
                 "A key is that of a whole run",
                 "Give redraw=False, or spread the factors ",
             )
-            raise InputError(Problem(what, Argument("redraw"), why, remedy + ", ".join(SPREAD)))
+            raise InputError(what, Argument("redraw"), why, remedy + ", ".join(SPREAD))
         columns = _over_time(case, lanes, drawn, (rows, float(interval)), progress)
     inputs = {
         name: np.repeat(values, count * rows // values.size) for name, values in drawn.items()
@@ -171,13 +171,13 @@ def _over_time(
     frequency = float(lanes.mesh_frequency[0])
     if np.ptp(lanes.mesh_frequency) > 0.0 or len({id(each) for each in lanes.members}) > 1:
         what, why = "runs that differ in speed or tooth contact", "Rows over time share one grid"
-        raise InputError(Problem(what, Argument("distributions"), why, 'Give over="cycle"'))
+        raise InputError(what, Argument("distributions"), why, 'Give over="cycle"')
     rows, interval = places
     at = frequency * interval * np.arange(1, rows + 1)
     cycle = np.floor(at * (1.0 + 1e-12)).astype(int)
     if np.any(np.diff(cycle, prepend=-1) < 1):
         what, why = f"interval = {interval:g} s", f"A mesh cycle takes {1.0 / frequency:.3g} s"
-        raise InputError(Problem(what, Argument("interval"), why, 'Give over="cycle"'))
+        raise InputError(what, Argument("interval"), why, 'Give over="cycle"')
     if interval * frequency > 0.25:
         warn(
             "data-aliased",
@@ -226,7 +226,8 @@ class _March:
             name: np.full(lanes.count, 1.1 * values.max()) for name, values in lanes.factors.items()
         }
         setting = Setting(system, lanes.mesh_frequency, 1, steps, extra, LaneParameters(**widest))
-        self.marcher = prepare("rk4", setting)
+        backend = engine_arguments(case).get("backend")
+        self.marcher = prepare("rk4", setting, backend=backend)
         self.parameters, self.elapsed = lanes.parameters(), 0
         self.state = np.tile(static_start(self.marcher.compiled), (lanes.count, 1))
 
