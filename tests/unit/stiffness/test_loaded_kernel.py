@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plain.loaded_contact import plain_approach, plain_loads
-from tribodyn.errors import ComputationError
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.stiffness import ContactProblem
 from tribodyn.stiffness.loaded.problem import Compliance
 
@@ -79,6 +79,14 @@ def test_force_at_an_approach_is_the_inverse_and_its_slope_the_tangent():
     above, below = (given.at_approach(found.approach + sign * step)[0] for sign in (1.0, -1.0))
     assert (above - below) / (2.0 * step) == pytest.approx(found.tangent, rel=1e-4)
     assert given.tangent_at(found.load[1, :, 0]) == pytest.approx(found.tangent[1], rel=1e-10)
+
+
+def test_approaches_of_another_number_of_phases_never_reach_a_kernel():
+    given = problem(4)
+    for ask, name in ((given.at_approach, "approach"), (given.pickups, "most")):
+        for wrong in (np.zeros(2), np.zeros((1, 2)), np.zeros((2, 2, 2))):
+            with pytest.raises(InputError, match=rf"{name} has the shape \({wrong.shape[0]},"):
+                ask(wrong)
 
 
 def test_below_the_smallest_gap_there_is_no_force():
