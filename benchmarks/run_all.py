@@ -12,6 +12,7 @@ __all__ = ["SCRIPTS", "main"]
 SCRIPTS = (
     "ensemble_speed",
     "equal_accuracy",
+    "operating_map",
     "steady_state_speed",
     "speed_sweep",
     "steady_state_cycles",

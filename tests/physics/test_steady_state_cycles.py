@@ -64,3 +64,9 @@ def test_a_start_far_off_that_parts_the_flanks_is_followed():
     near = steady_state(system, frequency, steps=STEPS)
     assert far.search_cycles > near.search_cycles
     np.testing.assert_allclose(far.position, near.position, rtol=1e-7)
+
+
+def test_flanks_that_never_part_from_rest_on_are_followed_over_one_cycle():
+    orbit = steady_state(reference_system(0.1, gap=PLAY), 1500.0, steps=STEPS)
+    assert orbit.search_cycles == 1
+    assert orbit.cycles_used == 2  # the lanes of the matrix, and the orbit itself

@@ -5,6 +5,7 @@ import pytest
 
 from tribodyn.dynamics import Contact, LoadFriction, System, steady_state
 from tribodyn.errors import InputError
+from tribodyn.mesh import PhaseFunction, phase_grid
 
 FULL = 2.0 * np.pi
 
@@ -121,3 +122,12 @@ def test_what_is_no_real_number(bad):
 def test_a_contact_without_direction(nothing):
     with pytest.raises(InputError, match="direction"):
         _orbit(direction=nothing)
+
+
+def test_a_table_may_jump_at_events_of_the_contact_alone():
+    """Tables are not searched for jumps if their events are those of the contact."""
+    grid = phase_grid((0.0, 0.3), 64)
+    table = PhaseFunction(grid, np.where(grid.middle < 0.3, 9.0, 12.0))
+    with pytest.raises(InputError, match=r"jumps by 3 at the mesh phase 0\.3"):
+        _orbit(stiffness=table)
+    assert _orbit(stiffness=table, events=(0.0, 0.3)).converged

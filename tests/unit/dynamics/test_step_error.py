@@ -7,6 +7,8 @@ import pytest
 
 from known_systems import MESH_FREQUENCY, reference_system
 from tribodyn.dynamics import Contact, System, fzg12, steady_state
+from tribodyn.dynamics.equations.nodes import evaluate_nodes, halved_nodes
+from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.errors import ModelWarning
 
 FULL = 2.0 * np.pi
@@ -98,3 +100,13 @@ def test_balanced_drives_are_not_told():
         warnings.simplefilter("error")
         assert steady_state(_three_gears([50.0, 0.0, -66.67]), 500.0, steps=64).converged
         assert steady_state(fzg12(), 266.0, steps=512).converged
+
+
+def test_rows_at_half_the_step_are_those_of_the_halved_grid():
+    system = reference_system(0.1)
+    grid, nodes, _ = compile_system(system, 64)
+    fine, rows = halved_nodes(system, grid, nodes)
+    assert fine.steps == 2 * grid.steps
+    assert fine.left[::2] == pytest.approx(grid.left, abs=1e-15)
+    for one, other in zip(rows, evaluate_nodes(system, fine), strict=True):
+        assert one == pytest.approx(other, rel=1e-12, abs=1e-9 * np.abs(other).max(initial=0.0))

@@ -250,3 +250,18 @@ def test_the_centre_distance_that_is_advised_leaves_the_backlash(distance: float
     assert near is not None
     pair = read_case(text.replace(f"{distance} mm", f"{near.group(1)} mm"))
     assert pair.gear_pair.backlash == pytest.approx(5e-5, abs=2e-6)
+
+
+@pytest.mark.parametrize("name", ["fzg-roughness", "hypoid-mixed-ehl"])
+def test_numbers_in_the_place_of_numbers_make_the_case_that_reading_it_anew_makes(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = td.load_case(name)
+    changes = [{"operation.speed": 100.0}, {"operation.torque": 70.0, "operation.speed": 90.0}]
+    quick = [case.replace(changes[0]), case.replace(changes[0]).replace(changes[1])]
+    monkeypatch.setattr(type(case), "_with_numbers", lambda *_: None)
+    whole = [case.replace(changes[0]), case.replace(changes[0]).replace(changes[1])]
+    for one, other in zip(quick, whole, strict=True):
+        assert one == other
+        assert one.to_toml() == other.to_toml()
+        assert one._given == other._given

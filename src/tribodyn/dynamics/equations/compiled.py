@@ -88,7 +88,8 @@ def compile_for(
     grid, nodes, program = compile_system(system, int(steps))
     beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if parameters is None:
-        number = refuse_unstable_step(system, nodes, grid, float(beat.min()))
+        known = system._rates.get(grid.steps)  # of the same rows
+        number = refuse_unstable_step(system, nodes, grid, float(beat.min()), rate=known)
     else:
         number = refuse_unstable_lanes(system, nodes, grid, beat, parameters)
     return Compiled(system, grid, nodes, program, number, parameters=parameters)

@@ -46,6 +46,11 @@ class Grid:
         """Number of steps in a mesh cycle."""
         return int(self.left.size)
 
+    @cached_property
+    def events(self) -> frozenset[float]:
+        """Phases at which a value may jump [-]."""
+        return frozenset(self.segment_left.tolist())
+
 
 def system_events(*systems: System) -> tuple[float, ...]:
     """Events of all contacts and frictions, sorted and merged."""
@@ -112,9 +117,12 @@ class RowEvaluator:
 
     def values(self, where: str, entry: Entry, size: int = 1) -> Array:
         """Values on the nodes, of an entry that jumps at events only."""
+        if not varies(entry):
+            one = entry_values(where, entry, self.nodes[:1, 0], size)[0]
+            return np.broadcast_to(one, (*self.nodes.shape, size))
         flat = entry_values(where, entry, self.nodes.reshape(-1), size)
         values = flat.reshape(*self.nodes.shape, size)
-        if self.checks and varies(entry) and not self._is_smooth(entry):
+        if self.checks and not self._is_smooth(entry):
             refuse_chance(where, entry, self.nodes.reshape(-1), flat)
             refuse_jumps(where, entry, self.nodes, values)
         return values
@@ -122,7 +130,7 @@ class RowEvaluator:
     def _is_smooth(self, entry: Entry) -> bool:
         """Whether it is a table that jumps nowhere but at events of this grid."""
         events = getattr(entry, "event_phases", None)
-        return events is not None and bool(np.isin(events, self.grid.segment_left).all())
+        return events is not None and self.grid.events.issuperset(events)
 
     def derivatives(self, where: str, entry: Entry, size: int = 1) -> Array:
         """Derivatives with respect to phase on the nodes, from a five-point stencil."""

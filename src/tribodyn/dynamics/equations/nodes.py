@@ -150,6 +150,8 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         return np.stack(columns, axis=-1) if columns else np.zeros((grid.steps, 3, 0))
 
     def vector(name: str, take: Callable[..., Array]) -> Array:
+        if len(contacts) == 1 and (entry := getattr(contacts[0], name)) is not None:
+            return take(f"contacts[0].{name}", entry, size)[:, :, None]
         out = np.zeros((grid.steps, 3, len(contacts), size))
         for j, contact in enumerate(contacts):
             entry = getattr(contact, name)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics.equations.entry import varies as depends_on_phase
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
 from tribodyn.dynamics.equations.system import System
@@ -94,14 +95,14 @@ class _Terms:
 
     def __init__(self, steps: int, pattern: Mask | None) -> None:
         self.shape = (steps, 3)
-        self.factors: list[Array] = []
+        self.factors: list[Array | float] = []
         self.slots: list[int] = []
         self.pattern = pattern
         self.kept: list[bool] = []
 
     def factor(self, values: Array | float) -> None:
         """Append a factor without a slot."""
-        self.factors.append(np.broadcast_to(values, self.shape))
+        self.factors.append(values)
 
     def keeps(self, wanted: Any) -> bool:
         """Whether a possible term is there: as wanted, or as in the pattern that was given."""
@@ -109,13 +110,21 @@ class _Terms:
         self.kept.append(given)
         return given
 
-    def term(self, values: Array, slot: int) -> int:
-        """Append a term unless it is zero throughout; returns how many were appended."""
-        if not self.keeps(values.any()):
-            return 0
-        self.factor(values)
-        self.slots.append(slot)
-        return 1
+    def terms(self, values: Array, slot: int) -> int:
+        """Append a term for each last item that is not zero throughout; returns how many."""
+        some = np.asarray(values.any(axis=tuple(range(values.ndim - 1))))
+        present = [item for item in range(some.size) if self.keeps(some[item])]
+        for item in present:
+            self.factor(values[..., item])
+            self.slots.append(slot + item)
+        return len(present)
+
+    def rows(self) -> Array:
+        """All factors of a row side by side."""
+        rows = np.zeros((*self.shape, max(len(self.factors), 1)))
+        for item, values in enumerate(self.factors):
+            rows[..., item] = values
+        return rows.reshape(-1)
 
 
 def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:
@@ -125,7 +134,7 @@ def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> 
         for item in scalars:
             terms.factor(item[:, :, j])
         for part in (nodes.direction, nodes.direction_slope):
-            code.append(sum(terms.term(part[:, :, j, i], i) for i in range(system.size)))
+            code.append(terms.terms(part[:, :, j], 0))
         code += [int(np.any(nodes.gap[:, :, j])), int(contact.damping_in_gap) + scaled]
     return code
 
@@ -160,18 +169,20 @@ def _coordinate_terms(
     rub = nodes.friction_direction
     if split:
         rub = np.concatenate((rub, nodes.force_direction - nodes.direction), axis=2)
-    reaction, drag = (-np.einsum("ik,rsjk->rsji", inverse, part) for part in (along, rub))
-    load = np.einsum("ik,rsk->rsi", inverse, nodes.force)
+    reaction, drag = (
+        (part.reshape(-1, system.size) @ -inverse.T).reshape(part.shape) for part in (along, rub)
+    )
+    load = np.einsum(
+        "ik,rsk->rsi", inverse, nodes.force[: None if depends_on_phase(system.force) else 1]
+    )
     state = -np.hstack([inverse @ np.asarray(part) for part in (system.stiffness, system.damping)])
     state[np.abs(state) <= 1e-15 * np.abs(state).max(axis=1, keepdims=True)] = 0.0
     code: list[int] = []
     varies = np.zeros(system.size, dtype=bool)
     for i in range(system.size):
-        count = sum(terms.term(state[i, k], k) for k in range(2 * system.size))
-        count += sum(
-            terms.term(reaction[:, :, j, i], slots.force + j) for j in range(reaction.shape[2])
-        )
-        count += sum(terms.term(drag[:, :, f, i], slots.friction + f) for f in range(drag.shape[2]))
+        count = terms.terms(state[i], 0)
+        count += terms.terms(reaction[..., i], slots.force)
+        count += terms.terms(drag[..., i], slots.friction)
         varies[i] = terms.keeps(np.ptp(load[:, :, i]) > 0.0)
         if varies[i]:
             terms.factor(load[:, :, i])
@@ -197,16 +208,19 @@ def build_program(
     lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
     lists += _friction_terms(system, nodes, terms, slots, split)
     own, varies = _coordinate_terms(system, nodes, terms, slots, split)
-    factors = terms.factors or [np.zeros(terms.shape)]
+    rows = terms.rows()
     relative = np.array(terms.slots, dtype=np.int64)
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)
     reads = np.concatenate([relative + moving * buffer * 2 * size for buffer in range(3)])
     load = system.inverse_mass @ nodes.force[0, 0]
     return Program(
-        code=np.array([size, contacts, len(factors), relative.size, *lists, *own], dtype=np.int64),
+        code=np.array(
+            [size, contacts, max(len(terms.factors), 1), relative.size, *lists, *own],
+            dtype=np.int64,
+        ),
         reads=reads,
-        rows=np.ascontiguousarray(np.stack(factors, axis=-1)).reshape(-1),
+        rows=rows,
         width=grid.width,
         restart=grid.after_event,
         constant_load=np.where(varies, 0.0, load),

@@ -122,7 +122,8 @@ def rate_on_grid(system: System, steps: int = _FEWEST) -> float:
     rows, stages = _stiffest_rows(total)
     some = Grid(*(getattr(grid, field.name)[rows] for field in fields(Grid)))
     nodes, every = evaluate_nodes(system, some), np.arange(rows.size)
-    return float(_rates(system, nodes, every, stages, np.array([_PLAIN])).max())
+    system._rates[steps] = float(_rates(system, nodes, every, stages, np.array([_PLAIN])).max())
+    return system._rates[steps]
 
 
 def accurate_steps(rate: float, mesh_frequency: float) -> int:
@@ -138,9 +139,10 @@ def refuse_unstable_step(
     mesh_frequency: float,
     factors: tuple[float, ...] = _PLAIN,
     lane: str = "",
+    rate: float | None = None,
 ) -> float:
     """Return ``omega_max * dt`` of the widest step, or refuse it."""
-    rate = largest_rate(system, nodes, factors)
+    rate = largest_rate(system, nodes, factors) if rate is None else rate
     number = rate * float(grid.width.max()) / mesh_frequency
     if number > LIMIT:
         needed = int(np.ceil(grid.steps * number / LIMIT / 64.0)) * 64

@@ -221,6 +221,8 @@ class System:
     names: Sequence[str] = ()
     balance: ArrayLike | None = None
     frictions: Sequence[LoadFriction] = ()
+    #: Largest rate of the motion by the number of steps at which it was looked for.
+    _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
     #: Widest step over a mesh cycle when the entries were looked at for jumps and chance.
     _checked: float = field(default=np.inf, init=False, repr=False, compare=False)
 

@@ -54,21 +54,19 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
     """Replace every contact by the spring and the damper that act at the static load."""
     nodes, weight = _rows(system, phase)
     closed, push = _at_rest(system, nodes)
-    outer = np.einsum("rsji,rsjk->rsjik", nodes.direction, nodes.direction)
-    rub = push - nodes.direction
-    cross = np.einsum("rsji,rsjk->rsjik", rub, nodes.direction)
+    along, rub = nodes.direction, push - nodes.direction
     spring = weight[:, :, None] * np.where(closed, nodes.stiffness, 0.0)
     free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
     damper = weight[:, :, None] * np.where(closed | free, nodes.damping, 0.0)
-    contact_stiffness = np.einsum("rsj,rsjik->jik", spring, outer)
-    contact_damping = np.einsum("rsj,rsjik->jik", damper, outer)
+    contact_stiffness = _over_cycle(spring, along, along)
+    contact_damping = _over_cycle(damper, along, along)
     return LinearSystem(
         names=tuple(system.names),
         mass=np.asarray(system.mass),
         damping=np.asarray(system.damping) + contact_damping.sum(axis=0),
         stiffness=np.asarray(system.stiffness) + contact_stiffness.sum(axis=0),
-        friction_damping=np.einsum("rsj,rsjik->ik", damper, cross),
-        friction_stiffness=np.einsum("rsj,rsjik->ik", spring, cross),
+        friction_damping=_over_cycle(damper, rub, along).sum(axis=0),
+        friction_stiffness=_over_cycle(spring, rub, along).sum(axis=0),
         contact_stiffness=contact_stiffness,
         contact_damping=contact_damping,
         direction=np.einsum("rs,rsji->ji", weight, nodes.direction),
@@ -77,6 +75,13 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
         damper=damper.sum(axis=(0, 1)),
         bundle=force_laws(nodes),
     )
+
+
+def _over_cycle(factor: Array, rows: Array, columns: Array) -> Array:
+    """Sum over the cycle of a factor times two directions, for each contact (contacts, n, n)."""
+    shape = (rows.shape[0] * rows.shape[1], *rows.shape[2:])
+    left = (factor[..., None] * rows).reshape(shape).transpose(1, 2, 0)
+    return np.asarray(left @ columns.reshape(shape).transpose(1, 0, 2))
 
 
 def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:

@@ -86,12 +86,14 @@ class FlankWatch:
 
     def _along(self, states: Array) -> Array:
         """States (rows, 2 n, k) along the directions, (periods, steps, 2, meshes, k)."""
-        shape = (-1, self._steps, 2, self._direction.shape[2], states.shape[2])
-        q = states[:, : self._size]
+        q, cycles = states[:, : self._size], len(states) // self._steps
+        shape = (cycles, self._steps, 2, self._direction.shape[2], states.shape[2])
         if self._held:  # the same direction all along
-            along = np.tensordot(q, self._direction[0, 0], (1, 1)).swapaxes(1, 2)
+            along = np.zeros((len(q), *shape[3:]))
+            for mesh, place in zip(*np.nonzero(self._direction[0, 0]), strict=True):
+                along[:, mesh] += self._direction[0, 0, mesh, place] * q[:, place]
             return np.stack((along[:-1], along[1:]), axis=1).reshape(shape)
-        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(-1, self._steps, 2, *q.shape[1:])
+        ends = np.stack((q[:-1], q[1:]), axis=1).reshape(cycles, self._steps, 2, *q.shape[1:])
         return np.asarray(np.einsum("rsji,crsik->crsjk", self._direction, ends))
 
     def clearance(self, compression: Array) -> Array:
@@ -103,23 +105,22 @@ class FlankWatch:
         """Side of the play on which each mesh begins, (meshes,): 1 or -1."""
         return np.where(compression[0, 0, 0] < 0.0, -1.0, 1.0)
 
-    def in_touch(self, states: Array, beside: Array | None = None) -> bool:
-        """Whether no mesh parts on the way, nor on ways (rows, 2 n, k) beside it."""
+    def in_touch(self, states: Array) -> bool:
+        """Whether no mesh parts on the way."""
+        return bool(np.all(self.clearance(self.compression(states)) > 0.0))
+
+    def rates(self, states: Array, slopes: Array) -> tuple[Array, Array]:
+        """Clearance on a way (samples,), and how it changes with slopes (samples, k)."""
         compression = self.compression(states)
-        room = self.clearance(compression)
-        if beside is None:
-            return bool(np.all(room > 0.0))
-        moved = self.flank(compression)[:, None] * self._along(beside)
-        return bool(np.all(room > 0.0) and np.all(room[..., None] + moved > 0.0))
+        room = self.clearance(compression).reshape(-1)
+        rates = self.flank(compression)[:, None] * self._along(slopes)
+        return room, rates.reshape(room.size, slopes.shape[-1])
 
     def stays(self, states: Array, slopes: Array, matrix: Array, distance: Array) -> bool:
         """Whether a motion beside an orbit reaches it without parting."""
-        compression = self.compression(states)
-        room = self.clearance(compression).reshape(-1)
+        room, rates = self.rates(states, slopes)
         if np.any(room <= 0.0):
             return False
-        rates = self.flank(compression)[:, None] * self._along(slopes)
-        rates = rates.reshape(room.size, -1)
         first, steepest = float(np.abs(rates @ distance).max(initial=0.0)), 0.0
         if rates.size:
             steepest = float(np.sqrt((rates**2).sum(axis=1).max()))
@@ -250,12 +251,13 @@ def _in_one_march(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint |
         return None
     step = _APART * float(np.linalg.norm(y))
     image, matrix, states, slopes = mapping.differences(y, step)
-    if not watch.in_touch(states, step * slopes):
+    room, rates = watch.rates(states, slopes)
+    if np.any(room <= 0.0) or np.any(room[:, None] + step * rates <= 0.0):
         return None
     told = mapping.multipliers(matrix), states, slopes
     start = OrbitPoint(y, image - y, matrix, motion_size(mapping, states), *told, linear=True)
     orbit = finish_orbit(mapping, y + start.correction, tolerance, start)
-    if orbit.linear and _good(orbit, tolerance) and watch.in_touch(orbit.states):
+    if orbit.linear and _good(orbit, tolerance):
         return orbit if watch.stays(orbit.states, slopes, matrix, y - orbit.point) else None
     return None
 

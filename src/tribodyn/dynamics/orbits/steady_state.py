@@ -225,7 +225,8 @@ def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> f
         point = point + step
         if way <= _CLOSE * moved or way <= 1e-9 * orbit.scale:
             if orbit.linear:  # What is left of the way moves both motions alike.
-                return _apart(mapping, orbit, states[::2] + orbit.slopes @ step)
+                rest = orbit.slopes.reshape(-1, step.size) @ step
+                return _apart(mapping, orbit, states[::2] + rest.reshape(orbit.states.shape))
             return _apart(mapping, orbit, fine.follow(point)[1][::2])
     found = finish_orbit(fine, orbit.point, 1e-6)
     same = np.linalg.norm(found.point - orbit.point) <= _OTHER * orbit.scale

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from functools import cached_property
 from inspect import Signature
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from tribodyn.errors import InputError
 from tribodyn.study.case import derive
@@ -19,16 +20,20 @@ from tribodyn.study.case.provenance import (
     read_stated,
     reason_faults,
     settled,
+    spec_of,
     tables,
     without_records,
 )
 from tribodyn.study.case.section import Table, choices, signature_of
-from tribodyn.study.case.values import Plain, as_meant, as_typed, read_fields
+from tribodyn.study.case.values import (
+    FaultError,
+    Plain,
+    as_meant,
+    as_typed,
+    read_fields,
+    read_value,
+)
 from tribodyn.study.case.write import case_rows, case_table, case_toml
-
-if TYPE_CHECKING:
-    pass
-
 
 #: Keys whose choice decides which other keys of their table are allowed, beside those that name
 #: models.
@@ -126,6 +131,8 @@ class Case(CaseData, whole=True):
         >>> round(rough.gears.composite_roughness * 1e6, 3)
         0.991
         """
+        if not by and (found := self._with_numbers(changes)) is not None:
+            return found
         ready = changes if by else {key: Plain(value) for key, value in changes.items()}
         gone = left_behind(self._given, ready, self._chosen_by(ready))
         spread = {key: text for key, text in self._spread.items() if key not in gone}
@@ -135,6 +142,38 @@ class Case(CaseData, whole=True):
             data["assumed"] = kept
         source = self._source.with_replaced(changes, by or "replace:")
         return type(self)(source, **data)
+
+    def _with_numbers(self, changes: Mapping[str, Any]) -> Case | None:
+        """Put numbers in the place of numbers; None where that may change more, or is a fault.
+
+        What is there and what is not decides everything else in a case, but for its gears.
+        """
+        base = self._stated.base
+        if not base or self.origin not in (None, base.get("origin")):
+            return None
+        found: Case = object.__new__(type(self))
+        vars(found).update(self.__getstate__())
+        numbers = {}
+        for key, value in changes.items():
+            table, _, name = key.partition(".")
+            spec, old = spec_of(self, key), self._given.get(key)
+            same = type(value) is float and spec is not None and spec.kind == "number"
+            apart = table == "gears" or key in self._spread or key in self._assumed
+            if not same or apart or old is None or self._effective.get(key) is None:
+                return None
+            try:
+                numbers[key] = read_value(spec, name, Plain(value)) if spec else value
+            except FaultError:
+                return None
+            section = copy(getattr(found, table))
+            vars(section)[name] = numbers[key]
+            vars(found)[table] = section
+        if derive.case_problems(found):
+            return None
+        found._effective, found._changed = self._effective | numbers, None
+        found._given = self._given.with_numbers(changes)
+        found._source = self._source.with_replaced(changes, "replace:")
+        return found
 
     def _chosen_by(self, changes: Mapping[str, Any]) -> dict[str, str]:
         """Models, laws and methods that changes choose anew, by key; unknown names are left out."""

@@ -112,6 +112,18 @@ class Given(dict[str, Any]):
         """Write ``key = value`` as the user typed it."""
         return f"{key.rpartition('.')[2]} = {written(self.get(key))}"
 
+    def with_numbers(self, numbers: Mapping[str, float]) -> Given:
+        """Return a copy with other numbers from Python in the place of some values of tables."""
+        found = Given({})
+        found.update(self)
+        found.data, found.typed = dict(self.data), self.typed
+        for key, number in numbers.items():
+            table, _, name = key.partition(".")
+            found[table] = {**found[table], name: Plain(number)}
+            found.data[table] = found[table]
+            found[key] = number
+        return found
+
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Return a copy with dotted keys set."""
         result: dict[str, Any] = _copy(self.data)
