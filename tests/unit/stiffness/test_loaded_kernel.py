@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plain.loaded_contact import plain_approach, plain_loads
-from tribodyn.errors import ComputationError
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.stiffness import ContactProblem
 from tribodyn.stiffness.loaded.problem import Compliance
 
@@ -81,6 +81,14 @@ def test_force_at_an_approach_is_the_inverse_and_its_slope_the_tangent():
     assert given.tangent_at(found.load[1, :, 0]) == pytest.approx(found.tangent[1], rel=1e-10)
 
 
+def test_approaches_of_another_number_of_phases_never_reach_a_kernel():
+    given = problem(4)
+    for ask, name in ((given.at_approach, "approach"), (given.pickups, "most")):
+        for wrong in (np.zeros(2), np.zeros((1, 2)), np.zeros((2, 2, 2))):
+            with pytest.raises(InputError, match=rf"{name} has the shape \({wrong.shape[0]},"):
+                ask(wrong)
+
+
 def test_below_the_smallest_gap_there_is_no_force():
     given = problem(4)
     force, slope = given.at_approach(given.least_gap[None] - 1e-9)
@@ -138,3 +146,14 @@ def test_a_soft_pair_that_is_touched_first_does_not_lead_astray():
     arguments = structure[0], compliance.local[0], logarithm
     approach = plain_approach(*arguments, given.gaps[0], given.widths, 4000.0)
     assert found.approach[1, 0] == pytest.approx(approach, rel=1e-9)
+
+
+def test_an_approach_far_from_the_first_gap_carries_the_whole_load():
+    """There the force of stiff pairs changes by more than rounding within its own limit."""
+    given = problem(3, phases=20_000)
+    # A soft film that begins to carry millimetres before the others, and stiff ones.
+    given.compliance.structure[:, 0, 0] += 5e-5
+    given.gaps[:, :, 1:] += np.linspace(1e-5, 7e-3, 20_000)[:, None, None]
+    found = given.at_loads(np.array([100.0, 1900.0]))
+    total = np.einsum("s,tpsn->tp", given.widths, found.load)
+    assert total == pytest.approx(np.array([[100.0], [1900.0]]) * np.ones(20_000), rel=1e-8)

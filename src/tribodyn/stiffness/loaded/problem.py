@@ -317,14 +317,16 @@ class ContactProblem:
 
         Raises
         ------
+        InputError
+            If they are of another shape.
         ComputationError
             As :meth:`at_loads`.
         """
         from tribodyn.stiffness.loaded.kernel import solve_deflections
 
-        total, tangent = np.empty(approach.shape), np.empty(approach.shape)
-        asked = np.ascontiguousarray(approach, dtype=float)
-        self._call(solve_deflections, approach.shape[0], self.widths, asked, total, tangent)
+        asked = self._of_phases("approach", approach, 2)
+        total, tangent = np.empty(asked.shape), np.empty(asked.shape)
+        self._call(solve_deflections, asked.shape[0], self.widths, asked, total, tangent)
         return total, tangent
 
     def tangent_at(self, load_per_width: Array) -> Array:
@@ -364,14 +366,25 @@ class ContactProblem:
 
         Raises
         ------
+        InputError
+            If ``most`` is of another shape.
         ComputationError
             As :meth:`at_loads`.
         """
         from tribodyn.stiffness.loaded.kernel import pickups
 
         approach = np.empty(self.compliance.local.shape)
-        self._call(pickups, 1, np.ascontiguousarray(most), approach)
+        self._call(pickups, 1, self._of_phases("most", most, 1), approach)
         return approach
+
+    def _of_phases(self, name: str, values: Array, dimensions: int) -> Array:
+        """Values as the kernels take them, which look at no shape: their last axis the phases."""
+        given, count = np.ascontiguousarray(values, dtype=float), len(self.gaps)
+        if given.ndim != dimensions or given.shape[-1] != count:
+            why = f"It has {dimensions} dimensions, the last one the {count} phases"
+            what, remedy = f"{name} has the shape {given.shape}", "Give a value for each phase"
+            raise InputError(what, Argument(name), why, remedy)
+        return given
 
     def _call(self, kernel: Any, solves: int, *arguments: Array) -> None:
         """Call a kernel that solves every slice of every phase so many times."""
