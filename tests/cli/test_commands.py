@@ -71,7 +71,8 @@ def test_every_extra_is_used() -> None:
     extras = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"][
         "optional-dependencies"
     ]
-    assert set(extras) == {"app", "cluster", "docs", "images", "io", "learn", "test", "dev"}
+    known = {"app", "cluster", "cuda", "docs", "images", "io", "learn", "test", "dev"}
+    assert set(extras) == known
     page = (root / "docs" / "install.md").read_text("utf-8")
     assert set(re.findall(r"^\| `(\w+)` \|", page, re.M)) == set(extras)
 
