@@ -146,3 +146,14 @@ def test_a_soft_pair_that_is_touched_first_does_not_lead_astray():
     arguments = structure[0], compliance.local[0], logarithm
     approach = plain_approach(*arguments, given.gaps[0], given.widths, 4000.0)
     assert found.approach[1, 0] == pytest.approx(approach, rel=1e-9)
+
+
+def test_an_approach_far_from_the_first_gap_carries_the_whole_load():
+    """There the force of stiff pairs changes by more than rounding within its own limit."""
+    given = problem(3, phases=20_000)
+    # A soft film that begins to carry millimetres before the others, and stiff ones.
+    given.compliance.structure[:, 0, 0] += 5e-5
+    given.gaps[:, :, 1:] += np.linspace(1e-5, 7e-3, 20_000)[:, None, None]
+    found = given.at_loads(np.array([100.0, 1900.0]))
+    total = np.einsum("s,tpsn->tp", given.widths, found.load)
+    assert total == pytest.approx(np.array([[100.0], [1900.0]]) * np.ones(20_000), rel=1e-8)

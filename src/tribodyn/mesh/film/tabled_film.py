@@ -40,10 +40,9 @@ _EXACT, _YIELDING = 3e-4, 2e-3
 _MOST_TABLES = 12
 #: Radius of the contacts of a table [m]: any other one has the same films over their scales.
 _RADIUS = 1e-2
-#: Contacts that are solved at most to find the greatest pressure, and how many at a time.
-_TRIALS, _AT_ONCE = 8, 2
-
-
+#: Contacts that are solved at most to find the greatest pressure, and expected pressure over the
+#: greatest one from which on a contact is worth it.
+_TRIALS, _WORTH = 7, 0.98
 #: Pressure over the greatest one above which a contact may have the greatest one itself.
 _NEAR = 0.85
 #: Contacts nearer than this [mesh cycles], [nodes] are not both tried.
@@ -86,7 +85,8 @@ def tabled_film(
         return None
     contact = cycle.contact
     pitch_point = contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
-    pitch = np.flatnonzero(np.abs(pairs.age - pitch_point) < _SAME)
+    # Of both sides of the pitch point the one after it counts.
+    pitch = np.flatnonzero(np.abs(pairs.age - pitch_point) < _SAME)[-1:]
     return TabledFilm(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch)
 
 
@@ -174,7 +174,7 @@ class TabledFilm:
     pairs: PairsInContact
     in_contact: Mask
     least_load: float  #: load for which the film of a pair is found at least [N/m]
-    pitch: Index  #: contacts at the pitch point
+    pitch: Index  #: contact at the pitch point, if there is one
 
     def solve(self, load_per_width: Array, checked: tuple[int, ...] = ()) -> TabledPath:
         """Films under the loads of a mesh table."""
@@ -229,39 +229,32 @@ class TabledPath(LoadedFilms):
         columns: dict[str, Any] = {name: np.array(getattr(films, name)) for name in QUANTITIES}
         known = ~self.doubtful
         least = [int(np.argmin(np.where(self.scored, columns[n], np.inf))) for n in QUANTITIES[:2]]
-        first = np.unique(np.concatenate([least, self.path.pitch])).astype(np.int64)
-        self._put(columns, known, first, load)
-        for _ in range(_TRIALS // _AT_ONCE):
-            expected = self._expected(columns["film_pressure"], known[PRESSURE])
-            self._put(columns, known, np.argsort(-expected)[:_AT_ONCE], load)
+        # One call for all of them: threads take their time to begin.
+        chosen = np.unique([*least, *self.path.pitch, *self._trials(columns["film_pressure"])])
+        settings = self.path.settings
+        with quiet():
+            solved = self.pairs.some(chosen).films(
+                settings.film_model, load[chosen], **settings.film, progress=SILENT
+            )
+        for name, column in columns.items():
+            column[chosen] = getattr(solved, name)
+        known[:, chosen] = True
         return replace(films, **columns), known
 
-    def _expected(self, pressure: Array, solved: Mask) -> Array:
-        """Greatest pressure to be expected, which rises and falls as its tip passes the nodes.
-
-        It only says which contacts are worth a solution.
-        """
-        most = np.max(pressure, where=self.scored, initial=0.0)
-        near = self.scored & (pressure > _NEAR * most)
+    def _trials(self, pressure: Array) -> list[int]:
+        """Contacts one of which has the greatest pressure, which rises and falls over the nodes."""
+        near = self.scored & (pressure > _NEAR * np.max(pressure, where=self.scored, initial=0.0))
         number, tip = self.values[[_NUMBER, _TIP]]
         # Over some nodes the ups and downs of the table are as many.
         even = np.polynomial.Polynomial.fit(number[near], self.values[PRESSURE, near], 1)
         sharp = float(np.mean(self.values[_DROP, near]))
         high = 0.125 * sharp * np.cos(2.0 * np.pi * (tip - _HIGHEST))
         scale = pressure / np.exp(self.values[PRESSURE])
-        expected = np.where(near, scale * np.exp(even(number) + high), -np.inf)
-        for other in np.flatnonzero(solved):
-            beside = np.abs(self.pairs.age - self.pairs.age[other]) < _BESIDE
-            expected[beside & (np.abs(tip - tip[other]) < _ASIDE)] = -np.inf
-        return np.asarray(expected)
-
-    def _put(self, columns: dict[str, Array], known: Mask, chosen: Index, load: Array) -> None:
-        """Replace films of the table by solutions."""
-        settings = self.path.settings
-        with quiet():
-            films = self.pairs.some(chosen).films(
-                settings.film_model, load[chosen], **settings.film, progress=SILENT
-            )
-        for name, column in columns.items():
-            column[chosen] = getattr(films, name)
-        known[:, chosen] = True
+        expected = np.where(near, scale * np.exp(even(number) + high), 0.0)
+        worth, trials = _WORTH * expected.max(), list[int]()
+        while len(trials) < _TRIALS and expected.max() > worth:
+            best = int(np.argmax(expected))
+            trials.append(best)
+            beside = np.abs(self.pairs.age - self.pairs.age[best]) < _BESIDE
+            expected[beside & (np.abs(tip - tip[best]) < _ASIDE)] = 0.0
+        return trials

@@ -110,6 +110,9 @@ def _slice(
             f[i] = 0.0
         return 0
     tight = _TIGHT * (approach + abs(delta))
+    # At least one step is taken, or the loads of a slice would stand still while the approach is
+    # led to its force in steps below that limit.
+    stepped = False
     for _ in range(_INNER_STEPS):
         touched, settled, largest = False, True, 0.0
         for i in range(n):
@@ -132,8 +135,9 @@ def _slice(
             b[r] = -_residual(n, C, A, B, gaps[i], delta, f, i)
             if abs(b[r]) > tight:
                 settled = False
-        if settled:
+        if settled and stepped:
             return 0
+        stepped = True
         _eliminate(m, a, b)
         for r in range(m):
             i = int(place[r])
