@@ -17,6 +17,9 @@ Kernel = TypeVar("Kernel")
 #: What is told of a kernel when it is first compiled; by kernel.
 _texts: dict[Any, str] = {}
 
+#: All that were announced.
+kernels: list[Any] = []
+
 
 def source_digest(folder: str | Path, names: Sequence[str]) -> str:
     """Hash of the source files of a kernel and of everything that it calls."""
@@ -28,6 +31,7 @@ def source_digest(folder: str | Path, names: Sequence[str]) -> str:
 
 def announced(kernel: Kernel, what: str, time: str) -> Kernel:
     """Say so whenever a kernel is compiled, once on a machine: else it looks like a hang."""
+    kernels.append(kernel)
     _texts[kernel] = f"compiling {what}, once on this machine, about {time}"
     _listen()
     return kernel

@@ -195,7 +195,7 @@ def _others(
         "mesh.MeshColumns": _taken(things["mesh.MeshColumns"], result.mesh),
         "mesh.MeshFunctions": _fields(functions),
         "mesh.PhaseFunction": _fields(functions.stiffness),
-        "plot.bands": {"result": things["study.ensemble"](case, spread, 2, seed=1)},
+        "plot.bands": {"result": things["study.ensemble"](case, spread, 3, seed=1)},
         "plot.coupling": {"result": run(case.replace({"solver.coupling": "static"}))},
         "plot.compare_line_contacts": {"solutions": [film], "labels": ["one"]},
         "plot.film_along_path": {"contacts": [film, film], "path": [0.0, 1e-3]},

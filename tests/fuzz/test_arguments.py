@@ -42,7 +42,8 @@ WRONG: list[Any] = [
 #: What is no value of an annotation that stands alone.
 _NO_NUMBER = (str, bytes, complex, list, dict, type(None), type)
 NONSENSE = {
-    "float": lambda value: isinstance(value, (*_NO_NUMBER, bool)),
+    # an array may stand for a number where a function computes with it
+    "float": lambda value: isinstance(value, tuple({*_NO_NUMBER, bool} - {list})),
     "int": lambda value: isinstance(value, (*_NO_NUMBER, bool)),
     "bool": lambda value: not isinstance(value, bool | int | float | np.generic),
     "str": lambda value: not isinstance(value, str),

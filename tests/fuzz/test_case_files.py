@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import unicodedata
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -89,11 +90,34 @@ def _mutated(rng: random.Random) -> bytes:
             lines[at : at + 1] = [lines[at]] * rng.choice((2, 60))
         if not lines:
             lines = [""]
-    content = "\n".join(lines).encode("utf-8", "surrogatepass")
+    text = _as_a_whole("\n".join(lines), rng) if rng.random() < 0.3 else "\n".join(lines)
+    content = text.encode("utf-8", "surrogatepass")
+    if rng.random() < 0.1:
+        content = text.encode(rng.choice(("utf-16", "utf-32", "latin-1", "cp437")), "replace")
     if rng.random() < 0.2:
         spot = rng.randrange(len(content) + 1)
         content = content[:spot] + rng.choice(_BYTES) + content[spot + rng.randrange(2) :]
     return content[: rng.randrange(len(content) + 1)] if rng.random() < 0.05 else content
+
+
+def _as_a_whole(text: str, rng: random.Random) -> str:
+    """What editors, merges and other alphabets do to all of a file."""
+    tables = re.split(r"(?m)^(?=\[)", text)
+    kind, place = rng.randrange(6), rng.randrange(len(tables))
+    if kind == 0:
+        return text.replace("\n", rng.choice(("\r\n", "\r", "\n\r", "\u2028")))
+    if kind == 1:
+        rng.shuffle(tables)
+    elif kind == 2:
+        tables.insert(rng.randrange(len(tables)), tables[place])
+    elif kind == 3:
+        tables[place] = re.sub(r"\d", lambda found: chr(0x660 + int(found[0])), tables[place])
+    elif kind == 4:
+        odd = rng.choice(("nan", "inf", "-inf", "1e400", "1e-400", "-0.0", "0"))
+        tables[place] = re.sub(r"\d+(\.\d+)?", odd, tables[place], count=rng.choice((0, 1)))
+    else:
+        tables[place] = tables[place].replace("[", "[" * rng.choice((2, 3, 99)), 1)
+    return "".join(tables)
 
 
 def _is_sound(error: TribodynError) -> None:

@@ -31,6 +31,7 @@ _FUNCTIONS = (types.FunctionType, functools._lru_cache_wrapper)
 _PATHS = map(sysconfig.get_path, ("stdlib", "purelib", "platlib"))
 #: Where the frames of a traceback lie that are not the user's.
 _HOMES = (str(Path(__file__).parents[1]), *_PATHS, "<")
+_PACKAGES = re.compile(r"[/\\](site|dist)-packages[/\\]")
 #: Parameters of functions that leave files behind.
 _WRITES = {"path", "directory", "folder", "place", "force"}
 _REFUSED = (TypeError, ValueError, OverflowError)
@@ -180,7 +181,8 @@ class _Reader:
         if faults:
             return InputError(faults)
         frames = traceback.extract_tb(error.__traceback__)
-        users = [each for each in frames if not each.filename.startswith(_HOMES)]
+        others = (each for each in frames if not each.filename.startswith(_HOMES))
+        users = [each for each in others if not _PACKAGES.search(each.filename)]
         if users and type(error).__module__ != "builtins":
             return error  # raised on purpose by what the user wrote
         if users:

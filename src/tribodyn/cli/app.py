@@ -118,6 +118,11 @@ COMMANDS = (
         "explain_commands:units",
         "List the units and their spellings.",
     ),
+    (
+        "warm-up",
+        "warm_up_command:warm_up",
+        "Compile what runs need, ahead of the first one.",
+    ),
     ("cite", "explain_commands:cite", "Print the papers behind a result."),
 )
 

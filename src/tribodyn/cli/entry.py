@@ -118,6 +118,7 @@ _EXAMPLES = {
     "new": "my.toml",
     "explain": "epsilon_alpha",
     "cite": "fzg-roughness",
+    "warm-up": "fzg-roughness",
 }
 
 _TRACEBACK = "TRIBODYN_TRACEBACK"

@@ -369,7 +369,7 @@ class FrictionLaw(Model):
             what=f'unknown option "{name}"',
             where=f'friction law "{self.name}"',
             why=f"Its options: {', '.join(self.options) or 'none'}",
-            remedy=self.nearest(name),
+            remedy=self.nearest(name) or "Give one of these",
         )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_one_shape
+from tribodyn.errors import require_positive
 from tribodyn.gear.mesh_geometry import FlankRange, default_relief_length, flank_ranges
 from tribodyn.gear.modification import FlankModification
 from tribodyn.gear.spur_gear import SpurGear
@@ -196,6 +197,11 @@ def profile_gap(
         Shape of ``curvature_radius``; positive where material is missing. Tip and root relief add
         where they overlap.
 
+    Raises
+    ------
+    InputError
+        If the length is not positive.
+
     Notes
     -----
     With the distance d from the end of the used flank a relief of amount C and length L is
@@ -213,6 +219,7 @@ def profile_gap(
     >>> [round(float(value) * 1e6, 6) for value in gap]
     [0.0, 5.0, 10.0]
     """
+    require_positive("relief_length", relief_length, "m")
     given = gear.modification
     radius = np.clip(np.asarray(curvature_radius, dtype=float), *flank)
     place = (radius - flank.lowest) / flank.length

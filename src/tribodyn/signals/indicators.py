@@ -6,6 +6,7 @@ every step. Between these three samples a signal is a parabola, so that peaks ar
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -326,6 +327,17 @@ def mesh_harmonics(
     return _fourier(fine, signal, np.arange(1, count + 1, dtype=float))
 
 
+#: Largest matrix of a transform that is kept for the next signal on the same samples.
+_KEPT = 10**6
+
+
+@lru_cache(maxsize=2)
+def _turns(orders: bytes, phase: bytes, weight: bytes) -> ComplexArray:
+    """Matrix of a transform: every order at all phases, weighted."""
+    order, turn, share = map(np.frombuffer, (orders, phase, weight))
+    return np.asarray(np.exp(-2j * np.pi * order[:, None] * turn) * share)
+
+
 def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
     span = round(float(fine.phase[-1]))
     if orders.size and orders[-1] * 8.0 > fine.phase.size / 3.0 / max(span, 1):
@@ -337,7 +349,8 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
             remedy="Use more steps per mesh cycle",
         )
     _on(fine.phase.size, signal)
-    turns = np.exp(-2j * np.pi * orders[:, None] * fine.phase) * fine.weight
+    make = _turns if orders.size * fine.phase.size < _KEPT else _turns.__wrapped__
+    turns = make(orders.tobytes(), fine.phase.tobytes(), fine.weight.tobytes())
     return np.asarray(2.0 * np.tensordot(turns, signal, axes=(1, 0)))
 
 

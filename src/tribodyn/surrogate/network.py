@@ -63,7 +63,8 @@ class Network:
     def __post_init__(self) -> None:
         if not all(isinstance(each, tuple | list) for each in (self.hidden, self.activations)):
             what = f"hidden = {self.hidden!r}, activations = {self.activations!r}"
-            raise InputError(what, Argument("hidden"), "", "Give both as tuples")
+            why = "Each layer has a size and an activation"
+            raise InputError(what, Argument("hidden"), why, "Give both as tuples")
         for count in (self.inputs, *self.hidden):
             require_whole("hidden", count)
         for name in self.activations:

@@ -321,3 +321,15 @@ def test_the_command_line_shows_and_writes_them(
     assert td.load_case(target).gear_pair == td.load_case(source).gear_pair
     assert call(["check", "fzg-roughness", "--set", f"{PINION}.tip_relief_length=40 mm"]) == 2
     assert "used flank" in capsys.readouterr().err
+
+
+def test_without_backlash_a_vanishing_relief_is_none() -> None:
+    quick = {"stiffness.model": "iso6336", "solver.steps_per_mesh_cycle": 128}
+    case = td.load_case("fzg-12dof-light").replace(quick)
+    assert case.dynamics.backlash == 0.0
+    forces = [
+        td.run(case.replace({f"{PINION}.tip_relief": relief})).response.contact_force
+        for relief in (0.0, 1e-11, 1e-9)
+    ]
+    none, little, more = (np.asarray(force).sum(axis=-1).max() for force in forces)
+    assert abs(little - none) < 0.02 * abs(more - none) < 0.01

@@ -5,15 +5,17 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from broken import SOUND
 
 from tribodyn import load_case
 from tribodyn.errors import InputError, Problem, TribodynError
 from tribodyn.mesh.table_file import read_table_file
-from tribodyn.study import read_case
+from tribodyn.study import read_case, run
 from tribodyn.units import UnitProblemError, convert, parse
 
 
@@ -169,3 +171,42 @@ def test_a_full_disk_is_told_as_json_with_the_place(tmp_path: Path) -> None:
     assert told["problems"][0]["where"] == "my.toml"
     assert "no space left" in told["problems"][0]["what"]
     assert os.listdir(tmp_path) == []
+
+
+class _Meanwhile:
+    """Progress during which something else happens, once."""
+
+    def __init__(self, event: Callable[[], object]) -> None:
+        self.events = [event]
+
+    def start(self, task: str, total: int | None = None) -> None:
+        while self.events:
+            self.events.pop()()
+
+    def advance(self, steps: int = 1) -> None:
+        pass
+
+    def finish(self) -> None:
+        pass
+
+
+def _profile(path: Path, height: float) -> None:
+    place = np.arange(0.0, 4.0, 0.002)
+    waves = height * (np.sin(90.0 * place) + np.sin(211.0 * place))
+    rows = "".join(f"{x:.3f},{z:.4f}\n" for x, z in zip(place, waves, strict=True))
+    path.write_text(f"position,height\nmm,um\n{rows}", encoding="utf-8")
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+def test_a_file_that_changes_while_its_case_is_computed(tmp_path: Path) -> None:
+    path = tmp_path / "flank.csv"
+    _profile(path, 0.5)
+    mixed = {"friction.law": "mixed", "friction.roughness_profile": str(path)}
+    case = load_case("fzg-roughness").replace({"stiffness.model": "iso6336", **mixed})
+    assert run(case).case == case
+    with pytest.raises(InputError, match=r"flank\.csv changed while .* Compute it again") as told:
+        run(case, _Meanwhile(lambda: _profile(path, 0.6)))
+    assert [problem.where for problem in told.value.problems] == ["friction.roughness_profile"]
+    with pytest.raises(InputError, match=r"roughness_profile: .* there is no such file") as told:
+        run(case, _Meanwhile(path.unlink))
+    assert len(told.value.problems) == 1

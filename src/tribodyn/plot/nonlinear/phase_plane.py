@@ -155,8 +155,8 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
     """
     names = tuple(section.names)
     if isinstance(coordinate, str) and coordinate not in names:
-        what, remedy = f'no coordinate is called "{coordinate}"', f"Choose from: {', '.join(names)}"
-        raise InputError(what, "argument coordinate", "", remedy)
+        what, why = f'no coordinate is called "{coordinate}"', f"There are {', '.join(names)}"
+        raise InputError(what, "argument coordinate", why, "Choose one of these")
     column = names.index(coordinate) if isinstance(coordinate, str) else coordinate
     name, place, speed = names[column], section.position[:, column], section.velocity[:, column]
     x_factor, x_unit = scaled(place, unit_of(name))

@@ -294,7 +294,7 @@ def placed(case: CaseData) -> Iterator[None]:
         keyed = [(_key_in(case, problem), problem) for problem in error.problems]
         unknown = [problem for key, problem in keyed if not key]
         found = case.source.place((key, problem) for key, problem in keyed if key)
-        raise InputError([*found, *unknown]) from None
+        raise type(error)([*found, *unknown]) from None
 
 
 def _faults(section: str, build: Callable[[], object]) -> list[tuple[str, Problem]]:

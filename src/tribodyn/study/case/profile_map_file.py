@@ -35,7 +35,7 @@ def read_profile_map(path: str, interpolation: str) -> ProfileMap:
     except (OSError, ValueError) as error:
         reason = (getattr(error, "strerror", None) or str(error)).lower()
         what, remedy = f"the file cannot be read: {reason}", f"Correct the path: {path}"
-        raise _fault(path, 0, what, "", remedy) from None
+        raise _fault(path, 0, what, _FORM, remedy) from None
     return _read(path, interpolation, (state.st_mtime_ns, state.st_size))
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -213,6 +215,30 @@ def file_keys() -> list[str]:
             if isinstance(option, Option) and option.kind == "file"
         ]
     return files
+
+
+@contextmanager
+def unchanged_files(case: Case) -> Iterator[None]:
+    """Refuse what was computed while a file that the case names was replaced or deleted."""
+    values = dict(case.values())
+    files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
+    before = {key: _state(path) for key, path in files.items()}
+    yield
+    why = "A part of what was computed may belong to the file before, a part to the one after"
+    told = [
+        Problem(f"{path} changed while the case was computed", key, why, "Compute it again")
+        for key, path in files.items()
+        if _state(path) != before[key]
+    ]
+    if told:
+        raise InputError(told)
+
+
+def _state(path: Path) -> tuple[int, int, int] | None:
+    with suppress(OSError):
+        found = path.stat()
+        return found.st_mtime_ns, found.st_size, found.st_ino
+    return None
 
 
 def named_files(text: str, name: str = "") -> list[tuple[str, str]]:

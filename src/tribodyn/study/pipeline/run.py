@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tribodyn.errors import ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
+from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.coupling import Follow, coupled
 from tribodyn.study.heat_balance import balanced
 from tribodyn.study.pipeline.assembly import damping_of, system_of
@@ -95,7 +96,7 @@ def computed(
 
     ``known`` gives its mesh table where a study has loads and films at hand.
     """
-    with placed(case), collected() as found:
+    with unchanged_files(case), placed(case), collected() as found:
         progress.start("Tooth contact")
 
         def mesh_at(point: Case) -> tuple[Case, MeshTable, Coupling | None]:

@@ -32,6 +32,10 @@ _BLOCK, _LANES = 64, 1 << 16
 _STEPS, _ALL_STEPS = 20_000, 20_000_000
 
 
+class MissingProcessorError(InputError, OSError):
+    """What the machine lacks, which is no fault of the input that asks for it."""
+
+
 def require_gpu() -> None:
     """Refuse where no graphics processor answers."""
     where, stay = Argument("backend"), 'or leave backend = "cpu"'
@@ -41,13 +45,13 @@ def require_gpu() -> None:
         from numba import cuda
     except ImportError as error:
         what, remedy = "numba-cuda is not installed", 'Install it: pip install "tribodyn[cuda]", '
-        raise InputError(what, where, f"{error}", remedy + stay) from None
+        raise MissingProcessorError(what, where, f"{error}", remedy + stay) from None
     if not cuda.is_available():
         lines = [line.strip(" .") for line in str(cuda.cuda_error()).splitlines()]
         reason = [line for line in lines if line and not line.endswith(":")]
         what, why = "no graphics processor of NVIDIA answers", "; ".join(reason[:1])
         remedy = f"Install its driver, so that nvidia-smi lists the processor, {stay}"
-        raise InputError(what, where, why, remedy)
+        raise MissingProcessorError(what, where, why, remedy)
 
 
 class _Kernel:

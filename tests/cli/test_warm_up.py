@@ -1,0 +1,27 @@
+"""``tribodyn warm-up``: processes compile into the cache, and load what is there."""
+
+from __future__ import annotations
+
+import pytest
+
+from tribodyn.cli.commands.warm_up_command import _children
+from tribodyn.errors import ComputationError
+
+_ENGINE = "dynamics._engine.marching.march_block"
+
+
+def test_what_one_process_compiled_the_next_one_loads() -> None:
+    found = []
+    for _ in range(2):
+        with _children([""], 1) as results:
+            found += list(results)
+    assert _ENGINE in {*found[0]["compiled"], *found[0]["loaded"]}
+    assert found[1] == {"compiled": {}, "loaded": [_ENGINE]}
+
+
+def test_a_case_that_fails_is_told() -> None:
+    with (
+        pytest.raises(ComputationError, match="kernels of nowhere"),
+        _children(["nowhere"], 1) as results,
+    ):
+        list(results)
