@@ -155,7 +155,7 @@ def _items(hint: Any, origin: type, strict: bool) -> Wanted:
         if each and not strict and not isinstance(value, Iterable):
             return each[0].read(value)  # one alone, which some functions take too
         texts = isinstance(value, str) and kinds == [str]
-        _require(isinstance(value, Iterable) and not isinstance(value, bytes | Mapping))
+        _require(isinstance(value, Iterable) and not isinstance(value, bytes))
         _require(texts or not isinstance(value, str))
         if not isinstance(value, Sequence | np.ndarray):
             if not issubclass(origin, Sequence):

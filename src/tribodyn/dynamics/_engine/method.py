@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.compiled import source_digest
+from tribodyn.compiled.inner import INNER_OPTIONS
 from tribodyn.dynamics.equations.grid import Grid
-from tribodyn.inner_kernels import INNER_OPTIONS
 from tribodyn.types import Array, Index
 
 

@@ -13,7 +13,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from tribodyn.inner_kernels import INNER_OPTIONS
+from tribodyn.compiled.inner import INNER_OPTIONS
 
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: dict[str, Any] = {

@@ -18,7 +18,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
-from tribodyn.inner_kernels import INNER_OPTIONS
+from tribodyn.compiled.inner import INNER_OPTIONS
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
