@@ -28,6 +28,15 @@ RIGID = 1e-3
 GOOD, PROMISED = 0.006, 0.02
 #: Difference of logarithms beyond which more is as bad.
 _FAR = 20.0
+#: Vertex of a parabola through the greatest pressure and its neighbours, in parts of a node: where
+#: it is found while the tip of a sharp peak moves evenly by a tenth of a node each.
+_VERTEX = (0.53, 0.61, 0.655, 0.69, 0.73, 0.77, 0.82, 0.90, 1.03, 1.26, 1.53)
+_EVEN = 0.35 + 0.1 * np.arange(len(_VERTEX))
+#: How far the height of a sharp peak swings while its tip moves from node to node, over how far it
+#: falls to its neighbours.
+SWING = 0.25
+#: Places whose peaks tell how sharp one is.
+_BESIDE = 8
 #: Contacts that are solved beside the positions at most.
 MOST_ADDED = 800
 #: Ages nearer than this are one place [mesh cycles].
@@ -51,7 +60,7 @@ class Places(NamedTuple):
     entrainment_speed: Array
     load_per_width: Array
     values: Array
-    peak_node: Index
+    peak_place: Array  #: of the tip of the greatest pressure, in nodes
     peak_drop: Array
     yielding: Mask  #: whether the stiffness of the film is taken from here too
     solution: Solutions  #: of each of them
@@ -90,21 +99,24 @@ def places_of(
     # The compliance and not the stiffness, which has a pole where the compliance is zero.
     values.append(scales["film_stiffness"] / np.asarray(films.film_stiffness))
     peaks = [_peak(solution.pressure) for solution in films.solutions]
-    node, drop = np.array(peaks).reshape(-1, 2).T
+    tip, drop = np.array(peaks).reshape(-1, 2).T
     solution = np.empty(zone.size, dtype=object)
     solution[:] = films.solutions
-    nodes = node.astype(np.int64)
     radius, speed, found = pairs.equivalent_radius, pairs.entrainment_speed, np.stack(values)
     where = pairs.age, zone, radius, speed, load
     distance = np.log(np.asarray(films.film_distance) / scales["central_film"])
-    return Places(*where, found, nodes, drop, yielding, solution, distance)
+    return Places(*where, found, tip, drop, yielding, solution, distance)
 
 
-def _peak(pressure: Array) -> tuple[int, float]:
-    """Node of the greatest pressure, and how far it falls to its neighbours."""
+def _peak(pressure: Array) -> tuple[float, float]:
+    """Place of the tip of the pressure, in nodes, and how far it falls to its neighbours."""
     node = int(np.clip(np.argmax(pressure), 1, pressure.size - 2))
     before, most, after = pressure[node - 1 : node + 2]
-    return node, float((2.0 * most - before - after) / (2.0 * most))
+    bend = 2.0 * most - before - after
+    vertex = node + (0.5 * (after - before) / bend if bend > 0.0 else 0.0)
+    whole = np.floor(vertex - _VERTEX[0])
+    place = whole + np.interp(vertex - whole, _VERTEX, _EVEN)
+    return float(place), float(bend / (2.0 * most))
 
 
 def between(
@@ -218,7 +230,7 @@ class Refinement:
             middles = [self._middle(interval) for interval in intervals]
             pairs = [(i, m) for i, m in zip(intervals, middles, strict=True) if m >= 0]
             if self.memory.contacts.size + len(pairs) > MOST_ADDED:
-                self._doubt(intervals)
+                self._doubt(intervals, PRESSURE in quantities)
                 return
             if not pairs:
                 return
@@ -329,10 +341,15 @@ class Refinement:
         return found
 
     def _passes_nodes(self, interval: _Interval) -> bool:
-        """Whether a sharp peak passes several nodes between two places: its height is uneven."""
+        """Whether a sharp peak moves so far on the nodes that its height is uneven in between."""
         ends = self._ends(interval)
-        nodes, drops = self.places.peak_node[ends], self.places.peak_drop[ends]
-        return bool(abs(nodes[1] - nodes[0]) > 1 and drops.max() > PROMISED)
+        tips = self.places.peak_place[ends]
+        # How far a peak falls hangs on where it lies between the nodes: those beside tell more.
+        same = np.flatnonzero(self.places.zone == interval.zone)
+        apart = np.abs(self.places.age[same] - 0.5 * (interval.start + interval.end))
+        drop = self.places.peak_drop[same[np.argsort(apart)[:_BESIDE]]].max()
+        turn = np.pi * min(abs(tips[1] - tips[0]), 1.0)
+        return bool(SWING * drop * np.sin(0.5 * turn) ** 2 > 0.5 * PROMISED)
 
     def _turns_rigid(self, interval: _Interval) -> bool:
         """Whether the film turns rigid between both ends, so that its stiffness soars."""
@@ -349,11 +366,12 @@ class Refinement:
             for age in (interval.start, interval.end)
         ]
 
-    def _doubt(self, intervals: list[_Interval]) -> None:
+    def _doubt(self, intervals: list[_Interval], spikes: bool) -> None:
         """Mark the contacts between places that are not near enough to each other."""
         for interval in intervals:
-            inside = self._inside(interval)
-            self.doubtful[np.ix_(interval.error > PROMISED, inside)] = True
+            bad = interval.error > PROMISED
+            bad[PRESSURE] |= spikes and self._passes_nodes(interval)
+            self.doubtful[np.ix_(bad, self._inside(interval))] = True
 
 
 def with_curve(memory: Memory, zone: int, quantity: int) -> Memory:

@@ -23,7 +23,14 @@ from tribodyn.errors import TribodynError, quiet
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
-from tribodyn.mesh.film.film_refinement import PRESSURE, QUANTITIES, STIFFNESS, PathLoads, places_of
+from tribodyn.mesh.film.film_refinement import (
+    PRESSURE,
+    QUANTITIES,
+    STIFFNESS,
+    SWING,
+    PathLoads,
+    places_of,
+)
 from tribodyn.mesh.film.film_table import FilmTable
 from tribodyn.mesh.film.loaded_films import LoadedFilms
 from tribodyn.mesh.sharing import Teeth, ToothContact
@@ -141,28 +148,13 @@ class _Contacts:
             films = pairs.films(self.model, load, **self.options)
         index, every = np.zeros(load.size, dtype=np.int64), np.ones(load.size, dtype=bool)
         places = places_of(pairs, index, load, films, every)
-        tips = [_tip(solution.pressure) for solution in films.solutions]
         errors = [each.central_film_error / each.central_film for each in films.solutions]
-        more = np.array([places.distance, places.peak_drop, tips, errors])
+        more = np.array([places.distance, places.peak_drop, places.peak_place, errors])
         return np.concatenate([places.values, more])
 
 
-#: Vertex of a parabola through the greatest pressure and its neighbours, in parts of a node: where
-#: it is found while the tip of a sharp peak moves evenly by a tenth of a node each.
-_VERTEX = (0.53, 0.61, 0.655, 0.69, 0.73, 0.77, 0.82, 0.90, 1.03, 1.26, 1.53)
-_EVEN = 0.35 + 0.1 * np.arange(len(_VERTEX))
 #: Place between two nodes of the tip whose peak is the highest.
 _HIGHEST = 0.68
-
-
-def _tip(pressure: Array) -> float:
-    """Place of the tip of the pressure, in nodes; it moves evenly with load and speed."""
-    node = int(np.clip(np.argmax(pressure), 1, pressure.size - 2))
-    before, most, after = pressure[node - 1 : node + 2]
-    bend = 2.0 * most - before - after
-    vertex = node + (0.5 * (after - before) / bend if bend > 0.0 else 0.0)
-    whole = np.floor(vertex - _VERTEX[0])
-    return float(whole + np.interp(vertex - whole, _VERTEX, _EVEN))
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,7 +240,7 @@ class TabledPath(LoadedFilms):
         # Over some nodes the ups and downs of the table are as many.
         even = np.polynomial.Polynomial.fit(number[near], self.values[PRESSURE, near], 1)
         sharp = float(np.mean(self.values[_DROP, near]))
-        high = 0.125 * sharp * np.cos(2.0 * np.pi * (tip - _HIGHEST))
+        high = 0.5 * SWING * sharp * np.cos(2.0 * np.pi * (tip - _HIGHEST))
         scale = pressure / np.exp(self.values[PRESSURE])
         expected = np.where(near, scale * np.exp(even(number) + high), 0.0)
         worth, trials = _WORTH * expected.max(), list[int]()
