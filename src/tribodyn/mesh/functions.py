@@ -26,9 +26,10 @@ class MeshFunctions:
     ----------
     stiffness : callable
         Mesh stiffness [N/m].
-    friction_sum : callable
-        Sum over the pairs of sliding direction, friction coefficient and load share.
-    friction_moment_pinion, friction_moment_wheel : callable
+    friction_sum : callable or None
+        Sum over the pairs of sliding direction, friction coefficient and load share; nothing
+        rubs without it.
+    friction_moment_pinion, friction_moment_wheel : callable or None
         The same sum, each pair with its lever, the radius of curvature of that gear [m].
     event_phases : tuple of float
         Phases at which the functions jump; they return the value after the jump.
@@ -51,9 +52,9 @@ class MeshFunctions:
     """
 
     stiffness: Callable[[Array | float], Array]
-    friction_sum: Callable[[Array | float], Array]
-    friction_moment_pinion: Callable[[Array | float], Array]
-    friction_moment_wheel: Callable[[Array | float], Array]
+    friction_sum: Callable[[Array | float], Array] | None
+    friction_moment_pinion: Callable[[Array | float], Array] | None
+    friction_moment_wheel: Callable[[Array | float], Array] | None
     event_phases: tuple[float, ...]
     tangent_stiffness: Callable[[Array | float], Array] | None = None
     static_transmission_error: Callable[[Array | float], Array] | None = None

@@ -80,7 +80,10 @@ def gear_contact(
         keep = _kept(varying, supports)
         towards = _columns(varying, keep)
     of_mesh = getattr(mesh, "friction", None)
-    rub = _rub(mesh, onto[:, keep]) if of_mesh is None else _columns(of_mesh, keep)
+    rub: Entry | None = None if of_mesh is None else _columns(of_mesh, keep)
+    # What rubs in space is told by its direction alone; the three sums are those of a plane.
+    if of_mesh is None and keep != [4, 10] and mesh.friction_sum is not None:
+        rub = _rub(mesh, onto[:, keep])
     return Contact(
         direction=towards,
         stiffness=mesh.stiffness,

@@ -130,10 +130,11 @@ def _sided(samples: Any) -> Array:
 def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Friction force of all pairs, and what of it films and asperities cause where that is told."""
     from tribodyn.mesh.functions import ASPERITIES
+    from tribodyn.mesh.grid import PhaseFunction
 
     force, phase, law = mesh_force(samples), _sided(samples), result.friction
     if law is None:
-        rubbing = result.mesh.functions().friction_sum(phase) * force
+        rubbing = PhaseFunction(result.mesh.grid, result.mesh.friction_sum)(phase) * force
         split = result.mesh.asperity_friction_coefficient is not None
         metal = result.mesh.at(ASPERITIES, phase) * force if split else None
     else:
