@@ -7,7 +7,6 @@ import datetime
 import io
 import math
 import pickle
-import signal
 import traceback
 import types
 import warnings
@@ -19,6 +18,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+from fuzz.damage import HangError, at_most
 from fuzz.public_calls import SLOW, methods, parameters, public, results, working_calls
 from registries import as_before
 from tribodyn.arguments.reading import checked
@@ -50,26 +50,6 @@ NONSENSE = {
 }
 
 
-class TooLongError(BaseException):
-    """A call did not end."""
-
-
-@contextlib.contextmanager
-def at_most(seconds: float) -> Iterator[None]:
-    """End a call that needs more processor time."""
-
-    def end(*_: Any) -> None:
-        raise TooLongError
-
-    before = signal.signal(signal.SIGVTALRM, end)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-        signal.signal(signal.SIGVTALRM, before)
-
-
 def fault(thing: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
     """Say what is wrong with how a call ends; empty if it is told well or the result is finite."""
     kinds = {each.name: each.annotation for each in parameters(thing)}
@@ -81,7 +61,7 @@ def fault(thing: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
         return f"no cause or no remedy: {lacks[0]}" if lacks else ""
     except UnitProblemError:
         return ""
-    except TooLongError:
+    except HangError:
         return f"needs more than {PATIENCE} s"
     except Exception as error:
         place = traceback.extract_tb(error.__traceback__)[-1]

@@ -70,7 +70,8 @@ def warm_up(
         say(f"compiled in {seconds:.0f} s: {name}")
     for name in there:
         say(f"there already: {name}")
-    say(f"Done in {passed:.0f} s; runs compile nothing more")
+    what = "runs of the built-in cases compile" if case is None else "a run of this case compiles"
+    say(f"Done in {passed:.0f} s; {what} nothing more")
 
 
 @contextmanager
