@@ -207,7 +207,22 @@ class Drawing:
         return drawn.figure() if isinstance(drawn, Sketch) else drawn
 
     def sketch(self, result: Any, *arguments: Any, **options: Any) -> Any:
-        """Draw the figure of a result, and leave it to plotly only where it was made there."""
+        """Draw the figure of a result, and load plotly only where the function itself does.
+
+        Parameters
+        ----------
+        result, *arguments, **options
+            As for a call.
+
+        Returns
+        -------
+        Sketch or plotly.graph_objects.Figure
+
+        Raises
+        ------
+        InputError
+            If the result has nothing to draw.
+        """
         reason = self.missing(result)
         if reason:
             what = f'no figure "{self.name}" of this {type(result).__name__}'
