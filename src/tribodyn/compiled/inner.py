@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
@@ -38,6 +38,19 @@ class _InnerLibrary(JITCodeLibrary):  # type: ignore[misc]
         return 0
 
 
+class _Flags(Flags):  # type: ignore[misc]
+    """Flags of the compiler that are compared by what was set, not by all that could be."""
+
+    _hash = hash(Flags())
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        same = type(other) is _Flags and self._values == other._values
+        return same or bool(super().__eq__(other))
+
+
 @register_pass(mutates_CFG=True, analysis_only=False)
 class _InnerLowering(NativeLowering):  # type: ignore[misc]
     _name = "inner_lowering"
@@ -50,6 +63,10 @@ class _InnerLowering(NativeLowering):  # type: ignore[misc]
 
 
 class _InnerCompiler(CompilerBase):  # type: ignore[misc]
+    def __init__(self, *given: Any) -> None:
+        super().__init__(*given)
+        self.state.flags = _Flags(self.state.flags)
+
     def define_pipelines(self) -> list[Any]:
         pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
         pipeline.passes = [
@@ -57,6 +74,8 @@ class _InnerCompiler(CompilerBase):  # type: ignore[misc]
             for step, text in pipeline.passes
         ]
         pipeline.finalize()
+        # The last of the steps that change the code brings it in order for the ones that follow.
+        pipeline._ENFORCING = False
         return [pipeline]
 
 

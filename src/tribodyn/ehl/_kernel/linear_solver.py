@@ -212,7 +212,7 @@ def coarse_tangent(
     return CoarseTangent(grid, last, a, pivot, np.empty(m + 2), p, h)
 
 
-@nb.njit(inline="always", **INNER)
+@nb.njit(**INNER)
 def _correct(
     fine: Grid,
     k: int,
@@ -322,7 +322,7 @@ def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
     return True
 
 
-@nb.njit(inline="always", **INNER)
+@nb.njit(**INNER)
 def _precondition(
     grid: Grid,
     k: int,
@@ -362,7 +362,7 @@ def film_change(grid: Grid, k: int, first: float, x: Array, work: LinearWork) ->
     film_sum(grid.n, grid.influence, grid.plan, p, work.transform, work.film)
 
 
-@nb.njit(inline="always", **INNER)
+@nb.njit(**INNER)
 def _apply(grid: Grid, k: int, imposed: bool, work: LinearWork, x: Array, y: Array) -> None:
     """Rows 1..k of the tangent times ``x``, scaled."""
     cH, cP, p, h, scale = work.by_film, work.by_pressure, work.pressure, work.film, work.scale
