@@ -17,7 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribodyn.cases import cases, load_case, load_result, run
+    from tribodyn.cases import cases, load_case, load_result, run, warm_up
     from tribodyn.errors import ComputationError, InputError, ModelWarning
     from tribodyn.study import (
         Case,
@@ -76,6 +76,7 @@ __all__ = [
     "speed_sweep",
     "sweep",
     "vibration_data",
+    "warm_up",
 ]
 
 _HOMES = {
@@ -107,6 +108,7 @@ _HOMES = {
     "speed_sweep": "study",
     "sweep": "study",
     "vibration_data": "study",
+    "warm_up": "cases",
 }
 
 _ROOMS = (

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tribodyn.cli.commands.warm_up_command import _children
-from tribodyn.errors import ComputationError
+import tribodyn
+from tribodyn.cases.compile_ahead import _children
+from tribodyn.errors import ComputationError, InputError
 
 _ENGINE = "dynamics._engine.marching.march_block"
 
@@ -25,3 +26,10 @@ def test_a_case_that_fails_is_told() -> None:
         _children(["nowhere"], 1) as results,
     ):
         list(results)
+
+
+def test_what_there_is_not_is_refused_before_anything_compiles() -> None:
+    with pytest.raises(InputError, match="nowhere"):
+        tribodyn.warm_up("nowhere")
+    with pytest.raises(InputError, match="jobs = 0"):
+        tribodyn.warm_up("fzg-roughness", jobs=0)

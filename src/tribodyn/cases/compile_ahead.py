@@ -1,0 +1,154 @@
+"""Kernels compiled into the disk cache ahead of the first run, in processes side by side."""
+
+from __future__ import annotations
+
+import json as text
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tribodyn.cases.catalogue import cases
+from tribodyn.cases.load import load_case
+from tribodyn.checks import require_whole
+from tribodyn.errors import ComputationError
+from tribodyn.progress import SILENT, Progress
+
+#: The job that needs no case: one march. A process beside it begins with teeth and films.
+_ENGINE = ""
+_CALL = "import sys; from {0} import compile_for; compile_for(sys.argv[1])"
+
+
+def warm_up(
+    case: str | None = None, jobs: int | None = None, progress: Progress = SILENT
+) -> dict[str, Any]:
+    """Compile what a case needs into the disk cache, by a run that nothing is kept of.
+
+    Parameters
+    ----------
+    case : str, optional
+        Built-in case or path of a case file; all built-in cases by default.
+    jobs : int, optional
+        Processes side by side; as many as there are processors by default, at most four.
+    progress : Progress
+        Told how far it has come; silent by default.
+
+    Returns
+    -------
+    dict of str to object
+        ``"compiled"``: time by kernel [s], ``"there_already"``: kernels that were loaded,
+        ``"seconds"``: time of the whole [s].
+
+    Raises
+    ------
+    InputError
+        If there is no such case.
+    ComputationError
+        If a process fails.
+
+    Examples
+    --------
+    >>> warm_up("fzg-roughness")  # doctest: +SKIP
+    """
+    most = min(os.cpu_count() or 1, 4) if jobs is None else require_whole("jobs", jobs)
+    if case is not None:
+        load_case(case)
+    # A solved film takes longest.
+    known = sorted(cases(), key=lambda name: "film" not in name) if case is None else [case]
+    todo, begun = [known[0], _ENGINE, *known[1:]], time.monotonic()
+    compiled: dict[str, float] = {}
+    ready: set[str] = set()
+    with _children(todo, most) as results:
+        progress.start("Compiling", len(todo))
+        for result in results:
+            for name, seconds in result["compiled"].items():
+                compiled[name] = compiled.get(name, 0.0) + seconds
+            ready |= set(result["loaded"])
+            progress.advance()
+        progress.finish()
+    there, passed = sorted(ready - set(compiled)), time.monotonic() - begun
+    return {"compiled": compiled, "there_already": there, "seconds": passed}
+
+
+@contextmanager
+def _children(todo: list[str], most: int) -> Iterator[Iterator[dict[str, Any]]]:
+    """What processes compiled for every job, as each ends; none is left behind."""
+    running: set[subprocess.Popen[str]] = set()
+    stopped: list[bool] = []
+
+    def work(job: str) -> dict[str, Any]:
+        if stopped:
+            return {}
+        call = [sys.executable, "-c", _CALL.format(__name__), job]
+        pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        child = subprocess.Popen(call, text=True, start_new_session=True, **pipes)
+        running.add(child)
+        told, wrong = child.communicate()
+        running.discard(child)
+        if child.returncode == 0:
+            return dict(text.loads(told.splitlines()[-1]))
+        why = (wrong.strip().splitlines() or [f"exit code {child.returncode}"])[-1]
+        what, remedy = f"The kernels of {job or 'a march'} were not compiled", "Run the case"
+        raise ComputationError(what, "", why, remedy)
+
+    pool = ThreadPoolExecutor(most)
+    futures = [pool.submit(work, job) for job in todo]
+    try:
+        yield (future.result() for future in as_completed(futures))
+    finally:
+        stopped.append(True)
+        for child in list(running):
+            child.kill()
+        pool.shutdown()
+
+
+def compile_for(job: str) -> None:
+    """Do one job in this process and print what was compiled and what was loaded."""
+    import warnings
+
+    from numba.core import event
+    from numba.core.caching import FunctionCache
+
+    from tribodyn.compiled import kernels
+
+    compiled: dict[str, float] = {}
+    begun: dict[Any, float] = {}
+
+    class Compiling(event.Listener):  # type: ignore[misc]
+        def on_start(self, event: Any) -> None:
+            begun.setdefault(event.data["dispatcher"], time.monotonic())
+
+        def on_end(self, event: Any) -> None:
+            kernel = event.data["dispatcher"]
+            seconds = time.monotonic() - begun.pop(kernel, time.monotonic())
+            if isinstance(kernel._cache, FunctionCache):
+                name = _name(kernel)
+                compiled[name] = compiled.get(name, 0.0) + seconds
+
+    event.register("numba:compile", Compiling())
+    warnings.simplefilter("ignore")
+    if job == _ENGINE:
+        _march()
+    else:
+        from tribodyn.study.pipeline.run import run
+
+        with TemporaryDirectory() as place:  # Some figures of the report compute too.
+            run(load_case(job)).save(f"{place}/result")
+    loaded = sorted({_name(kernel) for kernel in kernels if kernel.stats.cache_hits})
+    sys.stdout.write(text.dumps({"compiled": compiled, "loaded": loaded}) + "\n")
+
+
+def _name(kernel: Any) -> str:
+    return f"{kernel.py_func.__module__.removeprefix('tribodyn.')}.{kernel.py_func.__name__}"
+
+
+def _march() -> None:
+    """The orbit of a system that takes no time."""
+    from tribodyn.dynamics import System, steady_state
+
+    steady_state(System([[1.0]], [[1.0]], [[1e4]], [0.0]), 10.0, steps=64)
