@@ -24,7 +24,7 @@ from tribodyn.errors import (
     warn,
 )
 from tribodyn.friction.mesh_means.measured import FZG_POINTS
-from tribodyn.losses.gear_loss import gear_loss_factor
+from tribodyn.losses.gearbox import gear_loss_factor
 from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
 

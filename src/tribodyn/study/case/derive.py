@@ -239,13 +239,15 @@ def _argument_keys() -> dict[str, str]:
     return {o.argument: key for key, o in options_of(Section.whole, "") if o.argument}
 
 
-def options_of(section: type[Section], prefix: str) -> Iterator[tuple[str, Option]]:
+def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
     """Options of a table and of the tables in it, by their keys; those of models are left out."""
+    found: list[tuple[str, Option]] = []
     for name, field in section.fields.items():
         if isinstance(field, Table):
-            yield from options_of(field.kind, f"{prefix}{name}.")
+            found += options_of(field.kind, f"{prefix}{name}.")
         else:
-            yield f"{prefix}{name}", field
+            found.append((f"{prefix}{name}", field))
+    return found
 
 
 def _key(problem: Problem, section: str) -> str:
