@@ -6,8 +6,7 @@ import numpy as np
 
 from plain.lane import Motion, PlainLane
 from tribodyn.dynamics import System
-from tribodyn.dynamics.equations.grid import Grid
-from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.grid import Grid, Nodes
 from tribodyn.types import Array
 
 

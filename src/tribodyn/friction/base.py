@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
-from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened
+from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened, warn
 from tribodyn.model import Model, Registry
 from tribodyn.types import Array
 
@@ -375,3 +375,36 @@ class FrictionLaw(Model):
 
 #: The friction laws by name, open to third parties through the entry points of this group.
 LAWS: Registry[FrictionLaw] = Registry("friction law", "tribodyn.friction", FrictionLaw)
+
+
+class Range(NamedTuple):
+    """A quantity with the range in which a law was fitted."""
+
+    name: str  #: name of the quantity
+    value: Array  #: value in any unit, named below
+    low: float
+    high: float
+    unit: str = ""  #: unit of value and limits
+
+
+def warn_outside(law: str, ranges: Iterable[Range], remedy: str) -> None:
+    """Warn once, naming every quantity outside of its range with all that it runs through."""
+    faults = [_told(quantity) for quantity in ranges if _leaves(quantity)]
+    if faults:
+        warn("friction-range", f"{law}: {'; '.join(faults)}. {remedy}", stacklevel=3)
+
+
+def _leaves(quantity: Range) -> bool:
+    low, high = float(np.min(quantity.value)), float(np.max(quantity.value))
+    return not quantity.low <= low <= high <= quantity.high
+
+
+def _told(quantity: Range) -> str:
+    """Write the whole range of a quantity and the one of the law."""
+    low, high = f"{np.min(quantity.value):.4g}", f"{np.max(quantity.value):.4g}"
+    values = low if low == high else f"{low} to {high}"
+    limits = f"{quantity.low:g} to {quantity.high:g}"
+    if quantity.high == np.inf:
+        limits = f"{quantity.low:g} or more"
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    return f"{quantity.name} {values}{unit}, fitted for {limits}{unit}"

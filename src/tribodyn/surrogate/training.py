@@ -11,9 +11,8 @@ import numpy as np
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.progress import SILENT, Progress
-from tribodyn.surrogate.levenberg_marquardt import Fit, Squares, levenberg_marquardt
 from tribodyn.surrogate.model import Surrogate
-from tribodyn.surrogate.network import Network
+from tribodyn.surrogate.network import Fit, Network, Squares, levenberg_marquardt
 from tribodyn.surrogate.preparation import Prepared, prepare
 from tribodyn.types import Array
 

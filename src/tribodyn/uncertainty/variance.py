@@ -11,7 +11,7 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, ComputationError, InputError, Problem
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
-from tribodyn.uncertainty.distribution import distribution
+from tribodyn.uncertainty.sampling import distribution
 
 
 @record

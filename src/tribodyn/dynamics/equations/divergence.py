@@ -6,8 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import Grid, system_events
-from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction, sampled
+from tribodyn.dynamics.equations.grid import (
+    Grid,
+    Nodes,
+    friction_tangent,
+    push_with_friction,
+    sampled,
+    system_events,
+)
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError

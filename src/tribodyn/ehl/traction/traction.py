@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import heated_log_viscosity
-from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
-from tribodyn.ehl.traction.shear_models import SHEAR_MODELS, ShearModel
+from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS, ShearModel
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
