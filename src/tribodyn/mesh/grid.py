@@ -151,11 +151,13 @@ class PhaseFunction:
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
         first, weights = self.grid._between(np.asarray(phase, dtype=float))
-        further = (1,) * (self.values.ndim - 1)
-        total = np.zeros(first.shape + self.values.shape[1:])
+        # Places last, so that every loop is long.
+        columns = np.ascontiguousarray(self.values.reshape(len(self.values), -1).T)
+        total = np.zeros((len(columns), *first.shape))
         for knot, weight in enumerate(weights):
-            total += weight.reshape(weight.shape + further) * self.values[first + knot]
-        return total if self.onto is None else np.asarray(total @ self.onto)
+            total += weight * columns.take(first + knot, axis=1)
+        found = np.moveaxis(total, 0, -1).reshape(first.shape + self.values.shape[1:])
+        return found if self.onto is None else np.asarray(found @ self.onto)
 
 
 def phase_grid(event_phases: tuple[float, ...], steps: int = 512) -> PhaseGrid:

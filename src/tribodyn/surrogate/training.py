@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, require_between
@@ -242,18 +243,20 @@ def _fitted(
     residuals = _Residuals(network, inputs[fitted], target[fitted])
     validation = _Residuals(network, inputs[held], target[held])
     random = np.random.default_rng([seed, column])
-    fits = [
-        levenberg_marquardt(
-            residuals.squares,
-            residuals.mean_square,
-            network.start(random),
-            validation=validation.mean_square,
-            damping=training.damping,
-            epochs=training.epochs,
-            patience=training.patience,
-        )
-        for _ in range(training.starts)
-    ]
+    # Threads would wait for each other at every small product, and change the last digits.
+    with threadpool_limits(1, "blas"):
+        fits = [
+            levenberg_marquardt(
+                residuals.squares,
+                residuals.mean_square,
+                network.start(random),
+                validation=validation.mean_square,
+                damping=training.damping,
+                epochs=training.epochs,
+                patience=training.patience,
+            )
+            for _ in range(training.starts)
+        ]
     best = min(fits, key=lambda fit: validation.mean_square(fit.weights))
     span = float(ready.target_scaling.span[column])
     error = span * (network.evaluate(best.weights, inputs[held]) - target[held])

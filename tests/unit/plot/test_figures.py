@@ -135,6 +135,7 @@ def test_transmission_error_counts_from_first_contact(
     assert error.y[0] == pytest.approx(1e6 * (deflection - result.half_backlash))
 
 
+@pytest.mark.slow
 def test_quasi_static_error_counts_what_relieved_flanks_leave_open(drawable: Any) -> None:
     relief = {
         f"gears.{gear}.modification.{key}": value

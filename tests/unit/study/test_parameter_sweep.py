@@ -78,7 +78,7 @@ def test_a_value_that_fails_is_told_and_the_others_go_on(case):
 def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
     import tribodyn.study.studies.sweep as module
 
-    computed, point = module.computed, module._point
+    begin, figures = module.begin, module._figures
     ready = [threading.Event(), threading.Event()]
 
     def third_is_interrupted(changed):
@@ -86,18 +86,18 @@ def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
         if speed == 1250:
             assert all(event.wait(300.0) for event in ready)
             raise KeyboardInterrupt
-        return computed(changed)
+        return begin(changed)
 
-    def told(compute, values):
-        found = point(compute, values)
-        place = round((values[0] * 30.0 / np.pi - 1000.0) / 125.0)
+    def told(point):
+        found = figures(point)
+        place = round((point.case.operation.speed * 30.0 / np.pi - 1000.0) / 125.0)
         if place < 2:
             # The point counts as finished a moment after this.
             threading.Timer(0.2, ready[place].set).start()
         return found
 
-    monkeypatch.setattr(module, "computed", third_is_interrupted)
-    monkeypatch.setattr(module, "_point", told)
+    monkeypatch.setattr(module, "begin", third_is_interrupted)
+    monkeypatch.setattr(module, "_figures", told)
     found = td.sweep(case, between=("1000 rpm", "1500 rpm"), points=5, partial=True)
     assert not found.complete
     assert repr(found).endswith("2 of 5 done)")
@@ -184,7 +184,7 @@ def test_an_unknown_figure_names_the_nearest(grid):
     ],
 )
 def test_bad_input_is_refused_before_anything_runs(case, over, words, monkeypatch):
-    monkeypatch.setattr("tribodyn.study.studies.sweep.computed", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr("tribodyn.study.studies.sweep.begin", lambda *_: pytest.fail("it ran"))
     with pytest.raises(InputError, match=words):
         td.sweep(case, over)
 

@@ -49,8 +49,8 @@ def test_a_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         _dying(patch, 2)
         with pytest.raises(_KilledError):
             sweep(case, _SPEEDS, members=members)
-    computed, asked = sweeps.computed, []
-    monkeypatch.setattr(sweeps, "computed", lambda case: asked.append(case) or computed(case))
+    begin, asked = sweeps.begin, []
+    monkeypatch.setattr(sweeps, "begin", lambda case: asked.append(case) or begin(case))
     with Members(tmp_path / "s") as members:
         found = sweep(case, _SPEEDS, members=members)
     assert len(asked) == 2

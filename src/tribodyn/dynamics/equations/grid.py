@@ -325,7 +325,7 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         direction_slope=vector("direction", rows.derivatives),
         force_direction=direction + vector("friction", rows.values),
         force=rows.values("force", system.force, size),
-        weight=grid.width[:, None] * _SIMPSON,
+        weight=step_weights(grid),
         friction_direction=friction_directions(system, rows),
         friction_coefficients=friction_coefficients(system, rows),
     )
@@ -335,14 +335,19 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     return nodes
 
 
+def halved_grid(grid: Grid) -> Grid:
+    """The grid with every step cut in two."""
+    half, first = np.repeat(0.5 * grid.width, 2), np.arange(2 * grid.steps) % 2 == 0
+    left = np.repeat(grid.left, 2) + np.where(first, 0.0, half)
+    events = np.repeat(grid.after_event, 2) & first
+    segments = (np.repeat(part, 2) for part in (grid.segment_left, grid.segment_right))
+    return Grid(left, half, events, *segments)
+
+
 def halved_nodes(system: System, grid: Grid, nodes: Nodes) -> tuple[Grid, Nodes]:
     """The grid with every step cut in two, and its rows: two of three are there already."""
-    half, count = 0.5 * grid.width, grid.steps
-    first = np.arange(2 * count) % 2 == 0
+    half, count, fine = 0.5 * grid.width, grid.steps, halved_grid(grid)
     segments = grid.segment_left, grid.segment_right
-    left = np.repeat(grid.left, 2) + np.where(first, 0.0, np.repeat(half, 2))
-    events = np.repeat(grid.after_event, 2) & first
-    fine = Grid(left, np.repeat(half, 2), events, *(np.repeat(part, 2) for part in segments))
     between = evaluate_nodes(
         system, Grid(grid.left + 0.5 * half, half, grid.after_event, *segments)
     )
@@ -354,8 +359,12 @@ def halved_nodes(system: System, grid: Grid, nodes: Nodes) -> tuple[Grid, Nodes]
         return rows.reshape(2 * count, *old.shape[1:])
 
     rows = Nodes(*(joined(old, new) for old, new in zip(nodes, between, strict=True)))
-    weight = fine.width[:, None] * _SIMPSON
-    return fine, rows._replace(weight=weight)
+    return fine, rows._replace(weight=step_weights(fine))
+
+
+def step_weights(grid: Grid) -> Array:
+    """Weights of both ends and the middle of every step, (steps, 3)."""
+    return grid.width[:, None] * _SIMPSON
 
 
 def sampled(system: System, steps: int) -> tuple[Grid, Nodes]:

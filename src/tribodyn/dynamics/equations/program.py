@@ -99,8 +99,8 @@ def compile_on(system: System, grid: Grid) -> tuple[Nodes, Program]:
 class _Terms:
     """Collects factors and the slots that they multiply, in reading order."""
 
-    def __init__(self, steps: int, pattern: Mask | None) -> None:
-        self.shape = (steps, 3)
+    def __init__(self, shape: tuple[int, ...], pattern: Mask | None) -> None:
+        self.shape = shape
         self.factors: list[Array | float] = []
         self.slots: list[int] = []
         self.pattern = pattern
@@ -128,9 +128,11 @@ class _Terms:
     def rows(self) -> Array:
         """All factors of a row side by side."""
         rows = np.zeros((*self.shape, max(len(self.factors), 1)))
-        for item, values in enumerate(self.factors):
-            rows[..., item] = values
-        return rows.reshape(-1)
+        wide = [np.broadcast_to(values, self.shape) for values in self.factors]
+        for lead in np.ndindex(self.shape[:-2]):  # which keeps the rows of one system in the cache
+            for item, values in enumerate(wide):
+                rows[lead][..., item] = values[lead]
+        return rows.reshape(*self.shape[:-2], -1)
 
 
 def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:
@@ -138,10 +140,10 @@ def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> 
     for j, contact in enumerate(system.contacts):
         scalars = (nodes.stiffness, nodes.damping, nodes.error, nodes.error_slope, nodes.gap)
         for item in scalars:
-            terms.factor(item[:, :, j])
+            terms.factor(item[..., j])
         for part in (nodes.direction, nodes.direction_slope):
-            code.append(terms.terms(part[:, :, j], 0))
-        code += [int(np.any(nodes.gap[:, :, j])), int(contact.damping_in_gap) + scaled]
+            code.append(terms.terms(part[..., j, :], 0))
+        code += [int(np.any(nodes.gap[..., j])), int(contact.damping_in_gap) + scaled]
     return code
 
 
@@ -156,7 +158,7 @@ def _friction_terms(
         terms.factor(1.0 / one.load)
         terms.factor(one.limit)
         for item in range(count):
-            terms.factor(nodes.friction_coefficients[:, :, f, item])
+            terms.factor(nodes.friction_coefficients[..., f, item])
     for j in range(len(system.contacts) if split else 0):
         # The friction of a contact as one with the coefficient 1, to be scaled by itself.
         code += [1, 1]
@@ -174,13 +176,12 @@ def _coordinate_terms(
     along = nodes.direction if split else nodes.force_direction
     rub = nodes.friction_direction
     if split:
-        rub = np.concatenate((rub, nodes.force_direction - nodes.direction), axis=2)
+        rub = np.concatenate((rub, nodes.force_direction - nodes.direction), axis=-2)
     reaction, drag = (
         (part.reshape(-1, system.size) @ -inverse.T).reshape(part.shape) for part in (along, rub)
     )
-    load = np.einsum(
-        "ik,rsk->rsi", inverse, nodes.force[: None if depends_on_phase(system.force) else 1]
-    )
+    steps = slice(None if depends_on_phase(system.force) else 1)
+    load = np.einsum("ik,...k->...i", inverse, nodes.force[..., steps, :, :])
     state = -np.hstack([inverse @ np.asarray(part) for part in (system.stiffness, system.damping)])
     state[np.abs(state) <= 1e-15 * np.abs(state).max(axis=1, keepdims=True)] = 0.0
     code: list[int] = []
@@ -189,9 +190,9 @@ def _coordinate_terms(
         count = terms.terms(state[i], 0)
         count += terms.terms(reaction[..., i], slots.force)
         count += terms.terms(drag[..., i], slots.friction)
-        varies[i] = terms.keeps(np.ptp(load[:, :, i]) > 0.0)
+        varies[i] = terms.keeps(np.any(np.ptp(load[..., i], axis=(-2, -1)) > 0.0))
         if varies[i]:
-            terms.factor(load[:, :, i])
+            terms.factor(load[..., i])
             terms.slots.append(slots.force_scale)
             count += 1
         code.append(count)
@@ -207,10 +208,10 @@ def build_program(
     split: bool = False,
     pattern: Mask | None = None,
 ) -> Program:
-    """Flatten a system on its grid."""
+    """Flatten a system on its grid; or several alike, whose rows have a first axis more."""
     size, contacts = system.size, len(system.contacts)
     slots = lay_out(size, contacts, len(system.frictions) + (contacts if split else 0))
-    terms = _Terms(grid.steps, pattern)
+    terms = _Terms(nodes.phase.shape, pattern)
     lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
     lists += _friction_terms(system, nodes, terms, slots, split)
     own, varies = _coordinate_terms(system, nodes, terms, slots, split)
@@ -219,7 +220,7 @@ def build_program(
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)
     reads = np.concatenate([relative + moving * buffer * 2 * size for buffer in range(3)])
-    load = system.inverse_mass @ nodes.force[0, 0]
+    load = nodes.force[..., 0, 0, :] @ system.inverse_mass.T
     return Program(
         code=np.array(
             [size, contacts, max(len(terms.factors), 1), relative.size, *lists, *own],

@@ -117,6 +117,8 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
 
 def rate_on_grid(system: System, steps: int = _FEWEST) -> float:
     """Largest modulus of an eigenvalue, looked up on a grid of as many steps."""
+    if steps in system._rates:
+        return system._rates[steps]
     grid = build_grid(system_events(system), steps)
     evaluator, total = RowEvaluator(grid, checks=False), np.zeros((grid.steps, 3))
     for j, contact in enumerate(system.contacts):

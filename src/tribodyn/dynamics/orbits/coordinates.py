@@ -16,12 +16,14 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import (
+    Nodes,
     carried_load,
     friction_secant,
     lowest_of_each_law,
     push_with_friction,
 )
 from tribodyn.dynamics.equations.motion import compression
+from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, warn
 from tribodyn.types import Array
 
@@ -38,7 +40,7 @@ class OrbitCoordinates:
     elastic: Array  #: orthonormal basis, in the mass metric, of positions that matter
     moving: Array  #: the same for velocities
     free: Array  #: free motions: neither position nor velocity matters
-    rate: float  #: weight of positions against velocities [rad/s]
+    rate: float | Array  #: weight of positions against velocities [rad/s]
 
     @cached_property
     def inverse(self) -> Array:
@@ -175,29 +177,29 @@ def static_start(compiled: Compiled) -> Array:
 def _equilibrium(compiled: Compiled, carrying: Array) -> Array:
     """Position at rest with the stiffness (steps, 3, contacts) that carries."""
     system, nodes = compiled.system, compiled.nodes
-    position = _balance(compiled, carrying, nodes.force_direction)
+    position = balanced_position(system, nodes, carrying, nodes.force_direction)
     for _ in range(_ROUNDS if system.frictions else 0):
         load = carried_load(system, carrying * (compression(nodes, position) - nodes.gap))
         ratio = friction_secant(system, nodes.friction_coefficients, load)
         last, position = (
             position,
-            _balance(compiled, carrying, push_with_friction(system, nodes, ratio)),
+            balanced_position(system, nodes, carrying, push_with_friction(system, nodes, ratio)),
         )
         if np.abs(position - last).max() <= 1e-12 * np.abs(position).max():
             break
     return position
 
 
-def _balance(compiled: Compiled, carrying: Array, push: Array) -> Array:
-    """Position at rest if each newton of a contact pushes with ``push`` (steps, 3, contacts, n)."""
-    system, nodes = compiled.system, compiled.nodes
-    weight = nodes.weight
-    outer = np.einsum("rsji,rsjk->rsjik", push, nodes.direction)
-    stiffness = system.stiffness + np.einsum("rs,rsj,rsjik->ik", weight, carrying, outer)
-    shift = carrying * (nodes.error + nodes.gap)
-    force = np.einsum("rs,rsi->i", weight, nodes.force)
-    force = force + np.einsum("rs,rsj,rsji->i", weight, shift, push)
+def balanced_position(system: System, nodes: Nodes, carrying: Array, push: Array) -> Array:
+    """Position at rest if each newton of a contact pushes with ``push`` (..., contacts, n)."""
+    shape = (*push.shape[:-4], -1, system.size)
+    along = np.broadcast_to(nodes.direction, push.shape).reshape(shape)
+    pushed = ((nodes.weight[..., None] * carrying)[..., None] * push).reshape(shape)
+    stiffness = system.stiffness + np.swapaxes(pushed, -1, -2) @ along
+    shift = (nodes.error + nodes.gap).reshape(*shape[:-1], 1)
+    force = np.einsum("...rs,...rsi->...i", nodes.weight, nodes.force) + (pushed * shift).sum(-2)
     # Least squares in mass-weighted coordinates: free motions get no displacement.
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
-    matrix = stiffness * np.outer(scale, scale)
-    return np.asarray(scale * np.linalg.lstsq(matrix, scale * force, rcond=1e-12)[0])
+    matrix = np.asarray(stiffness, dtype=float) * np.outer(scale, scale)
+    inverse = np.linalg.pinv(matrix, rcond=1e-12)
+    return np.asarray(scale * np.einsum("...ij,...j->...i", inverse, scale * force))

@@ -230,31 +230,32 @@ class OrbitMap:
 
     def without_drift(self, states: Array) -> Array:
         """Take the mean speed and mean acceleration out of the free motions, in place."""
-        c, size = self.coordinates, self.compiled.system.size
-        phase = np.concatenate(
-            [cycle + self.compiled.nodes.phase[:, 0] for cycle in range(self.periods)]
-            + [np.array([float(self.periods)])]
-        )
-        time = phase[:, None] * self.period
-        end = time[-1]
-        unmoved = np.linalg.solve(c.lower.T, np.eye(size))
-        for basis in (c.free, _complement(c.elastic, c.free)):
-            if basis.shape[1] == 0:
-                continue
-            speed = states[:, size:] @ c.lower @ basis
-            place = states[:, :size] @ c.lower @ basis
-            rise = (speed[-1] - speed[0]) / end
-            speed = speed - rise * time
-            place = place - 0.5 * rise * time**2
-            drift = (place[-1] - place[0]) / end
-            place = place - drift * time
-            middle = place[:-1].mean(axis=0)
-            kept = states[:, :size] @ c.lower @ basis
-            states[:, :size] += (place - middle - kept) @ basis.T @ unmoved.T
-            if basis is c.free:
-                kept = states[:, size:] @ c.lower @ basis
-                states[:, size:] += (speed - drift - kept) @ basis.T @ unmoved.T
-        return states
+        left = self.compiled.nodes.phase[:, 0]
+        phase = np.append(np.add.outer(np.arange(self.periods), left), float(self.periods))
+        return take_drift_out(self.coordinates, phase[:, None] * self.period, states)
+
+
+def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:
+    """Leave mean speed and acceleration of free motions out of states (..., rows, 2 n), in place.
+
+    ``time`` (..., rows, 1) begins at zero.
+    """
+    size, end = states.shape[-1] // 2, time[..., -1:, :]
+    for basis in (c.free, _complement(c.elastic, c.free)):
+        if basis.shape[1] == 0:
+            continue
+        along = c.lower @ basis
+        speed, place = states[..., size:] @ along, states[..., :size] @ along
+        rise = (speed[..., -1:, :] - speed[..., :1, :]) / end
+        still = place - 0.5 * rise * time**2
+        drift = (still[..., -1:, :] - still[..., :1, :]) / end
+        still -= drift * time
+        middle = still[..., :-1, :].mean(axis=-2, keepdims=True)
+        back = basis.T @ c.inverse
+        states[..., :size] += (still - middle - place) @ back
+        if basis is c.free:
+            states[..., size:] -= (rise * time + drift) @ back
+    return states
 
 
 def _complement(elastic: Array, free: Array) -> Array:

@@ -57,7 +57,7 @@ def _combine(points: list[Array], residuals: list[Array]) -> Array:
 
 
 #: Periods looked ahead at most, and the part of the distance at which there is nothing to fear.
-_HORIZON, _GONE = 2000, 1e-3
+HORIZON, GONE = 2000, 1e-3
 
 
 class FlankWatch:
@@ -124,14 +124,14 @@ class FlankWatch:
         first, steepest = float(np.abs(rates @ distance).max(initial=0.0)), 0.0
         if rates.size:
             steepest = float(np.sqrt((rates**2).sum(axis=1).max()))
-        for _ in range(_HORIZON):
+        for _ in range(HORIZON):
             if steepest * float(np.linalg.norm(distance)) > room.min(initial=np.inf):
                 moved = rates @ distance
                 if np.any(room + moved <= 0.0):
                     return False
-                if float(np.abs(moved).max(initial=0.0)) <= _GONE * first:
+                if float(np.abs(moved).max(initial=0.0)) <= GONE * first:
                     break
-            elif steepest * float(np.linalg.norm(distance)) <= _GONE * first:
+            elif steepest * float(np.linalg.norm(distance)) <= GONE * first:
                 break
             distance = matrix @ distance
         return True
@@ -152,7 +152,7 @@ _NEWTON_LIMIT = 8
 PATIENCE = (150, 400)
 #: Size of the disturbances of the monodromy matrix relative to the orbit, and where all equations
 #: are linear, so that larger ones are as good and lose fewer digits.
-_DISTURBANCE, _APART = 1e-7, 1e-3
+_DISTURBANCE, APART = 1e-7, 1e-3
 
 
 @dataclass
@@ -249,7 +249,7 @@ def _in_one_march(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint |
     watch = FlankWatch(mapping)
     if not watch.whole or mapping.compiled.nodes.friction_coefficients.shape[-1] > 1:
         return None
-    step = _APART * float(np.linalg.norm(y))
+    step = APART * float(np.linalg.norm(y))
     image, matrix, states, slopes = mapping.differences(y, step)
     room, rates = watch.rates(states, slopes)
     if np.any(room <= 0.0) or np.any(room[:, None] + step * rates <= 0.0):

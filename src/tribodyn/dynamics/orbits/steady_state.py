@@ -194,9 +194,9 @@ def _finish(
 
 
 #: Rounds with the matrix of the coarse orbit, and the part of the way that the last may still go.
-_ROUNDS, _CLOSE = 6, 0.02
+ROUNDS, CLOSE = 6, 0.02
 #: An orbit this far away, over its size, is another one.
-_OTHER = 0.5
+OTHER = 0.5
 
 
 def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> float:
@@ -215,21 +215,21 @@ def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> f
         step_number=0.5 * mapping.compiled.step_number,
     )
     point, way = orbit.point, np.inf
-    for _ in range(_ROUNDS):
+    for _ in range(ROUNDS):
         image, states = fine.follow(point)
         step = newton_step(orbit.matrix, image - point)[0]
         last, way = way, float(np.linalg.norm(step))
         moved = float(np.linalg.norm(point + step - orbit.point))
-        if not way < 0.5 * last or moved > _OTHER * orbit.scale:
+        if not way < 0.5 * last or moved > OTHER * orbit.scale:
             break
         point = point + step
-        if way <= _CLOSE * moved or way <= 1e-9 * orbit.scale:
+        if way <= CLOSE * moved or way <= 1e-9 * orbit.scale:
             if orbit.linear:  # What is left of the way moves both motions alike.
                 rest = orbit.slopes.reshape(-1, step.size) @ step
                 return _apart(mapping, orbit, states[::2] + rest.reshape(orbit.states.shape))
             return _apart(mapping, orbit, fine.follow(point)[1][::2])
     found = finish_orbit(fine, orbit.point, 1e-6)
-    same = np.linalg.norm(found.point - orbit.point) <= _OTHER * orbit.scale
+    same = np.linalg.norm(found.point - orbit.point) <= OTHER * orbit.scale
     if not (same and found.error <= 1e-6):
         return float("inf")
     return _apart(mapping, orbit, found.states[::2])

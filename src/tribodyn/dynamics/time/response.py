@@ -189,23 +189,20 @@ def build_response(
     compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, **facts: Any
 ) -> Response:
     """Evaluate contact forces and accelerations along recorded states."""
-    nodes, steps = compiled.nodes, compiled.grid.steps
-    cycles = (states.shape[0] - 1) // steps
+    nodes = compiled.nodes
+    cycles = (states.shape[0] - 1) // compiled.grid.steps
     size = compiled.system.size
     whole = _step_samples(compiled, mesh_frequency, states, extra_force)
     fine = _without_jumps(whole, compiled, mesh_frequency, states, extra_force)
 
-    def left(values: Array) -> Array:
-        return values.reshape(cycles * steps, 3, values.shape[-1])[:, 0]
-
     return Response(
-        time=whole.time.reshape(-1, 3)[:, 0],
+        time=whole.time[::3],
         phase=np.tile(nodes.phase[:, 0], cycles),
         position=states[:-1, :size].copy(),
         velocity=states[:-1, size:].copy(),
-        acceleration=left(whole.acceleration),
-        deflection=left(whole.deflection),
-        contact_force=left(whole.contact_force),
+        acceleration=whole.acceleration[::3],
+        deflection=whole.deflection[::3],
+        contact_force=whole.contact_force[::3],
         names=tuple(compiled.system.names),
         mesh_frequency=mesh_frequency,
         periods=cycles,

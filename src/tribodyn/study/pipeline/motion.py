@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -44,6 +46,25 @@ def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progr
             response = _transient(case, system, mesh_frequency, steps, progress)
     _warn_of_tension(case, response)
     return response
+
+
+def motions_of(points: Sequence[tuple[Case, System, float]]) -> list[Response | None]:
+    """Motions of cases at mesh frequencies, side by side; None where one is found by itself."""
+    from tribodyn.dynamics.orbits.side_by_side import orbits_in_touch
+
+    alike: dict[int, list[int]] = {}
+    for number, (case, system, frequency) in enumerate(points):
+        if case.solver.method == "steady" and case.solver.engine == _ORBITS:
+            with suppress(InputError), collected():  # told where it is found by itself
+                if engine_arguments(case).get("backend") in (None, "cpu"):
+                    alike.setdefault(steps_of(case, system, frequency), []).append(number)
+    found: list[Response | None] = [None] * len(points)
+    for steps, numbers in alike.items():
+        systems, frequencies = zip(*(points[number][1:] for number in numbers), strict=True)
+        orbits = orbits_in_touch(systems, np.array(frequencies), steps)
+        for number, orbit in zip(numbers, orbits, strict=True):
+            found[number] = orbit
+    return found
 
 
 def _transient(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tribodyn.errors import ModelWarning, collected, frames
@@ -24,13 +25,16 @@ from tribodyn.study.pipeline.cautions import (
     teeth_cautions,
 )
 from tribodyn.study.pipeline.computed import Coupling
-from tribodyn.study.pipeline.motion import motion_of, steps_of
+from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import MeshTable
+    from tribodyn.dynamics import Response, System
+    from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.case import Case
+    from tribodyn.study.heat_balance import HeatBalance
+    from tribodyn.study.pipeline.assembly import Damping
 
 
 def run(
@@ -96,6 +100,51 @@ def computed(
 
     ``known`` gives its mesh table where a study has loads and films at hand.
     """
+    return begin(case, progress, known, follow).result(progress)
+
+
+@dataclass
+class Begun:
+    """A case up to its motion, which studies find side by side."""
+
+    case: Case
+    mesh: MeshTable
+    coupling: Coupling | None
+    heat: HeatBalance | None
+    friction: MeshFriction | None
+    damping: Damping
+    system: System
+    told: list[ModelWarning]
+    response: Response | None = None  #: its motion, where it is known
+
+    def result(self, progress: Progress = SILENT) -> Result:
+        """Find the motion if it is not known, and the result."""
+        case, mesh, response, compared = self.case, self.mesh, self.response, None
+        with unchanged_files(case), placed(case), collected() as found:
+            if response is None:
+                with friction_suspected(mesh):
+                    response = motion_of(case, self.system, mesh.mesh_frequency, progress)
+            if self.friction is not None:
+                table = system_of(case, mesh, self.damping)
+                compared = motion_of(case, table, mesh.mesh_frequency, progress)
+        noticed = (
+            *mesh_cautions(mesh),
+            *motion_cautions(case, self.system, response),
+            *friction_cautions(self.friction, response),
+        )
+        everything = (*case_cautions(case), *teeth_cautions(case), *self.told, *found, *noticed)
+        told = tuple({str(warning): warning for warning in everything}.values())
+        parts = case, mesh, self.system, response, self.damping, told
+        return Result(*parts, self.friction, compared, self.coupling, self.heat)
+
+
+def begin(
+    case: Case,
+    progress: Progress = SILENT,
+    known: Callable[[], MeshTable] | None = None,
+    follow: Follow | None = None,
+) -> Begun:
+    """Compute a case up to its motion, as :func:`computed`."""
     with unchanged_files(case), placed(case), collected() as found:
         progress.start("Tooth contact")
 
@@ -114,17 +163,11 @@ def computed(
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
         progress.finish()
-        with friction_suspected(mesh):
-            response = motion_of(case, system, mesh.mesh_frequency, progress)
-        compared = None
-        if friction is not None:
-            table = system_of(case, mesh, damping)
-            compared = motion_of(case, table, mesh.mesh_frequency, progress)
-    noticed = (
-        *mesh_cautions(mesh),
-        *motion_cautions(case, system, response),
-        *friction_cautions(friction, response),
-    )
-    everything = (*case_cautions(case), *teeth_cautions(case), *found, *noticed)
-    told = tuple({str(warning): warning for warning in everything}.values())
-    return Result(case, mesh, system, response, damping, told, friction, compared, coupling, heat)
+    return Begun(case, mesh, coupling, heat, friction, damping, system, found)
+
+
+def move_together(points: Sequence[Begun]) -> None:
+    """Find motions side by side, of as many cases as that is possible for."""
+    motions = motions_of([(each.case, each.system, each.mesh.mesh_frequency) for each in points])
+    for each, response in zip(points, motions, strict=True):
+        each.response = response

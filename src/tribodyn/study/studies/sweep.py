@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+import os
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
+from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tribodyn.errors import ComputationError, InputError, quiet
+from tribodyn.interrupt import in_threads
 from tribodyn.members import Members
 from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.pipeline.run import computed
+from tribodyn.study.pipeline.run import Begun, begin, move_together
 from tribodyn.study.studies.axes import Axis, read_axes
-from tribodyn.study.studies.grid import finished, identity, over_cases
+from tribodyn.study.studies.grid import finished, identity
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.pipeline.result import Result
+
+Value = TypeVar("Value")
 
 #: Points from which on a table of solved films costs less than films of their own.
 _MANY = 4
@@ -85,16 +90,16 @@ def sweep(
     axes = read_axes(case, _asked(over, between, points), by=by)
     study = identity("sweep", case, [(axis.key, axis.values) for axis in axes])
 
-    def compute(*values: Any) -> Result:
+    def begun(*values: Any) -> Begun:
         changes = {axis.key: value for axis, value in zip(axes, values, strict=True)}
-        return computed(case.replace(changes))
+        return begin(case.replace(changes))
 
-    return Sweep(case, axes, points_of(axes, compute, study, partial, progress, members))
+    return Sweep(case, axes, points_of(axes, begun, study, partial, progress, members))
 
 
 def points_of(
     axes: tuple[Axis, ...],
-    compute: Callable[..., Result],
+    begun: Callable[..., Begun],
     study: Mapping[str, Any],
     partial: bool,
     progress: Progress,
@@ -110,16 +115,14 @@ def points_of(
         if figures is not None
     }
 
-    def point(index: int) -> SweepPoint:
-        found = _point(compute, grid[index])
+    def keep(index: int, found: SweepPoint) -> None:
         kept.keep(str(index), (dict(found.figures), found.failed, found.warned))
-        return found
 
     progress.start("Values", len(grid))
     try:
         # Not by what is left: a sweep that goes on has the figures of one that was not stopped.
         with shared_films() if len(grid) >= _MANY else nullcontext():
-            over_cases(point, range(len(grid)), done, progress)
+            _over_points(begun, grid, done, progress, keep)
     except KeyboardInterrupt:
         if not (partial and 0 in done):
             raise
@@ -130,13 +133,14 @@ def points_of(
 def points_under(
     case: Case, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
 ) -> list[SweepPoint]:
-    """Compute a case under each of some changes, in their order; what fails is told."""
+    """Compute a case under some changes of the same keys, in their order; what fails is told."""
     done: dict[int, SweepPoint] = {}
+    keys = [tuple(change) for change in changes]
 
-    def point(change: Mapping[str, Any]) -> SweepPoint:
-        return _point(lambda *_: computed(case.replace(change)), tuple(change.values()))
+    def begun(*values: Any) -> Begun:
+        return begin(case.replace(dict(zip(keys[0], values, strict=True))))
 
-    over_cases(point, changes, done, progress)
+    _over_points(begun, [tuple(change.values()) for change in changes], done, progress)
     return [done[index] for index in range(len(changes))]
 
 
@@ -152,14 +156,58 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
     return over
 
 
-def _point(compute: Callable[..., Result], values: tuple[Any, ...]) -> SweepPoint:
-    """Run the case at one place; what fails is told, and the sweep goes on."""
+#: Points at most whose motions are found side by side, and groups of them for each processor.
+_TOGETHER, _GROUPS = 16, 4
+
+
+def _over_points(
+    begun: Callable[..., Begun],
+    grid: Sequence[tuple[Any, ...]],
+    done: dict[int, SweepPoint],
+    progress: Progress,
+    keep: Callable[[int, SweepPoint], None] = lambda index, point: None,
+) -> None:
+    """Compute what is not ``done`` yet of some points, in groups, several at a time."""
+    left = [index for index in range(len(grid)) if index not in done]
+    count = os.cpu_count() or 1
+    size = min(_TOGETHER, max(1, len(left) // (_GROUPS * count)))
+    lock = threading.Lock()
+    progress.advance(len(done))
+
+    def group(first: int) -> None:
+        members = left[first : first + size]
+        for index, point in zip(members, _points(begun, [grid[i] for i in members]), strict=True):
+            keep(index, point)
+            with lock:
+                done[index] = point
+                progress.advance()
+
+    in_threads(group, range(0, len(left), size), count)
+
+
+def _points(begun: Callable[..., Begun], places: Sequence[tuple[Any, ...]]) -> Iterator[SweepPoint]:
+    """Run the case at some places; what fails is told, and the sweep goes on."""
+    with quiet():  # what the models say is kept in the results
+        points = [_tried(partial(begun, *values)) for values in places]
+        move_together([point for point in points if isinstance(point, Begun)])
+    for values, point in zip(places, points, strict=True):
+        with quiet():
+            found = _tried(partial(_figures, point)) if isinstance(point, Begun) else point
+        if isinstance(found, Exception):
+            first = found.problems[0]
+            place = str(first.where).removeprefix("replace: ")  # the sweep is what replaces
+            yield SweepPoint(values, {}, str(dataclasses.replace(first, where=place)))
+        else:
+            yield SweepPoint(values, *found)
+
+
+def _figures(point: Begun) -> tuple[dict[str, float], str, tuple[str, ...]]:
+    result = point.result()
+    return result.summary(), "", tuple(warning.code for warning in result.warnings)
+
+
+def _tried(compute: Callable[[], Value]) -> Value | InputError | ComputationError:
     try:
-        with quiet():  # what the models say is kept in the result
-            result = compute(*values)
-            figures = result.summary()
+        return compute()
     except (InputError, ComputationError) as error:
-        first = error.problems[0]
-        place = str(first.where).removeprefix("replace: ")  # the sweep is what replaces
-        return SweepPoint(values, {}, str(dataclasses.replace(first, where=place)))
-    return SweepPoint(values, figures, "", tuple(warning.code for warning in result.warnings))
+        return error

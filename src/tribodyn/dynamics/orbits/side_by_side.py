@@ -1,0 +1,357 @@
+"""Steady motions of many systems alike, side by side, as operating maps ask for them.
+
+While the flanks stay in touch the equations are linear: one march of the start and of a disturbance
+of every coordinate gives the orbit, a second one its motion and error, and others at half the step
+what the step costs. That is what :func:`tribodyn.dynamics.steady_state` does for one system. Where
+anything else happens there is no answer here, and the system is looked at by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics._engine.blocks import WIDTH
+from tribodyn.dynamics._engine.method import RungeKutta4
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.entry import varies
+from tribodyn.dynamics.equations.grid import (
+    Grid,
+    Nodes,
+    build_grid,
+    evaluate_nodes,
+    halved_grid,
+    step_weights,
+    system_events,
+)
+from tribodyn.dynamics.equations.program import Program, build_program, lane_load
+from tribodyn.dynamics.equations.step_limit import refuse_unstable_step
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.coordinates import (
+    OrbitCoordinates,
+    balanced_position,
+    orbit_coordinates,
+)
+from tribodyn.dynamics.orbits.orbit_map import Balance, take_drift_out
+from tribodyn.dynamics.orbits.search import APART, GONE, HORIZON
+from tribodyn.dynamics.orbits.steady_state import CLOSE, OTHER, ROUNDS, STEP_LIMIT, TOLERANCE
+from tribodyn.dynamics.time.response import Response, build_response
+from tribodyn.errors import InputError, collected
+from tribodyn.interrupt import refuse_stopped, stop_flag
+from tribodyn.types import Array, ComplexArray, Index, Mask
+
+
+def orbits_in_touch(
+    systems: Sequence[System], mesh_frequency: Array, steps: int
+) -> list[Response | None]:
+    """Steady motions of one mesh cycle in which no flanks part; None where there is none such."""
+    found: list[Response | None] = [None] * len(systems)
+    groups: dict[object, list[int]] = {}
+    for number, system in enumerate(systems):
+        if (key := _structure(system)) is not None:
+            groups.setdefault(key, []).append(number)
+    for numbers in groups.values():
+        with collected() as told:
+            try:
+                group = _Group([systems[i] for i in numbers], mesh_frequency[numbers], steps)
+                orbits = _responses(group)
+            except InputError:  # which is told where each is looked at by itself
+                continue
+        if not told:
+            for number, orbit in zip(numbers, orbits, strict=True):
+                found[number] = orbit
+    return found
+
+
+def _structure(system: System) -> object:
+    """What systems have in common that march side by side; None of those that do not."""
+    contacts = system.contacts
+    if len(contacts) != 1 or system.frictions or varies(system.force):
+        return None
+    if varies(contacts[0].direction):
+        return None
+    parts = system.mass, system.damping, system.stiffness, system.balance, contacts[0].direction
+    numbers = tuple(None if part is None else np.asarray(part).tobytes() for part in parts)
+    return numbers, tuple(system.names), contacts[0].events, contacts[0].damping_in_gap
+
+
+#: Rows in which systems alike differ, and places of a step in the two that it is cut into.
+_OWN = "stiffness", "damping", "error", "error_slope", "gap", "force_direction"
+_PLACES = [0, 2, 5]
+
+
+def _stacked(every: Sequence[Nodes], grid: Grid, coarse: bool) -> Nodes:
+    """Rows of systems alike with a first axis more; or those of every other of their steps."""
+
+    def rows(values: Array, lead: int) -> Array:
+        if not coarse:
+            return values
+        shape = values.shape
+        cut = values.reshape(*shape[:lead], grid.steps, 6, *shape[lead + 2 :])
+        return cut.take(_PLACES, axis=lead + 1)
+
+    first = Nodes(*(rows(values, 0) for values in every[0]))
+    own = {name: rows(np.stack([getattr(n, name) for n in every]), 1) for name in _OWN}
+    shape = (len(every), grid.steps, 3)
+    force = np.stack([nodes.force[:1, :1] for nodes in every])
+    return first._replace(
+        **own,
+        phase=np.broadcast_to(first.phase, shape),
+        force=np.broadcast_to(force, (*shape, force.shape[-1])),
+        weight=step_weights(grid),
+    )
+
+
+class _Grid(NamedTuple):
+    """Systems alike on one grid."""
+
+    grid: Grid
+    nodes: Nodes
+    program: Program
+
+    def of(self, number: int) -> Program:
+        """Program of one of them."""
+        rows, load = self.program.rows[number], self.program.constant_load[number]
+        return self.program._replace(rows=rows, constant_load=load)
+
+
+class _Group:
+    """Maps of systems alike over one mesh cycle, each at its own mesh frequency."""
+
+    def __init__(self, systems: Sequence[System], beat: Array, steps: int) -> None:
+        self.systems, self.system, self.beat = systems, systems[0], beat
+        grid = build_grid(system_events(self.system), steps)
+        fine = halved_grid(grid)
+        every = [evaluate_nodes(system, fine) for system in systems]
+        self.whole, self.halved = (
+            _Grid(each, nodes, build_program(self.system, each, nodes))
+            for each, nodes in (
+                (each, _stacked(every, each, each is grid)) for each in (grid, fine)
+            )
+        )
+        shared = orbit_coordinates(self.compiled(0), 1.0)
+        rate = shared.rate * beat[:, None, None]
+        self.coordinates: OrbitCoordinates = replace(shared, rate=rate)
+        self.balance = Balance.of(self.system, shared)
+
+    def compiled(self, number: int) -> Compiled:
+        """One of the systems, checked for its step."""
+        grid, nodes, _ = self.whole
+        differing = {name: getattr(nodes, name)[number] for name in (*_OWN, "phase", "force")}
+        system, own = self.systems[number], nodes._replace(**differing)
+        rate = system._rates.get(grid.steps)
+        order = refuse_unstable_step(system, own, grid, float(self.beat[number]), rate=rate)
+        return Compiled(system, grid, own, self.whole.of(number), order)
+
+    def start(self) -> Array:
+        """Points (p, 1, k) at rest under the mean loads."""
+        nodes = self.whole.nodes
+        place = balanced_position(self.system, nodes, nodes.stiffness, nodes.force_direction)
+        y = self.coordinates.reduce(np.concatenate((place, 0.0 * place), axis=-1)[:, None])
+        return y if self.balance is None else np.concatenate((y, 0.0 * y[..., :1]), axis=-1)
+
+    def extra(self, points: Array) -> Array:
+        """Balancing force (p, lanes, n) of points."""
+        if self.balance is None:
+            return np.zeros((*points.shape[:-1], self.system.size))
+        return np.asarray(points[..., -1:] * self.beat[:, None, None] * self.balance.force)
+
+    def march(
+        self, on: _Grid, points: Array, which: Index, keep: Callable[[int, Array], None]
+    ) -> Array:
+        """Images of some points (p, lanes, k); ``keep`` has the states (rows, 2 n, lanes) first."""
+        y = points if self.balance is None else points[..., :-1]
+        state, extra = self.coordinates.expand(y), self.extra(points)
+        for number in which:
+            program, period = on.of(number), 1.0 / float(self.beat[number])
+            record = _marched(program, self.system, period, state[number], extra[number])
+            keep(number, record)
+            state[number] = record[-1].T
+        image = self.coordinates.reduce(state)
+        if self.balance is None:
+            return image
+        gained = self.coordinates.free_velocity(state) @ self.balance.direction
+        return np.concatenate((image, points[..., -1:] - gained[..., None]), axis=-1)
+
+
+def _marched(program: Program, system: System, period: float, state: Array, extra: Array) -> Array:
+    """States (rows, 2 n, lanes) of lanes (lanes, 2 n) over one mesh cycle; NaN where they end."""
+    from tribodyn.dynamics._engine.marching import march_block
+
+    load, periods = lane_load(program, system, extra), np.full(len(state), period)
+    blocks = []
+    for first in range(0, len(state), WIDTH):
+        own = slice(first, first + WIDTH)
+        part = state[own].copy()
+        record = np.empty((program.width.size + 1, state.shape[1], len(part)))
+        lanes = (0.0,) * len(part), RungeKutta4(), program, program.rows, periods[own], load[own]
+        code = refuse_stopped(int(march_block(*lanes, part, 1, record, None, stop_flag())))
+        if code >= 0:
+            record[:] = np.nan
+        blocks.append(record)
+    return blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=-1)
+
+
+class _Touch(NamedTuple):
+    """How far the flanks of motions are from parting, at the ends of all steps (p, rows)."""
+
+    room: Array  #: clearance, the lesser of both sides of an event [m]
+    flank: Array  #: side of the play (p, 1): 1 or -1
+
+    @classmethod
+    def of(cls, nodes: Nodes, along: Array) -> _Touch:
+        """Clearance of motions whose displacement along the line of action is known."""
+        ends = np.stack((along[:, :-1], along[:, 1:]), axis=-1) - nodes.error[:, :, ::2, 0]
+        flank = np.where(ends[:, :1, 0] < 0.0, -1.0, 1.0)
+        clear = flank[..., None] * ends - nodes.gap[:, :, ::2, 0]
+        room = np.pad(clear[..., 0], ((0, 0), (0, 1)), constant_values=np.inf)
+        room[:, 1:] = np.minimum(room[:, 1:], clear[..., 1])
+        return cls(room, flank)
+
+    @property
+    def kept(self) -> Mask:
+        """Whether the flanks of a motion never part."""
+        return np.asarray(np.all(self.room > 0.0, axis=1))
+
+    def stays(self, rates: Array, matrix: Array, distance: Array) -> Mask:
+        """Whether motions beside orbits reach them without parting."""
+        least, kept = self.room.min(axis=1), self.kept
+        steepest = np.sqrt((rates**2).sum(axis=-1).max(axis=1))
+        first = np.abs(rates @ distance[..., None])[..., 0].max(axis=1)
+        going = kept.copy()
+        for _ in range(HORIZON):
+            size = steepest * np.linalg.norm(distance, axis=1)
+            near = going & (size > least)
+            going &= near | (size > GONE * first)
+            for number in np.flatnonzero(near):
+                moved = rates[number] @ distance[number]
+                kept[number] = np.all(self.room[number] + moved > 0.0)
+                going[number] = kept[number] and np.abs(moved).max() > GONE * first[number]
+            if not going.any():
+                break
+            distance = _times(matrix, distance)
+        return kept
+
+
+def _times(matrix: Array, vector: Array) -> Array:
+    return np.asarray((matrix @ vector[..., None])[..., 0])
+
+
+class _Orbits(NamedTuple):
+    """Orbits of a group; those that are not ``good`` mean nothing."""
+
+    point: Array  #: (p, 1, k)
+    inverse: Array  #: of one less the matrix of the map, (p, k, k)
+    states: Array  #: (p, rows, 2 n)
+    reduced: Array  #: (p, rows, e + v)
+    scale: Array  #: size of the motion
+    error: Array  #: certified
+    multipliers: ComplexArray
+    good: Mask
+
+
+def _orbits(group: _Group) -> _Orbits:
+    y, nodes, every = group.start(), group.whole.nodes, np.arange(len(group.systems))
+    count, steps, size = len(every), group.whole.grid.steps, group.system.size
+    k = y.shape[-1]
+    step = APART * np.linalg.norm(y, axis=-1, keepdims=True)
+    along = np.empty((count, steps + 1, k + 1))
+    direction = nodes.direction[0, 0, 0]
+    used = np.flatnonzero(direction)
+
+    def beside(number: int, record: Array) -> None:
+        along[number] = sum(direction[i] * record[:, i, : k + 1] for i in used)
+
+    points = y + step * np.eye(-(-(k + 1) // WIDTH) * WIDTH, k, -1)
+    image = group.march(group.whole, points, every, beside)[:, : k + 1]
+    matrix = np.swapaxes(image[:, 1:] - image[:, :1], 1, 2) / step
+    slope = np.eye(k) - matrix
+    inverse = np.linalg.pinv(slope)
+    touch = _Touch.of(nodes, along[..., 0])
+    rates = touch.flank[..., None] * (along[..., 1:] - along[..., :1]) / step
+    good = touch.kept & np.all(touch.room[..., None] + step * rates > 0.0, axis=(1, 2))
+    point = y + _times(inverse, (image[:, :1] - y)[:, 0])[:, None]
+    states = np.empty((count, steps + 1, 2 * size))
+
+    def motion(number: int, record: Array) -> None:
+        states[number] = record[..., 0]
+
+    residual = (group.march(group.whole, point, every, motion) - point)[:, 0]
+    way = _times(inverse, residual)
+    distance = np.linalg.norm(way, axis=1)
+    distance += np.linalg.norm(residual - _times(slope, way), axis=1)
+    phase = np.append(nodes.phase[0, :, 0], 1.0)
+    take_drift_out(group.coordinates, phase[:, None] / group.beat[:, None, None], states)
+    reduced = group.coordinates.reduce(states)
+    scale = np.linalg.norm(reduced, axis=-1).max(axis=1)
+    error = distance / scale
+    held = matrix if group.balance is None else matrix[:, :-1, :-1]
+    values = np.linalg.eigvals(held).astype(complex)
+    order = np.argsort(-np.abs(values), axis=1, kind="stable")
+    multipliers = np.take_along_axis(values, order, axis=1)
+    good &= (error <= 0.01 * TOLERANCE) & (np.abs(multipliers[:, 0]) < 1.0)
+    touch = _Touch.of(nodes, states[..., :size] @ direction)
+    good &= touch.stays(rates, matrix, (y - point)[:, 0])
+    return _Orbits(point, inverse, states, reduced, scale, error, multipliers, good)
+
+
+def _step_errors(group: _Group, orbits: _Orbits) -> Array:
+    """Distance of each orbit to that at half the step over its size; NaN where it was not found."""
+    at, left = orbits.point.copy(), np.flatnonzero(orbits.good)
+    fine, moved = np.full_like(orbits.reduced, np.nan), np.zeros_like(orbits.point)
+    shape = (len(at), *orbits.states.shape[1:])
+    states, way = np.zeros(shape), np.full(len(at), np.inf)
+
+    def every_other(number: int, record: Array) -> None:
+        states[number] = record[::2, :, 0]
+
+    for _ in range(ROUNDS):
+        if not left.size:
+            break
+        image = group.march(group.halved, at, left, every_other)
+        step = _times(orbits.inverse, (image - at)[:, 0])[:, None]
+        last, way = way, np.linalg.norm(step[:, 0], axis=1)
+        far = np.linalg.norm((at + step - orbits.point)[:, 0], axis=1)
+        left = left[((way < 0.5 * last) & (far <= OTHER * orbits.scale))[left]]
+        at[left] += step[left]
+        near = ((way <= CLOSE * far) | (way <= 1e-9 * orbits.scale))[left]
+        moved[left[near]] = step[left[near]]
+        fine[left[near]] = group.coordinates.reduce(states)[left[near]]
+        left = left[~near]
+    ended = np.flatnonzero(~np.isnan(fine[:, 0, 0]))
+
+    def coarse(number: int, record: Array) -> None:
+        states[number] = record[..., 0]
+
+    # What is left of the way moves both motions alike.
+    group.march(group.whole, orbits.point + moved, ended, coarse)
+    fine += group.coordinates.reduce(states) - orbits.reduced
+    apart = np.linalg.norm(fine - orbits.reduced, axis=-1).max(axis=1)
+    return np.asarray(apart / np.linalg.norm(fine, axis=-1).max(axis=1))
+
+
+def _responses(group: _Group) -> list[Response | None]:
+    orbits = _orbits(group)
+    cost = _step_errors(group, orbits)
+    extra = group.extra(orbits.point)[:, 0]
+
+    def response(number: int) -> Response:
+        return build_response(
+            group.compiled(number),
+            float(group.beat[number]),
+            orbits.states[number],
+            extra[number],
+            error=max(float(orbits.error[number]), float(np.finfo(float).eps)),
+            step_error=float(cost[number]),
+            converged=True,
+            floquet_multipliers=orbits.multipliers[number],
+            cycles_used=2,
+            search_cycles=1,
+            period=1,
+        )
+
+    good = orbits.good & (cost <= STEP_LIMIT)
+    return [response(number) if good[number] else None for number in range(len(good))]

@@ -1,0 +1,65 @@
+"""Motions of many operating points that are found side by side are those of single runs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import quiet
+from tribodyn.study.pipeline.run import Begun, begin, computed, move_together
+
+#: Speed [rad/s], torque [N*m] and transmission error [m]: with 1024 and 2048 steps, and parting.
+_POINTS = (300.0, 150.0, 0.0), (310.0, 60.0, 1e-6), (120.0, 250.0, 0.0), (366.0, 50.0, 2e-4)
+_KEYS = "operation.speed", "operation.torque", "dynamics.transmission_error_amplitude"
+#: Figures that are nothing but rounding, and one that is made of small differences.
+_ROUNDED, _SMALL = {"steady_state_error"}, {"step_error"}
+
+
+@pytest.fixture(scope="module")
+def cases() -> list[td.Case]:
+    case = td.load_case("fzg-roughness")
+    return [case.replace(dict(zip(_KEYS, point, strict=True))) for point in _POINTS]
+
+
+@pytest.fixture(scope="module")
+def together(cases: list[td.Case]) -> list[Begun]:
+    points = [begin(case) for case in cases]
+    with quiet():
+        move_together(points)
+    return points
+
+
+def test_flanks_that_part_are_left_to_themselves(together: list[Begun]) -> None:
+    assert [point.response is None for point in together] == [False, False, False, True]
+
+
+def test_figures_are_those_of_single_runs(cases: list[td.Case], together: list[Begun]) -> None:
+    lost = []
+    for case, point in zip(cases, together, strict=True):
+        with quiet():
+            one, many = computed(case), point.result()
+        alone, beside = one.summary(), many.summary()
+        lost.append(alone["contact_loss_share"])
+        assert list(beside) == list(alone)
+        assert [each.code for each in many.warnings] == [each.code for each in one.warnings]
+        for name in alone.keys() - _ROUNDED:
+            exact = 1e-6 if name in _SMALL else 1e-9
+            assert beside[name] == pytest.approx(alone[name], rel=exact, abs=1e-300), name
+        assert beside["steady_state_error"] < 1e-10
+        for name in ("position", "velocity", "acceleration", "contact_force"):
+            values = getattr(one.response, name)
+            error = np.abs(getattr(many.response, name) - values).max(axis=0)
+            assert np.all(error <= 1e-9 * np.abs(values).max(axis=0)), name
+        assert many.response.cycles_used == one.response.cycles_used
+        assert many.response.floquet_multipliers == pytest.approx(
+            one.response.floquet_multipliers, abs=1e-8
+        )
+    assert lost[-1] > 0.0 == max(lost[:-1])
+
+
+def test_a_motion_depends_on_no_other(cases: list[td.Case], together: list[Begun]) -> None:
+    alone = [begin(cases[1])]
+    with quiet():
+        move_together(alone)
+    assert alone[0].response == together[1].response
